@@ -59,7 +59,7 @@ def guarded(text: str) -> str:
     return text.replace("    return GAIN * x\n", "    return 2.4 * GAIN * x\n")
 
 
-def test_it_applies_and_says_how_to_test_again_and_how_to_undo_it(robot: Path, capsys: Printed) -> None:
+def test_applying_prints_how_to_test_again_and_how_to_undo(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     assert main(["apply", str(patch)]) == 0
     assert (robot / "node.py").read_text() == guarded(NODE)
@@ -73,7 +73,7 @@ def test_it_applies_and_says_how_to_test_again_and_how_to_undo_it(robot: Path, c
     assert git("status", "--porcelain", cwd=robot) == ""
 
 
-def test_twice_is_refused_and_so_is_undoing_what_was_not_done(robot: Path, capsys: Printed) -> None:
+def test_applying_twice_and_reverting_an_unapplied_patch_are_refused(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     assert main(["revert", str(patch)]) == 1
     assert "is not applied to node.py" in capsys.readouterr().err
@@ -83,7 +83,7 @@ def test_twice_is_refused_and_so_is_undoing_what_was_not_done(robot: Path, capsy
     assert (robot / "node.py").read_text() == guarded(NODE)
 
 
-def test_a_text_that_nobody_has_tested_needs_force(robot: Path, capsys: Printed) -> None:
+def test_a_changed_file_needs_force_because_its_result_is_untested(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     edited = "# of a robot\n" + NODE
     (robot / "node.py").write_text(edited)
@@ -97,16 +97,14 @@ def test_a_text_that_nobody_has_tested_needs_force(robot: Path, capsys: Printed)
     assert (robot / "node.py").read_text() == edited
 
 
-def test_where_the_line_itself_is_another_one_it_is_refused_with_force_too(
-    robot: Path, capsys: Printed
-) -> None:
+def test_force_does_not_apply_a_patch_whose_own_lines_changed(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     (robot / "node.py").write_text(NODE.replace("GAIN * x", "GAIN * (x + 1)"))
     assert main(["apply", "--force", str(patch)]) == 1
     assert "does not apply" in capsys.readouterr().err
 
 
-def test_an_edit_of_the_patched_line_is_never_undone_by_guess(robot: Path, capsys: Printed) -> None:
+def test_a_patch_is_not_reverted_if_its_lines_were_edited(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     main(["apply", str(patch)])
     edited = guarded(NODE).replace("2.4", "2.6")
@@ -116,7 +114,7 @@ def test_an_edit_of_the_patched_line_is_never_undone_by_guess(robot: Path, capsy
     assert (robot / "node.py").read_text() == edited
 
 
-def test_changes_that_are_not_committed_are_not_mixed_with_the_repair(robot: Path, capsys: Printed) -> None:
+def test_a_file_with_uncommitted_changes_is_refused(robot: Path, capsys: Printed) -> None:
     edited = NODE.replace("low = 1", "low = 0")
     (robot / "node.py").write_text(edited)
     patch = repair(robot, {"node.py": guarded(edited)})
@@ -126,12 +124,12 @@ def test_changes_that_are_not_committed_are_not_mixed_with_the_repair(robot: Pat
     assert main(["apply", "--force", str(patch)]) == 0
 
 
-def test_changes_of_other_files_do_not_matter(robot: Path) -> None:
+def test_uncommitted_changes_in_other_files_are_allowed(robot: Path) -> None:
     (robot / ".gitignore").write_text(".tarl\n*.log\n")
     assert main(["apply", str(repair(robot, {"node.py": guarded(NODE)}))]) == 0
 
 
-def test_without_a_repository_it_says_what_was_not_checked(
+def test_without_a_repository_a_note_says_what_was_not_checked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -141,7 +139,7 @@ def test_without_a_repository_it_says_what_was_not_checked(
     assert "note:  node.py is not in a git repository" in capsys.readouterr().out
 
 
-def test_without_git_it_says_so_and_applies(
+def test_without_git_the_patch_is_applied_with_a_note(
     robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     monkeypatch.setenv("PATH", str(robot))
@@ -149,7 +147,7 @@ def test_without_git_it_says_so_and_applies(
     assert "git is not installed" in capsys.readouterr().out
 
 
-def test_a_recording_that_was_made_again_no_longer_vouches_for_it(robot: Path, capsys: Printed) -> None:
+def test_a_patch_accepted_against_an_older_recording_is_refused(robot: Path, capsys: Printed) -> None:
     fixture = robot / ".tarl" / "utility" / "it.npz"
     fixture.parent.mkdir(parents=True)
     fixture.write_bytes(b"recorded")
@@ -164,7 +162,7 @@ def test_a_recording_that_was_made_again_no_longer_vouches_for_it(robot: Path, c
 
 
 @pytest.mark.parametrize("command", ["apply", "revert", "suggest"])
-def test_what_is_no_patch_of_tarl_is_named(robot: Path, capsys: Printed, command: str) -> None:
+def test_a_file_that_is_not_a_patch_of_tarl_is_refused(robot: Path, capsys: Printed, command: str) -> None:
     (robot / "other.patch").write_text("diff --git a/node.py b/node.py\n--- a/node.py\n+++ b/node.py\n")
     assert main([command, "other.patch"]) == 2
     assert "other.patch is not a patch of TARL" in capsys.readouterr().err
@@ -172,7 +170,7 @@ def test_what_is_no_patch_of_tarl_is_named(robot: Path, capsys: Printed, command
     assert "none.patch cannot be read" in capsys.readouterr().err
 
 
-def test_a_cut_patch_is_damaged_and_does_nothing(robot: Path, capsys: Printed) -> None:
+def test_a_truncated_patch_is_refused(robot: Path, capsys: Printed) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     lines = patch.read_text().splitlines(keepends=True)
     patch.write_text("".join(lines[:-2]))
@@ -181,7 +179,7 @@ def test_a_cut_patch_is_damaged_and_does_nothing(robot: Path, capsys: Printed) -
     assert (robot / "node.py").read_text() == NODE
 
 
-def test_a_patch_that_was_carried_away_finds_its_files_from_where_it_is_applied(
+def test_a_moved_patch_finds_its_files_from_the_current_folder(
     robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
@@ -195,7 +193,9 @@ def test_a_patch_that_was_carried_away_finds_its_files_from_where_it_is_applied(
     assert "are relative with --directory" in capsys.readouterr().err
 
 
-def test_all_files_or_none(robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed) -> None:
+def test_either_all_files_are_changed_or_none(
+    robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed
+) -> None:
     (robot / "other.py").write_text("a = 1\n")
     patch = repair(robot, {"node.py": guarded(NODE), "other.py": "a = 2\n"})
     create, calls = replacing._create, list[str]()
@@ -231,7 +231,7 @@ def test_all_files_or_none(robot: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     ],
     ids=["crlf", "no-final-newline", "tabs", "latin-1", "bom"],
 )
-def test_bytes_and_mode_come_back_exactly(robot: Path, content: bytes) -> None:
+def test_reverting_restores_bytes_and_file_mode(robot: Path, content: bytes) -> None:
     node = robot / "node.py"
     node.write_bytes(content)
     node.chmod(0o755)
@@ -246,7 +246,7 @@ def test_bytes_and_mode_come_back_exactly(robot: Path, content: bytes) -> None:
     assert node.read_bytes() == content
 
 
-def test_repairs_of_several_tests_go_into_one_file_together_or_one_after_the_other(robot: Path) -> None:
+def test_several_repairs_are_applied_together_or_one_by_one(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE).replace("import rospy", "import math\nimport rospy")})
     second = repair(
         robot,
@@ -260,7 +260,7 @@ def test_repairs_of_several_tests_go_into_one_file_together_or_one_after_the_oth
     assert (robot / "node.py").read_text() == NODE
 
 
-def test_a_second_repair_can_follow_the_first(robot: Path) -> None:
+def test_a_second_repair_can_be_applied_after_the_first(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("GAIN = 5", "GAIN = 6")}, "wind")
     assert main(["apply", str(first)]) == 0
@@ -270,9 +270,7 @@ def test_a_second_repair_can_follow_the_first(robot: Path) -> None:
     assert (robot / "node.py").read_text() == NODE.replace("GAIN = 5", "GAIN = 6")
 
 
-def test_repairs_that_want_different_things_of_a_line_are_refused_with_its_number(
-    robot: Path, capsys: Printed
-) -> None:
+def test_conflicting_repairs_are_refused_with_the_line_number(robot: Path, capsys: Printed) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("GAIN * x", "0.4 * GAIN * x")}, "wind")
     assert main(["apply", str(first), str(second)]) == 1
@@ -281,7 +279,7 @@ def test_repairs_that_want_different_things_of_a_line_are_refused_with_its_numbe
     assert (robot / "node.py").read_text() == NODE
 
 
-def test_git_can_merge_it_into_a_text_that_moved_on(robot: Path) -> None:
+def test_git_merges_a_repair_into_a_file_that_changed_since(robot: Path) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     (robot / "node.py").write_text("# of a robot\n" * 20 + NODE.replace("high = 2", "high = 3"))
     git("commit", "-qam", "moved on", cwd=robot)
@@ -300,7 +298,7 @@ def schema() -> dict[str, Any]:
     return loaded
 
 
-def test_its_sarif_keeps_to_the_standard_and_makes_the_same_text(
+def test_the_sarif_fix_is_valid_and_produces_the_same_text(
     robot: Path, capsys: Printed, schema: dict[str, Any]
 ) -> None:
     wanted = guarded(NODE).replace("import rospy", "import rospy\nimport math  # ½")
@@ -317,7 +315,7 @@ def test_its_sarif_keeps_to_the_standard_and_makes_the_same_text(
     assert "".join(lines) == wanted
 
 
-def test_every_suggestion_replaces_the_lines_that_it_stands_at(robot: Path, capsys: Printed) -> None:
+def test_each_suggestion_replaces_exactly_its_lines(robot: Path, capsys: Printed) -> None:
     wanted = (
         guarded(NODE)
         .replace("import rospy", "import rospy\n# ```")

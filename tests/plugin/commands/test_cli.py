@@ -18,7 +18,9 @@ def saved(fixture: Fixture, path: Path) -> str:
     return str(path)
 
 
-def test_show_tells_test_reward_sensors_and_sites(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_test_reward_sensors_and_sites(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     fixture = example()
     assert main(["show", saved(fixture, tmp_path / "a.npz")]) == 0
     told = capsys.readouterr().out
@@ -29,7 +31,9 @@ def test_show_tells_test_reward_sensors_and_sites(tmp_path: Path, capsys: pytest
     assert "/in0 → /out:" in told
 
 
-def test_show_tells_what_the_lists_take_on_disk(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_the_size_of_each_list_in_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = saved(example(), tmp_path / "a.npz")
     assert main(["show", path]) == 0
     told = capsys.readouterr().out
@@ -40,7 +44,7 @@ def test_show_tells_what_the_lists_take_on_disk(tmp_path: Path, capsys: pytest.C
     assert sum(own) == pytest.approx(lists, abs=0.06 * len(own))
 
 
-def test_a_fixture_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = saved(example(), tmp_path / "a.npz")
     assert main(["diff", path, path, "--fail-if-worse"]) == 0
     told = capsys.readouterr().out
@@ -48,7 +52,9 @@ def test_a_fixture_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.Ca
     assert not any(line.startswith(("  gone", "  new", "  moved")) for line in told.splitlines())
 
 
-def test_a_significant_loss_fails_when_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_fail_if_worse_fails_on_a_significant_loss(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     good = example()
     bad = replace(good, sample=replace(good.sample, total=good.sample.total - 50.0))
     paths = [saved(good, tmp_path / "a.npz"), saved(bad, tmp_path / "b.npz")]
@@ -60,7 +66,7 @@ def test_a_significant_loss_fails_when_asked_for(tmp_path: Path, capsys: pytest.
     assert "reward" in capsys.readouterr().out
 
 
-def test_moved_gone_and_new_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_diff_lists_moved_removed_and_new_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = example()
     moved, kept, gone = before.lists[0].sites
     sites = (replace(moved, line=moved.line + 40), kept, replace(gone, id="another", code="y = 1", line=77))
@@ -79,7 +85,9 @@ def test_moved_gone_and_new_lines_are_told(tmp_path: Path, capsys: pytest.Captur
     assert main(["diff", paths[0], paths[0], "--fail-if-changed"]) == 0
 
 
-def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unreadable_recording_gives_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "a.npz").write_text("no fixture")
     assert main(["show", str(tmp_path / "a.npz")]) == 2
     assert main(["show", str(tmp_path / "b.npz")]) == 2
@@ -88,7 +96,7 @@ def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.Captur
     assert "no such recording" in told
 
 
-def test_many_statements_are_listed_only_when_asked_for(
+def test_long_statement_lists_are_shown_only_on_request(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fixture = example()
@@ -104,7 +112,7 @@ def test_many_statements_are_listed_only_when_asked_for(
     assert len(whole.splitlines()) == len(short.splitlines()) + statements - 1
 
 
-def test_long_differences_are_cut_with_their_number(
+def test_long_differences_are_shortened_and_counted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = example()
@@ -120,7 +128,7 @@ def test_long_differences_are_cut_with_their_number(
     assert told.count(f"… and {len(sites) - 1} more") == 2
 
 
-def test_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as left:
         main(["--version"])
     assert left.value.code == 0

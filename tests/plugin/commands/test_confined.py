@@ -107,7 +107,7 @@ PLACES = st.integers(0, len(PATCH) - 1)
 @example([(PATCH.index(b"missing") + 3, ord("D"))], True, False)  # `misDing = …` was applied with exit 0
 @example([(BODY, 0)], True, False)  # a file that is no longer told apart from the header
 @example([(PATCH.index(b"-    return") + 1, ord("\\"))], True, False)
-def test_changed_bytes_are_refused_or_do_no_harm(
+def test_patches_with_changed_bytes_are_refused_or_harmless(
     changes: list[tuple[int, int]], resealed: bool, forced: bool
 ) -> None:
     content = bytearray(PATCH)
@@ -121,7 +121,7 @@ def test_changed_bytes_are_refused_or_do_no_harm(
 @example(PATCH.rindex(b"\\ No newline"), 0, b"\\\n", True, True)
 @example(BODY, len(PATCH), b"", True, True)
 @example(PATCH.index(b"@@ "), len(PATCH), b"", True, True)
-def test_cut_and_spliced_patches_are_refused_or_do_no_harm(
+def test_truncated_and_spliced_patches_are_refused_or_harmless(
     at: int, length: int, put: bytes, resealed: bool, forced: bool
 ) -> None:
     content = PATCH[:at] + put + PATCH[at + length :]
@@ -142,7 +142,7 @@ PATHS = st.lists(WORDS, min_size=1, max_size=3).map("/".join) | st.text(max_size
 @example(next(at for at, line in enumerate(LINES) if b"relative to" in line), "value", "n" * 300)
 @example(next(at for at, line in enumerate(LINES) if b"fixture" in line), "value", "0 " + "n" * 300)
 @example(next(at for at, line in enumerate(LINES) if b"fixture" in line), "value", f"{'0' * 64} /")
-def test_rewritten_lines_are_refused_or_do_no_harm(at: int, how: str, text: str) -> None:
+def test_patches_with_rewritten_lines_are_refused_or_harmless(at: int, how: str, text: str) -> None:
     lines = list(LINES)
     key, colon, _ = lines[at].partition(b": ")
     value = text.encode("utf-8", "surrogatepass")
@@ -162,7 +162,7 @@ def test_rewritten_lines_are_refused_or_do_no_harm(at: int, how: str, text: str)
 @given(PATHS | st.sampled_from(["../victim.py", "../node.py", ".git/hooks/x.py", ".tarl", "robot"]))
 @example("../node.py")
 @example(".")
-def test_names_that_lead_elsewhere_are_refused(name: str) -> None:
+def test_file_names_outside_the_project_are_refused(name: str) -> None:
     shown = name.encode("utf-8", "surrogatepass")
     with robot() as (root, place):
         made_for = (root / name).resolve() if "\0" not in name else root
@@ -175,7 +175,7 @@ def test_names_that_lead_elsewhere_are_refused(name: str) -> None:
 
 
 @pytest.mark.parametrize("base", ["..", "/abs", "../..", "sub/../..", "/"])
-def test_what_the_header_says_is_not_followed_out_of_the_project(base: str, capsys: Printed) -> None:
+def test_the_header_cannot_name_a_file_outside_the_project(base: str, capsys: Printed) -> None:
     with robot() as (root, place):
         stated = str(root.parent) if base == "/abs" else base
         place.write_bytes(sealed(PATCH.replace(b"relative to: .\n", b"relative to: %s\n" % stated.encode())))
@@ -184,7 +184,7 @@ def test_what_the_header_says_is_not_followed_out_of_the_project(base: str, caps
         assert texts(root.parent) == AS_IT_WAS
 
 
-def test_the_top_of_the_repository_is_no_way_out() -> None:
+def test_paths_cannot_leave_the_repository() -> None:
     with robot() as (root, place):
         (root.parent / ".git").mkdir()
         place.write_bytes(made(root, {"../node.py": DONE}))
@@ -192,7 +192,7 @@ def test_the_top_of_the_repository_is_no_way_out() -> None:
         assert (root.parent / "node.py").read_text() == DONE
 
 
-def test_a_folder_that_the_user_names_is_the_project() -> None:
+def test_the_folder_named_by_the_user_is_the_project() -> None:
     with robot() as (root, place):
         place.write_bytes(PATCH)
         assert main(["apply", str(place), "--directory", ".."]) == 0
@@ -220,7 +220,9 @@ def chain_of_links(root: Path) -> None:
 @pytest.mark.parametrize(
     ("link", "name"), [(file_link, "node.py"), (folder_link, "sub/node.py"), (chain_of_links, "node.py")]
 )
-def test_links_that_lead_out_are_refused(link: Callable[[Path], None], name: str, capsys: Printed) -> None:
+def test_links_out_of_the_project_are_refused(
+    link: Callable[[Path], None], name: str, capsys: Printed
+) -> None:
     with robot() as (root, place):
         (root / "sub").mkdir()
         (root / "sub" / "node.py").write_text(NODE)
@@ -262,7 +264,7 @@ def edited(root: Path) -> None:
 
 @pytest.mark.skipif(not replacing.RELATIVE, reason="nothing is opened relative to a folder on this system")
 @pytest.mark.parametrize("swap", [swapped_file, swapped_folder, edited])
-def test_what_changes_between_looking_and_writing_is_seen(
+def test_a_file_changed_between_check_and_write_is_detected(
     swap: Callable[[Path], None], capsys: Printed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with robot() as (root, place):
@@ -284,7 +286,7 @@ def test_what_changes_between_looking_and_writing_is_seen(
 
 
 @pytest.mark.parametrize("file", range(3))
-def test_all_files_or_none_wherever_writing_ends(
+def test_all_files_or_none_are_changed_wherever_writing_stops(
     file: int, capsys: Printed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with robot() as (root, place):
@@ -321,7 +323,7 @@ main(["apply", sys.argv[1]])
 
 
 @pytest.mark.parametrize("command", ["apply", "revert"])
-def test_the_same_command_ends_what_was_killed_between_two_files(command: str, capsys: Printed) -> None:
+def test_repeating_the_command_completes_an_interrupted_one(command: str, capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(PATCH)
         subprocess.run([sys.executable, "-c", KILLED, str(place)], check=False, capture_output=True)
@@ -333,7 +335,7 @@ def test_the_same_command_ends_what_was_killed_between_two_files(command: str, c
         assert ("node.py was already changed" in told) == (command == "apply")
 
 
-def test_without_its_digest_a_patch_is_applied_to_nothing_but_its_text(capsys: Printed) -> None:
+def test_a_patch_without_a_digest_applies_to_its_exact_text_only(capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(re.sub(rb"# " + SEAL.encode() + rb".*\n", b"", PATCH))
         assert main(["apply", str(place)]) == 0

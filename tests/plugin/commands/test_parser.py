@@ -33,7 +33,7 @@ from pytest_tarl.commands.cli import main
         ),
     ],
 )
-def test_a_mistake_shows_the_usage_of_its_command(
+def test_an_invalid_command_line_shows_the_usage_of_its_command(
     words: list[str], usage: str, sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
@@ -47,7 +47,7 @@ def test_a_mistake_shows_the_usage_of_its_command(
 
 
 @pytest.mark.parametrize("parser", ["pytest_tarl.commands.cli.parser", "tarl_lint.options.parser"])
-def test_shells_complete_from_the_parsers(parser: str, tmp_path: Path) -> None:
+def test_shells_get_completions_from_the_parsers(parser: str, tmp_path: Path) -> None:
     made = subprocess.run(
         [sys.executable, "-m", "shtab", "--shell=bash", parser], capture_output=True, text=True, check=True
     )
@@ -58,9 +58,7 @@ def test_shells_complete_from_the_parsers(parser: str, tmp_path: Path) -> None:
         subprocess.run([bash, "-n", script], check=True)
 
 
-def test_a_folder_in_the_place_of_a_recording_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_given_as_a_recording_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["show", str(tmp_path)]) == 2
     said = capsys.readouterr().err
     assert said == f"tarl: {tmp_path} is a folder. Name a file in it, such as NAME.npz.\n"

@@ -33,7 +33,7 @@ def written(folder: Path, *documents: object) -> Path:
     return results
 
 
-def test_a_row_a_test_and_a_picture_of_what_is_worse(
+def test_the_summary_has_a_row_per_test_and_a_chart_of_each_loss(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     same = copy.deepcopy(RESULT) | {"drift": "dry", "region": [], "repair": None}
@@ -51,7 +51,9 @@ def test_a_row_a_test_and_a_picture_of_what_is_worse(
     assert lines.count("```mermaid") == 1
 
 
-def test_names_do_not_end_a_cell_or_the_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_special_characters_do_not_break_cells_or_charts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     hostile = copy.deepcopy(RESULT)
     hostile["drift"] = 'a|b`"\n```\n<script>'
     main(["summary", str(written(tmp_path, hostile))])
@@ -64,13 +66,15 @@ def test_names_do_not_end_a_cell_or_the_picture(tmp_path: Path, capsys: pytest.C
 @pytest.mark.parametrize(
     "damaged", [{}, [], {"verdict": 3}, RESULT | {"sites": [{"path": 1}]}, RESULT | {"culprits": 7}]
 )
-def test_what_is_no_result_is_a_sentence(
+def test_a_file_that_is_not_a_result_gives_one_sentence(
     tmp_path: Path, damaged: object, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["summary", str(written(tmp_path, damaged))]) == 2
     assert "not a result of TARL" in capsys.readouterr().err
 
 
-def test_no_results_are_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_without_results_gives_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["summary", str(tmp_path)]) == 2
     assert "no result found. Run pytest --tarl-online first." in capsys.readouterr().err

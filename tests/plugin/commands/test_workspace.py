@@ -24,7 +24,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_table_names_packages_nodes_launch_files_and_problems(
+def test_the_table_lists_packages_nodes_launch_files_and_problems(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["workspace", str(folder)]) == 0
@@ -44,7 +44,7 @@ def test_table_names_packages_nodes_launch_files_and_problems(
     ]
 
 
-def test_json_has_everything(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_contains_the_whole_workspace(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["workspace", "--format", "json", str(folder)]) == 0
     found = json.loads(capsys.readouterr().out)
     (package,) = found["packages"]
@@ -60,7 +60,7 @@ def test_json_has_everything(folder: Path, capsys: pytest.CaptureFixture[str]) -
 
 
 @pytest.mark.parametrize(("name", "said"), [("empty", "there is no package.xml"), ("none", "no such folder")])
-def test_mistakes_are_sentences(
+def test_user_mistakes_give_one_sentence(
     name: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "empty").mkdir()

@@ -44,7 +44,7 @@ def rows(tank: pytest.Pytester) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("more", ["", 'reward="robustness",'])
-def test_bags_are_judged_by_their_topics_and_the_monitors_observations(
+def test_bags_are_judged_by_their_topics_and_by_what_the_monitor_observes(
     tank: pytest.Pytester, more: str
 ) -> None:
     required(tank, more)
@@ -91,7 +91,7 @@ def observed(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tank.path / ".tarl/missions.log"
 
 
-def test_logs_are_judged_by_every_recorded_change(tank: pytest.Pytester, observed: Path) -> None:
+def test_logs_are_judged_at_every_recorded_change(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", f"{UPPER} or eventually (level > 0)", UPPER)
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
     found = rows(tank)
@@ -123,7 +123,7 @@ def test_logs_are_rewarded_by_robustness(tank: pytest.Pytester, observed: Path) 
     )
 
 
-def test_a_log_without_signals_of_the_reward_is_refused(tank: pytest.Pytester, observed: Path) -> None:
+def test_a_log_that_lacks_signals_of_the_reward_is_refused(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")

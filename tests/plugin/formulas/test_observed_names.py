@@ -64,7 +64,7 @@ def test_computed_names_are_detected(tmp_path: Path, call: str) -> None:
 @pytest.mark.parametrize(
     "text", ["def test_drives(tarl): pass", "tarl.observe(", "", "tarl.observe(gap=1)\0"]
 )
-def test_an_empty_or_invalid_source_observes_nothing(tmp_path: Path, text: str) -> None:
+def test_an_empty_or_invalid_source_has_no_names(tmp_path: Path, text: str) -> None:
     project(tmp_path, test_robot=text)
     assert said("test_robot.py::test_drives", tmp_path) == NOTHING_SAID
     assert said("gone.py::test_drives", tmp_path) == NOTHING_SAID

@@ -85,7 +85,7 @@ def test_a_comparison_has_one_row_per_formula(tank: pytest.Pytester) -> None:
     assert "eventually[0:2.4] (level &gt; 0.9)" in page.read_text()
 
 
-def test_a_formula_violated_while_recording_prevents_the_recording(tank: pytest.Pytester) -> None:
+def test_a_violated_formula_prevents_a_recording(tank: pytest.Pytester) -> None:
     required(tank)
     changed(tank, "test_tank", "[0:2.4]", "[0:0.2]")
     result = tank.runpytest("-q", *RECORD)
@@ -96,7 +96,7 @@ def test_a_formula_violated_while_recording_prevents_the_recording(tank: pytest.
     assert not list(tank.path.glob(".tarl/utility/*.npz"))
 
 
-def test_a_formula_too_long_for_every_episode_is_reported(tank: pytest.Pytester) -> None:
+def test_a_formula_longer_than_every_episode_is_reported(tank: pytest.Pytester) -> None:
     required(tank)
     changed(tank, "test_tank", "[0:2.4]", "[20:24]")
     result = tank.runpytest("-q", *RECORD)
@@ -132,7 +132,7 @@ def test_the_rewards_of_steps_add_up_within_the_cap(values: list[float], cap: fl
     assert sum(rewards) == pytest.approx(max(-cap, min(cap, final)), abs=1e-9)
 
 
-def test_unjudged_episodes_are_ignored() -> None:
+def test_episodes_without_a_judgement_are_ignored() -> None:
     judge = Judge(("x",), [formula("here", "always[3:4] (x > 0)", ("x",))])
     judge.give("x", 2.0, 0)
     short, long = judge.conclude(10**9), judge.conclude(4 * 10**9)

@@ -57,7 +57,7 @@ HOLD = {
 
 
 @pytest.mark.parametrize("marker", HOLD.values(), ids=HOLD)
-def test_a_formula_that_holds_is_silent(pytester: pytest.Pytester, marker: str) -> None:
+def test_a_satisfied_formula_prints_nothing(pytester: pytest.Pytester, marker: str) -> None:
     result = run(pytester, marker)
     result.assert_outcomes(passed=1)
 
@@ -75,7 +75,7 @@ def test_a_violation_names_formula_time_and_signals(pytester: pytest.Pytester) -
     result.stdout.no_fnmatch_line("*episode.py*")
 
 
-def test_a_deadline_is_violated_when_it_passes_and_not_before(pytester: pytest.Pytester) -> None:
+def test_a_deadline_is_violated_when_it_passes_and_not_earlier(pytester: pytest.Pytester) -> None:
     result = run(pytester, 'requires=["eventually[0:1.5] (wet > 0)"]', "tarl.reward(1.0)")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["requirement violated at 1.5 s: eventually[[]0:1.5] (wet > 0) *"])
@@ -90,7 +90,7 @@ def test_a_failing_test_body_is_reported_with_its_own_reason(pytester: pytest.Py
     assert "requirement violated" not in result.stdout.str()
 
 
-def test_require_adds_a_formula(pytester: pytest.Pytester) -> None:
+def test_require_in_the_test_body_adds_a_formula(pytester: pytest.Pytester) -> None:
     body = f'{OBSERVE}; step == 4 and tarl.require("always (gap > 0.5)")'
     result = run(pytester, 'signals=["gap"]', body)
     result.assert_outcomes(failed=1)
@@ -257,7 +257,7 @@ def test_an_episode_without_virtual_time_is_an_error(pytester: pytest.Pytester) 
     assert "No virtual time passed" in told(pytester.runpytest("-q", "-p", "no:asyncio"))
 
 
-def test_without_rtamt_a_sentence_gives_the_install_command(
+def test_a_missing_rtamt_gives_the_install_command(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing
@@ -268,7 +268,7 @@ def test_without_rtamt_a_sentence_gives_the_install_command(
     assert install_command("stl") in told(run(pytester, 'requires=["always wet"]'))
 
 
-def test_on_a_newer_python_a_sentence_names_the_supported_versions(
+def test_a_python_too_new_for_rtamt_gives_the_supported_versions(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing

@@ -15,16 +15,16 @@ def _bytecode_is_written(monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", False)
 
 
-def test_code_is_loaded_in_another_process(tmp_path):
+def test_cached_code_is_loaded_in_another_process(tmp_path):
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert CodeCache(tmp_path / "cache").load(NAME) == CODE
 
 
-def test_a_missing_entry_gives_none(tmp_path):
+def test_a_missing_entry_returns_none(tmp_path):
     assert CodeCache(tmp_path).load(NAME) is None
 
 
-def test_names_differ_by_place_and_by_everything_that_code_depends_on():
+def test_keys_cover_the_path_and_everything_that_the_code_depends_on():
     names = {
         entry_name(Path(path), parts) for path in ("a/node.py", "b/node.py") for parts in (("t", 1), ("t", 2))
     }
@@ -40,21 +40,21 @@ def test_names_differ_by_place_and_by_everything_that_code_depends_on():
         lambda data: b"x" + data,
     ],
 )
-def test_a_damaged_entry_gives_none(tmp_path, damage):
+def test_a_damaged_entry_returns_none(tmp_path, damage):
     CodeCache(tmp_path).store(NAME, CODE)
     entry = tmp_path / NAME
     entry.write_bytes(damage(entry.read_bytes()))
     assert CodeCache(tmp_path).load(NAME) is None
 
 
-def test_an_unwritable_cache_only_costs_a_compilation(tmp_path):
+def test_an_unwritable_cache_only_causes_a_recompilation(tmp_path):
     (tmp_path / "cache").write_text("a file in the way")
     cache = CodeCache(tmp_path / "cache")
     cache.store(NAME, CODE)
     assert cache.load(NAME) is CODE
 
 
-def test_nothing_is_written_if_python_writes_no_bytecode(tmp_path, monkeypatch):
+def test_nothing_is_written_if_python_must_not_write_bytecode(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", True)
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert not (tmp_path / "cache").exists()

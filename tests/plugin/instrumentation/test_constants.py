@@ -56,7 +56,7 @@ def executed(tmp_path: Path, *, record: bool) -> types.ModuleType:
     return module
 
 
-def test_namespaces_of_modules_classes_and_functions_are_those_of_the_program(tmp_path):
+def test_instrumented_namespaces_contain_only_names_of_the_program(tmp_path):
     plain, recorded = executed(tmp_path, record=False), executed(tmp_path, record=True)
     assert list(vars(recorded)) == list(vars(plain))
     for name in ("before", "asked", "inside", "total"):
@@ -73,7 +73,7 @@ def function(source: str, recorder: Recorder) -> Any:
     return space["f"]
 
 
-def test_code_is_hashable_equal_only_to_itself_and_shown_without_events():
+def test_instrumented_code_is_hashable_and_prints_no_events():
     source = "def f(x):\n    y = x * 2\n    return y\n"
     recorder = Recorder()
     one, same, other = (function(source, to) for to in (recorder, recorder, Recorder()))

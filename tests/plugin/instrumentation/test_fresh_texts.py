@@ -66,7 +66,7 @@ def ran(root: Path, node: Path, overlay: dict[Path, str]) -> tuple[Any, tuple[Pa
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
-def test_an_edited_file_runs_through_any_chain_of_imports(
+def test_an_edited_file_is_run_through_any_chain_of_imports(
     data: st.DataObject,
 ) -> None:
     places = data.draw(st.lists(st.sampled_from(PLACES), min_size=1, max_size=4), "places")
@@ -101,7 +101,7 @@ def test_a_helper_kept_by_another_module_is_reported(tmp_path: Path) -> None:
     assert (out, older) == (1, (leaf,))
 
 
-def test_an_edited_file_imported_before_by_the_test_is_reported(tmp_path: Path) -> None:
+def test_an_edited_file_that_the_test_imported_earlier_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     importlib.import_module(leaf.stem)
     with pytest.warns(UserWarning, match="was imported"):

@@ -74,7 +74,7 @@ def test_a_script_and_what_it_imports_are_recorded(project):
     assert recorded(recorder) == [(2, 10.0), (0, 20.0), (1, 20.0)]
 
 
-def test_the_hook_works_without_bind(project):
+def test_the_hook_works_without_a_bound_recorder(project):
     events: list[Any] = []
     plan = {project / "node.py": SITES}
 
@@ -100,7 +100,7 @@ def test_every_episode_has_new_modules_and_restores_the_interpreter(project):
     assert set(sys.modules) - known <= {"pickle"}
 
 
-def test_helpers_without_sites_are_reloaded_and_those_of_the_test_kept(project, monkeypatch):
+def test_helpers_without_sites_are_reloaded_but_not_those_of_the_test(project, monkeypatch):
     (project / "world.py").write_text("tide = []\n")
     monkeypatch.syspath_prepend(project)
     with imports(project, Recorder(), plan={}) as node:

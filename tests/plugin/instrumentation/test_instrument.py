@@ -63,7 +63,7 @@ RECORDED = {
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize("kind", RECORDED)
-def test_each_statement_records_these_events(kind, inline):
+def test_each_statement_records_the_expected_events(kind, inline):
     source, events = RECORDED[kind]
     found = [(n, v) for n, v in recorded(source, inline=inline) if not callable(v)]
     assert found == events
@@ -123,7 +123,7 @@ MESSAGES = [
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize(("source", "message"), MESSAGES)
-def test_the_head_of_a_function_records_its_message(source, message, inline):
+def test_the_header_of_a_function_records_its_message(source, message, inline):
     heads = {
         (node.lineno, node.col_offset): 1
         for node in ast.walk(ast.parse(source))
@@ -436,7 +436,7 @@ def test_introspection_sees_the_original_code(inline):
     assert space["at"] == [9, 9]
 
 
-def test_positions_where_nothing_can_be_recorded_are_not_placed():
+def test_positions_without_a_recordable_value_have_no_probe():
     placed: set[Offset] = set()
     instrument(ast.parse("x = 1\nimport os\n"), {(1, 0): 0, (1, 4): 1, (9, 0): 2}, placed=placed)
     assert placed == {(1, 0)}

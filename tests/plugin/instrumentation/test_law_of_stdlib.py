@@ -74,12 +74,12 @@ def assert_lawful(*modules: str) -> None:
 
 
 @needs_tests
-def test_the_standard_library_passes_its_own_tests_with_every_statement_recorded():
+def test_the_standard_library_passes_its_tests_with_every_statement_recorded():
     assert_lawful(*MODULES)
 
 
 @needs_tests
 @pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="takes minutes; set TARL_SLOW=1")
 @pytest.mark.parametrize("module", SLOW)
-def test_further_modules_of_the_standard_library_pass_their_own_tests(module):
+def test_more_modules_of_the_standard_library_pass_their_tests(module):
     assert_lawful(module)

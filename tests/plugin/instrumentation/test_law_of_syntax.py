@@ -46,7 +46,7 @@ def outcome(code: Any, **extra: Any) -> tuple[list[str], str, str]:
     database=None,
 )
 @given(st.one_of(hypothesmith.from_node(auto_target=False), hypothesmith.from_grammar(auto_target=False)))
-def test_any_program_of_the_grammar_behaves_the_same(source):
+def test_any_generated_program_behaves_the_same_when_instrumented(source):
     try:
         tree = ast.parse(source)
         plain = compile(source, "<program>", "exec", dont_inherit=True)

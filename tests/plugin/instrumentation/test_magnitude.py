@@ -105,14 +105,14 @@ class Pose:
         (Vector3, 0.0),
     ],
 )
-def test_each_value_has_this_magnitude(value, size):
+def test_each_value_has_the_expected_magnitude(value, size):
     assert magnitude(value) == pytest.approx(size)
 
 
 @pytest.mark.parametrize(
     "nothing", [math.nan, math.inf, -math.inf, np.float64("inf"), Decimal("sNaN"), complex("nan")]
 )
-def test_nan_and_infinity_count_as_0_alone_and_among_others(nothing):
+def test_nan_and_infinity_count_as_0_alone_and_in_containers(nothing):
     assert magnitude(nothing) == 0.0
     assert magnitude([nothing, 3.0, 4]) == pytest.approx(5.0)
     assert magnitude({"range": nothing, "angle": 2.0}) == pytest.approx(2.0)
@@ -245,6 +245,6 @@ def test_magnitudes_are_finite_and_not_negative(value):
 
 
 @given(st.lists(st.floats(-1e6, 1e6)))
-def test_lists_arrays_and_nested_lists_agree(numbers):
+def test_lists_arrays_and_nested_lists_have_the_same_magnitude(numbers):
     assert magnitude(numbers) == pytest.approx(magnitude(np.array(numbers)))
     assert magnitude([[one] for one in numbers]) == pytest.approx(magnitude(numbers))

@@ -46,7 +46,7 @@ def test_events_are_in_order_with_their_flow_values(threads):
     assert trace.thread is None
 
 
-def test_a_step_ends_with_its_reward_and_late_events_belong_to_the_last_one():
+def test_events_after_the_reward_count_for_the_step_that_it_ended():
     recorder = Recorder()
     for step in range(3):
         recorder.hook(0, float(step))
@@ -62,7 +62,7 @@ def test_a_step_ends_with_its_reward_and_late_events_belong_to_the_last_one():
     }
 
 
-def test_a_cell_applies_until_the_next_one():
+def test_a_cell_is_valid_until_the_next_one():
     recorder = Recorder()
     recorder.hook(0, 0.0)
     recorder.latch((4, 1))
@@ -82,7 +82,7 @@ def test_a_cell_applies_until_the_next_one():
     assert trace.step_cell.tolist() == [0, 0, -1]
 
 
-def test_a_recorder_without_events_gives_an_empty_trace():
+def test_a_recorder_without_events_returns_an_empty_trace():
     trace = Recorder().finish()
     assert trace.cells == ()
     assert [len(column) for column in (trace.site, trace.flow, trace.event_cell, trace.event_step)] == [0] * 4
@@ -154,7 +154,7 @@ def test_events_of_two_threads_are_separate():
     assert np.all(np.diff(trace.thread) >= 0)
 
 
-def test_events_of_threads_belong_to_the_step_in_which_they_ran():
+def test_events_of_threads_belong_to_the_step_in_which_they_occur():
     recorder = Recorder()
     space = program(recorder)
     for step in range(2):
@@ -231,7 +231,7 @@ def test_a_thread_started_by_the_thread_module_is_separate_too():
 
 
 @pytest.mark.parametrize("threads", [False, True])
-def test_a_long_episode_is_packed_between_its_steps_and_nothing_is_lost(monkeypatch, threads):
+def test_a_long_episode_is_packed_between_steps_without_loss(monkeypatch, threads):
     def recorded(most: int) -> tuple[list[Any], int]:
         monkeypatch.setattr(recording, "MANY", most)
         recorder = Recorder(threads=threads)

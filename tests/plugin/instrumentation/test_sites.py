@@ -43,7 +43,7 @@ def test_context_steps_are_not_sites():
     assert codes(result) == ["a", "while b"]
 
 
-def test_a_list_keeps_the_order_of_its_flow_regardless_of_lines():
+def test_a_list_keeps_the_order_of_its_flow_instead_of_line_order():
     assert codes(planned(flow(step(30, "first"), step(10, "second"), step(20, "third")))) == [
         "first",
         "second",
@@ -59,7 +59,7 @@ def test_flows_of_the_same_topics_share_one_list_without_duplicates():
     assert codes(result) == ["a", "right", "left", "c", "d"]
 
 
-def test_flows_with_conflicting_orders_give_every_step_once():
+def test_flows_with_conflicting_orders_contribute_each_step_once():
     result = planned(flow(step(10, "a"), step(20, "b")), flow(step(20, "b"), step(10, "a")))
     assert codes(result) == ["a", "b"]
 
@@ -103,7 +103,7 @@ def test_publishing_sites_are_marked():
     assert result.publishes == {1}
 
 
-def test_a_source_whose_topic_is_unknown_is_named_after_its_place():
+def test_a_source_without_a_known_topic_is_named_by_its_position():
     assert planned(flow(step(10, "a"), source=())).lists[0].source == "(rospy.Subscriber at node.py:1)"
 
 

@@ -41,7 +41,7 @@ CONFIDENCES = st.sampled_from([0.8, 0.9, 0.95, 0.99, 0.9999])
         (0, 5, 0.0, 0.450719728346941),
     ],
 )
-def test_the_bounds_of_a_rate_are_quantiles_of_beta_distributions(
+def test_bounds_of_a_rate_are_quantiles_of_beta_distributions(
     passed: int, episodes: int, low: float, high: float
 ) -> None:
     found = rate(passed, episodes, 0.95)
@@ -68,7 +68,7 @@ def test_a_binomial_tail_is_the_sum_of_its_terms(n: int, k: int, p: float) -> No
 
 @given(st.integers(1, 30), st.integers(0, 30), st.floats(0.01, 0.99))
 @settings(deadline=None)
-def test_evidence_is_the_mixture_of_likelihood_ratios_over_all_higher_rates(
+def test_the_evidence_is_a_mixture_of_likelihood_ratios_over_higher_rates(
     n: int, passed: int, least: float
 ) -> None:
     passed = min(passed, n)
@@ -81,7 +81,7 @@ def test_evidence_is_the_mixture_of_likelihood_ratios_over_all_higher_rates(
 
 @given(st.integers(0, 2**20), st.floats(0.2, 0.98), st.floats(0.2, 0.98))
 @settings(deadline=None)
-def test_evidence_does_not_grow_on_average_where_the_rate_is_no_higher(
+def test_the_expected_evidence_does_not_grow_if_the_rate_is_not_higher(
     seed: int, least: float, part: float
 ) -> None:
     p, n = least * part, int(np.random.default_rng(seed).integers(0, 12))
@@ -95,7 +95,7 @@ def test_evidence_does_not_grow_on_average_where_the_rate_is_no_higher(
 
 @given(st.integers(1, 300), st.integers(0, 300), CONFIDENCES)
 @settings(deadline=None)
-def test_what_holds_at_any_time_is_wider_than_what_holds_once(
+def test_anytime_bounds_are_wider_than_bounds_at_a_fixed_size(
     episodes: int, passed: int, confidence: float
 ) -> None:
     passed = min(passed, episodes)
@@ -113,7 +113,7 @@ def test_what_holds_at_any_time_is_wider_than_what_holds_once(
 )
 @example([0.0] * 3 + [1.0] * 3, 0.0, 1.0, 0.8, False)
 @settings(deadline=None)
-def test_bounds_of_a_mean_hold_it_and_move_with_its_unit(
+def test_bounds_of_a_mean_contain_it_and_scale_with_its_unit(
     shares: list[float], low: float, width: float, confidence: float, anytime: bool
 ) -> None:
     totals = [low + width * share for share in shares]
@@ -125,12 +125,12 @@ def test_bounds_of_a_mean_hold_it_and_move_with_its_unit(
     assert found.low == pytest.approx(low + width * unit.low, abs=1e-6 * width)
 
 
-def test_a_total_outside_of_the_declared_range_is_refused() -> None:
+def test_a_total_outside_the_declared_range_is_refused() -> None:
     with pytest.raises(ValueError, match="outside of 0 to 1"):
         mean_of([0.5, 1.5], 0.95, Range(0, 1))
 
 
-def test_more_episodes_tell_more() -> None:
+def test_more_episodes_give_tighter_bounds() -> None:
     values = np.tile([0.4, 0.6, 0.5, 0.8, 0.3], 80)
     bounds = [bet_low(values[:n], 0.05) for n in (5, 20, 100, 400)]
     assert bounds == sorted(bounds)
@@ -139,7 +139,7 @@ def test_more_episodes_tell_more() -> None:
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.floats(0.01, 0.5), CONFIDENCES)
 @settings(deadline=None)
-def test_a_quantile_is_bounded_as_soon_as_there_are_enough_episodes(
+def test_a_quantile_has_a_bound_once_there_are_enough_episodes(
     totals: list[float], share: float, confidence: float
 ) -> None:
     low = quantile_low(totals, share, confidence)
@@ -150,7 +150,7 @@ def test_a_quantile_is_bounded_as_soon_as_there_are_enough_episodes(
 
 
 @pytest.mark.parametrize("draw", ["normal", "exponential", "lognormal"])
-def test_where_worlds_differ_by_a_shift_the_loss_is_bounded_as_often_as_stated_however_skewed(
+def test_bounds_of_a_shift_have_the_stated_coverage_for_skewed_totals(
     draw: str,
 ) -> None:
     held = np.zeros(2)
@@ -163,13 +163,13 @@ def test_where_worlds_differ_by_a_shift_the_loss_is_bounded_as_often_as_stated_h
     assert (held < 150).all()
 
 
-def test_a_loss_of_totals_in_a_range_adds_the_bounds_of_both_worlds() -> None:
+def test_the_bound_of_a_loss_in_a_range_adds_the_bounds_of_both_worlds() -> None:
     found = loss_between([0.9] * 50, [0.1] * 50, 0.95, Range(0, 1))
     assert found.exact
     assert 0.6 < found.low < 0.8 <= found.high
 
 
-def test_two_episodes_bound_no_loss_and_what_never_varies_is_known() -> None:
+def test_two_episodes_give_no_bound_and_constant_totals_an_exact_one() -> None:
     assert loss_between([1.0, 2.0], [1.0, 2.0], 0.95).low == -math.inf
     never = loss_between([3.0] * 20, [3.0] * 8, 0.95)
     assert never.low == never.high == 0.0
@@ -177,7 +177,7 @@ def test_two_episodes_bound_no_loss_and_what_never_varies_is_known() -> None:
 
 @given(st.integers(0, 2**20), st.sampled_from([1e-200, 1e-3, 1e3, 1e100]))
 @settings(deadline=None, max_examples=15)
-def test_the_bounds_of_a_loss_move_with_its_unit(seed: int, unit: float) -> None:
+def test_bounds_of_a_loss_scale_with_its_unit(seed: int, unit: float) -> None:
     draws = np.random.default_rng(seed)
     before, after = draws.normal(size=30), draws.normal(size=10)
     one = loss_between(before.tolist(), after.tolist(), 0.9)

@@ -73,11 +73,11 @@ def computed(source: str) -> Iterator[str]:
         "error = sqrt(variance(values) / len(values))",
     ],
 )
-def test_an_interval_of_its_own_is_noticed(source: str) -> None:
+def test_the_check_detects_an_interval_computed_elsewhere(source: str) -> None:
     assert [*computed(source)]
 
 
-def test_no_other_module_computes_an_interval() -> None:
+def test_intervals_are_computed_in_one_module_only() -> None:
     modules = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
     assert modules.keys() >= HOME
     found = {

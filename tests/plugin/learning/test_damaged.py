@@ -84,7 +84,7 @@ def survived(content: bytes) -> bool:
 @given(st.integers(0, len(WHOLE) * 8 - 1))
 @example(WHOLE.index(b"PK\x01\x02") * 8 + 8 * 8)  # flags of a member: NotImplementedError
 @example(WHOLE.index(b"PK\x01\x02") * 8 + 10 * 8 + 1)  # its compression
-def test_one_flipped_bit(bit: int) -> None:
+def test_a_recording_with_a_flipped_bit_is_refused(bit: int) -> None:
     content = bytearray(WHOLE)
     content[bit // 8] ^= 1 << bit % 8
     survived(bytes(content))
@@ -92,7 +92,7 @@ def test_one_flipped_bit(bit: int) -> None:
 
 @FUZZ
 @given(st.integers(0, len(WHOLE)), st.binary(max_size=30), st.integers(0, 30))
-def test_cut_and_spliced(at: int, put: bytes, skipped: int) -> None:
+def test_a_truncated_or_spliced_recording_is_refused(at: int, put: bytes, skipped: int) -> None:
     survived(WHOLE[:at] + put + WHOLE[at + skipped :])
 
 
@@ -159,7 +159,7 @@ def twice() -> bytes:
 
 
 @pytest.mark.parametrize("kind", DAMAGED)
-def test_known_damage_is_one_sentence(kind: str) -> None:
+def test_known_kinds_of_damage_give_one_sentence(kind: str) -> None:
     assert not survived(DAMAGED[kind]())
 
 
@@ -168,7 +168,7 @@ VALUES = st.sampled_from([-(2**62), -2, -1, 0, 1, 7, 10**6, 2**62])
 
 @FUZZ
 @given(st.data())
-def test_columns_that_do_not_belong_together_are_refused_or_can_be_used(data: st.DataObject) -> None:
+def test_inconsistent_columns_are_refused_or_usable(data: st.DataObject) -> None:
     header, columns = parts()
     name = data.draw(st.sampled_from(sorted(columns)))
     column = columns[name]
@@ -196,7 +196,7 @@ def test_columns_that_do_not_belong_together_are_refused_or_can_be_used(data: st
 
 
 @pytest.mark.parametrize("kind", ["f8", "f4", "i1", "i8", "u8", ">i8", "?"])
-def test_columns_of_another_type_are_refused_or_can_be_used(kind: str) -> None:
+def test_columns_of_another_type_are_refused_or_usable(kind: str) -> None:
     for name in parts()[1]:
         header, columns = parts()
         columns[name] = columns[name].astype(kind)
@@ -213,7 +213,7 @@ JSON = st.recursive(
 
 @FUZZ
 @given(st.data())
-def test_headers_that_tell_something_else_are_refused_or_can_be_used(data: st.DataObject) -> None:
+def test_headers_with_other_values_are_refused_or_usable(data: st.DataObject) -> None:
     header, columns = parts()
     place: Any = header
     key = data.draw(st.sampled_from(sorted(set(header) - {"format", "digest"})))
@@ -228,7 +228,7 @@ def test_headers_that_tell_something_else_are_refused_or_can_be_used(data: st.Da
 
 
 @pytest.mark.parametrize("old", ["bits", "folder"])
-def test_a_broken_fixture_is_told_before_the_first_episode_and_recording_replaces_it(
+def test_a_damaged_recording_is_reported_before_any_episode_and_can_be_replaced(
     tank: pytest.Pytester, old: str
 ) -> None:
     tank.runpytest("--tarl-record", "--tarl-episodes=4").assert_outcomes(passed=1)

@@ -52,14 +52,14 @@ def judged(offline: Sample, online: Sample, seed: int = 0):
     return compare(offline, online, alpha=0.05, tolerance=0.2, generator=generator(seed, "compare"))
 
 
-def test_the_same_world_is_rarely_called_different() -> None:
+def test_a_comparison_of_equal_worlds_rarely_reports_a_difference() -> None:
     offline = world(0, 60)
     found = [judged(offline, world(1000 + 100 * i, 20), i).verdict for i in range(40)]
     assert sum(verdict.p_drift < 0.05 for verdict in found) <= 6
     assert sum(verdict.result == "degraded" for verdict in found) <= 4
 
 
-def test_a_slow_cell_is_degraded_and_found_where_it_is() -> None:
+def test_a_slower_cell_is_degraded_and_located() -> None:
     found = judged(world(0, 60), world(1000, 30, slow_at=4))
     assert found.verdict.result == "degraded"
     assert found.verdict.p_drift < 0.01
@@ -68,31 +68,31 @@ def test_a_slow_cell_is_degraded_and_found_where_it_is() -> None:
     assert found.region.novel == ()
 
 
-def test_a_cell_never_seen_off_line_is_novel() -> None:
+def test_an_unrecorded_cell_is_novel() -> None:
     found = judged(world(0, 60), world(1000, 30, slow_at=3, strange=True))
     assert found.region.novel == ((3, 1),)
 
 
-def test_a_change_without_loss_is_drifted() -> None:
+def test_a_difference_without_a_loss_is_drifted() -> None:
     found = judged(world(0, 60), world(1000, 30, strange=True))
     assert found.verdict.result == "drifted"
 
 
-def test_the_tolerance_of_the_marker_holds_a_small_loss_back() -> None:
+def test_a_loss_within_the_tolerance_is_not_degraded() -> None:
     offline, online = world(0, 60), world(1000, 30, slow_at=4)
     found = compare(offline, online, alpha=0.05, tolerance=50.0, generator=generator(0, "compare"))
     assert found.verdict.result == "drifted"
     assert found.verdict.detectable_loss >= 50.0
 
 
-def test_the_permutation_test_is_one_sided() -> None:
+def test_the_permutation_test_of_the_loss_is_one_sided() -> None:
     draws = np.random.default_rng(1)
     low, high = draws.normal(0, 1, 30), draws.normal(3, 1, 20)
     assert permuted_loss(high, low, generator(0, "a")) < 0.01
     assert permuted_loss(low, high, generator(0, "a")) > 0.9
 
 
-def test_the_interval_holds_the_true_loss_as_often_as_it_says_also_where_one_world_varies_more() -> None:
+def test_the_interval_covers_the_true_loss_even_with_unequal_variances() -> None:
     draws = np.random.default_rng(5)
     held = 0
     for _ in range(300):
@@ -101,7 +101,7 @@ def test_the_interval_holds_the_true_loss_as_often_as_it_says_also_where_one_wor
     assert 258 <= held <= 282  # 90 %, and a little more than twice the binomial deviation
 
 
-def test_columns_that_do_not_vary_are_never_significant() -> None:
+def test_constant_columns_are_never_significant() -> None:
     columns = np.zeros((20, 3))
     columns[:10, 1] = 1.0
     p_values = max_statistic(columns, 10, generator(0, "a"))
@@ -109,34 +109,34 @@ def test_columns_that_do_not_vary_are_never_significant() -> None:
     assert p_values[[0, 2]].tolist() == [1.0, 1.0]
 
 
-def test_the_papers_region_is_where_the_difference_is_at_least_half_the_largest() -> None:
+def test_the_region_of_the_paper_has_cells_with_half_the_largest_difference() -> None:
     offline = np.array([[0.0, 0.0], [1.0, 1.0], [5.0, np.nan], [1.0, 0.0]])
     online = np.array([[-4.0, 0.0], [0.0, 0.0], [np.nan, 2.0], [1.0, 0.0]])
     assert paper_region(offline, online).tolist() == [0, 1]
     assert paper_region(offline, offline).tolist() == []
 
 
-def test_a_large_difference_that_may_be_chance_does_not_hide_what_is_sure() -> None:
+def test_a_large_uncertain_difference_does_not_hide_a_certain_one() -> None:
     difference = np.array([9.0, -0.5, 0.04, 0.2])
     found = outstanding(difference, np.array([False, True, True, True]))
     assert found.tolist() == [False, True, False, True]
     assert not outstanding(difference, np.zeros(4, dtype=bool)).any()
 
 
-def test_totals_that_cancel_out_are_tied_all_the_same() -> None:
+def test_equal_totals_that_cancel_out_are_ties() -> None:
     totals = np.array([0.1, 0.2, -0.3] * 8)
     assert permuted_loss(totals, totals[:3], generator(0, "a")) > 0.3
     exact = permuted_loss(np.array([1.0, 2.0, -3.0] * 8), np.array([1.0, 2.0, -3.0]), generator(0, "a"))
     assert permuted_loss(totals, totals[:3], generator(0, "a")) == exact
 
 
-def test_episodes_too_few_to_tell_anything_detect_no_loss_whatever_its_size() -> None:
+def test_too_few_episodes_have_an_infinite_detectable_loss() -> None:
     few = np.array([1.0, 1.0])
     assert detectable_loss(few, few, 0.05) == np.inf
     assert detectable_loss(few, np.ones(40), 0.05) < np.inf
 
 
-def test_two_episodes_on_either_side_are_compared_without_a_verdict() -> None:
+def test_two_episodes_in_each_world_show_no_difference() -> None:
     found = judged(world(0, 2), world(10, 2))
     assert found.verdict.result == "no difference"
     assert found.verdict.detectable_loss == np.inf

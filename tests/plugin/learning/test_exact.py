@@ -26,7 +26,7 @@ GROUPS = [
 
 @pytest.mark.parametrize("risk", [0.05, 0.001])
 @pytest.mark.parametrize("number", range(len(GROUPS)))
-def test_a_difference_of_means_is_bounded_with_welchs_degrees_of_freedom(number: int, risk: float) -> None:
+def test_the_interval_of_a_difference_uses_welchs_degrees_of_freedom(number: int, risk: float) -> None:
     first, second = GROUPS[number]
     low, high = difference_bounds(first, second, risk)
     wanted = stats.ttest_ind(first, second, equal_var=False).confidence_interval(1 - 2 * risk)
@@ -34,7 +34,7 @@ def test_a_difference_of_means_is_bounded_with_welchs_degrees_of_freedom(number:
 
 
 @pytest.mark.parametrize("count", [2, 3, 10, 21, 60])
-def test_a_mean_is_bounded_as_student_says(count: int) -> None:
+def test_the_interval_of_a_mean_is_that_of_student(count: int) -> None:
     values = [float(n * n % 17) for n in range(count)]
     wanted = stats.t.interval(0.95, count - 1, np.mean(values), stats.sem(values))
     assert mean_bounds(values, 0.95) == pytest.approx(wanted, rel=1e-4)
@@ -42,21 +42,21 @@ def test_a_mean_is_bounded_as_student_says(count: int) -> None:
 
 @pytest.mark.parametrize("degrees", [1, 1.5, 2, 5, 19.9, 20, 25, 100])
 @pytest.mark.parametrize("probability", [0.6, 0.95, 0.999])
-def test_quantiles_of_student_are_those_of_scipy(degrees: float, probability: float) -> None:
+def test_quantiles_of_students_distribution_equal_those_of_scipy(degrees: float, probability: float) -> None:
     assert student_quantile(probability, degrees) == pytest.approx(
         stats.t.ppf(probability, degrees), rel=1e-3
     )
 
 
 @pytest.mark.parametrize(("passed", "episodes"), [(1, 4), (18, 20), (60, 200)])
-def test_the_bound_of_a_rate_lies_where_the_evidence_is_just_enough(passed: int, episodes: int) -> None:
+def test_the_evidence_at_the_bound_of_a_rate_equals_the_threshold(passed: int, episodes: int) -> None:
     bound = rate_sequence(passed, episodes, 0.9)
     least = [log(1.0 / risk) for risk in (0.1, 0.05)]  # one bound, or two that share the risk
     below = evidence_above(passed, episodes, bound.low)
     assert min(abs(below - one) for one in least) < 1e-6 * max(least)
 
 
-def test_a_gambler_who_bets_on_the_bound_has_just_refuted_it() -> None:
+def test_bounds_by_betting_rise_with_the_accepted_risk() -> None:
     values = np.array([0.9, 0.8, 1.0, 0.7, 0.95] * 12)
     lows = [bet_low(values, risk) for risk in (0.2, 0.1, 0.05, 0.01)]
     assert lows == sorted(lows, reverse=True)
@@ -64,7 +64,7 @@ def test_a_gambler_who_bets_on_the_bound_has_just_refuted_it() -> None:
     assert bet_low(np.ones(1), 0.05) < 0.2
 
 
-def test_a_loss_is_detectable_only_where_a_shuffle_can_be_significant() -> None:
+def test_a_loss_is_detectable_only_if_a_permutation_can_be_significant() -> None:
     few, many = np.array([1.0, 2.0, 3.0]), np.arange(30.0)
     assert detectable_loss(few, few[:2], 1.01 / comb(5, 2)) < np.inf
     assert detectable_loss(few, few[:2], 0.99 / comb(5, 2)) == np.inf
@@ -83,7 +83,7 @@ def world(cells_of_episodes: list[list[int]], cells: int) -> SimpleNamespace:
 
 
 @pytest.mark.parametrize("others", [0, 1, 4])
-def test_a_cell_is_avoided_where_chance_is_below_alpha_over_the_cells_that_are_not_met(others: int) -> None:
+def test_an_avoided_cell_is_significant_after_correction_for_the_missing_cells(others: int) -> None:
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
@@ -95,13 +95,13 @@ def test_a_cell_is_avoided_where_chance_is_below_alpha_over_the_cells_that_are_n
         assert found.tolist() == [False, *[answer] * (1 + others)]
 
 
-def test_cells_that_stand_out_are_significant_and_not_small_beside_the_largest() -> None:
+def test_a_region_has_the_significant_cells_with_a_large_difference() -> None:
     difference = np.array([-10.0, 10.0 * MATERIAL, 9.99 * MATERIAL, 50.0, 0.0])
     significant = np.array([True, True, True, False, True])
     assert outstanding(difference, significant).tolist() == [True, True, False, False, False]
 
 
-def test_slices_sum_what_both_worlds_have_visited_in_the_region() -> None:
+def test_slices_sum_the_cells_of_the_region_that_both_worlds_visited() -> None:
     nan = np.nan
     offline = np.array([[1.0, nan], [2.0, 4.0], [nan, nan], [100.0, 100.0]])
     online = np.array([[0.5, 7.0], [nan, 1.0], [3.0, 3.0], [0.0, 0.0]])
@@ -111,7 +111,7 @@ def test_slices_sum_what_both_worlds_have_visited_in_the_region() -> None:
 
 
 @pytest.mark.parametrize("dense", [True, False])
-def test_tiles_are_drawn_to_zero_by_the_ridge_and_no_more(
+def test_the_ridge_shrinks_tiles_towards_zero_by_the_expected_amount(
     dense: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if not dense:

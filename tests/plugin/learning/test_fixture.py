@@ -54,7 +54,7 @@ def close(first: Sample, second: Sample) -> bool:
     )
 
 
-def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+def test_loading_restores_what_was_saved(tmp_path: Path) -> None:
     fixture, path = example(), tmp_path / "deep" / "a.npz"
     save(fixture, path)
     loaded = load(path)
@@ -70,7 +70,7 @@ def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     assert [table.shape for table in loaded.sarsa] == [table.shape for table in fixture.sarsa]
 
 
-def test_what_is_loaded_and_saved_again_has_the_same_bytes(tmp_path: Path) -> None:
+def test_saving_a_loaded_recording_gives_the_same_bytes(tmp_path: Path) -> None:
     first, second = tmp_path / "a.npz", tmp_path / "b.npz"
     save(example(), first)
     save(load(first), second)
@@ -93,13 +93,13 @@ def test_recordings_merged_in_any_order_give_the_same_file(seeds: list[int], ran
 
 
 @given(st.lists(st.floats(-1e300, 1e300, allow_subnormal=False), min_size=1, max_size=30))
-def test_any_number_comes_back_as_what_it_was_but_for_five_in_a_million(values: list[float]) -> None:
+def test_numbers_are_restored_within_five_in_a_million(values: list[float]) -> None:
     table = np.array([[*values, np.nan]])
     found = unpacked_table("t", packed_table("t", table))
     assert np.allclose(found, table, rtol=6e-6, atol=0, equal_nan=True)
 
 
-def test_a_fixture_of_an_older_version_is_named_with_the_command_that_makes_a_new_one(
+def test_an_older_format_is_refused_with_the_command_that_records_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.npz"
@@ -112,7 +112,7 @@ def test_a_fixture_of_an_older_version_is_named_with_the_command_that_makes_a_ne
         load(path)
 
 
-def test_a_fixture_of_a_newer_version_asks_for_that_version(
+def test_a_newer_format_is_refused_with_the_version_to_use(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.npz"
@@ -123,7 +123,7 @@ def test_a_fixture_of_a_newer_version_asks_for_that_version(
         load(path)
 
 
-def test_a_header_that_fits_its_digest_but_lacks_parts_is_refused_too(tmp_path: Path) -> None:
+def test_a_header_with_missing_parts_is_refused_despite_its_valid_digest(tmp_path: Path) -> None:
     header: dict[str, object] = {"format": fixtures.FORMAT_VERSION, "test": "t"}
     header["digest"] = fixtures._digest(header, {})
     path = tmp_path / "a.npz"
@@ -132,7 +132,7 @@ def test_a_header_that_fits_its_digest_but_lacks_parts_is_refused_too(tmp_path: 
         load(path)
 
 
-def test_the_same_episodes_give_the_same_bytes_and_nothing_is_left_beside_them(tmp_path: Path) -> None:
+def test_equal_episodes_give_equal_bytes_and_no_temporary_file_remains(tmp_path: Path) -> None:
     first, second = tmp_path / "a.npz", tmp_path / "b.npz"
     save(example(), first)
     save(example(), second)
@@ -141,7 +141,7 @@ def test_the_same_episodes_give_the_same_bytes_and_nothing_is_left_beside_them(t
 
 
 @pytest.mark.parametrize("cut", [0, 1, 50, 500, -1, -40])
-def test_a_truncated_file_is_named_and_refused(tmp_path: Path, cut: int) -> None:
+def test_a_truncated_file_is_refused_by_name(tmp_path: Path, cut: int) -> None:
     path = tmp_path / "a.npz"
     save(example(), path)
     path.write_bytes(path.read_bytes()[:cut])
@@ -149,7 +149,7 @@ def test_a_truncated_file_is_named_and_refused(tmp_path: Path, cut: int) -> None
         load(path)
 
 
-def test_a_changed_column_is_noticed_by_the_digest(tmp_path: Path) -> None:
+def test_the_digest_detects_a_changed_column(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     save(example(), path)
     with np.load(path) as archive:
@@ -160,7 +160,7 @@ def test_a_changed_column_is_noticed_by_the_digest(tmp_path: Path) -> None:
         load(path)
 
 
-def test_a_foreign_archive_and_a_pickle_are_refused(tmp_path: Path) -> None:
+def test_other_archives_and_pickles_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     np.savez(path, other=np.arange(3))
     with pytest.raises(FixtureError, match="damaged or is not a recording"):
@@ -170,7 +170,7 @@ def test_a_foreign_archive_and_a_pickle_are_refused(tmp_path: Path) -> None:
         load(path)
 
 
-def test_another_format_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_format_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.npz"
     monkeypatch.setattr("pytest_tarl.learning.fixture.FORMAT_VERSION", 99)
     save(example(), path)
@@ -179,12 +179,14 @@ def test_another_format_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         load(path)
 
 
-def test_a_missing_file_says_what_to_run(tmp_path: Path) -> None:
+def test_a_missing_recording_gives_the_command_to_run(tmp_path: Path) -> None:
     with pytest.raises(FixtureError, match=r"no such recording.*--tarl-record"):
         load(tmp_path / "a.npz")
 
 
-def test_an_interrupted_write_leaves_the_old_fixture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_write_keeps_the_old_recording(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "a.npz"
     save(example(), path)
     before = path.read_bytes()

@@ -16,7 +16,7 @@ def test_a_worked_example() -> None:
 
 
 @given(P_VALUES)
-def test_no_p_value_gets_smaller_nor_larger_than_bonferroni_and_their_order_stays(
+def test_corrected_p_values_keep_their_order_and_lie_between_raw_and_bonferroni(
     p_values: list[float],
 ) -> None:
     corrected = holm(p_values)

@@ -81,7 +81,7 @@ def visited(world: Sample) -> set[Cell]:
     return {world.cells[i] for i in np.unique(world.chain.cell).tolist()}
 
 
-def test_no_region_names_a_cell_that_no_on_line_episode_was_in() -> None:
+def test_a_region_contains_only_cells_that_a_deployed_episode_visited() -> None:
     named = wrong = left = 0
     for seed in range(TIMES):
         offline, online = worlds(seed)
@@ -95,7 +95,7 @@ def test_no_region_names_a_cell_that_no_on_line_episode_was_in() -> None:
     assert left > 0.05 * TIMES
 
 
-def test_where_a_mode_makes_every_situation_new_the_rest_is_compared_without_it() -> None:
+def test_a_sensor_that_is_new_everywhere_is_left_out_of_the_comparison() -> None:
     before = merge([mission(seed, -0.1, seed % 2, -1) for seed in range(30)])
     after = merge([mission(seed + 500, 5.0, 2, -1) for seed in range(10)])
     offline, online = aligned(before, after)
@@ -107,14 +107,14 @@ def test_where_a_mode_makes_every_situation_new_the_rest_is_compared_without_it(
     assert max(found.changes, key=lambda cell: found.changes[cell]) == (2, 2)
 
 
-def test_worlds_that_meet_leave_nothing_out() -> None:
+def test_no_sensor_is_left_out_if_the_worlds_share_cells() -> None:
     before = merge([mission(seed, -0.1, seed % 2, -1) for seed in range(30)])
     offline, online = aligned(before, merge([mission(seed + 500, 5.0, 1, -1) for seed in range(10)]))
     assert left_out(offline, online) == ()
     assert not apart(offline, online)
 
 
-def test_what_is_left_out_of_a_sample_loses_no_step_and_no_reward() -> None:
+def test_leaving_out_a_sensor_keeps_all_steps_and_rewards() -> None:
     world = merge([mission(seed, -0.1, seed % 2, -1) for seed in range(10)])
     short = projected(world, (1,))
     assert short.cells == tuple((place,) for place in range(LENGTH))
@@ -122,7 +122,7 @@ def test_what_is_left_out_of_a_sample_loses_no_step_and_no_reward() -> None:
     assert short.chain.reward.sum() == world.chain.reward.sum()
 
 
-def test_cells_that_are_unknown_off_line_are_worth_what_cells_alike_are() -> None:
+def test_cells_without_a_recording_take_the_utility_of_similar_cells() -> None:
     before = merge([mission(seed, -0.1, 0, -1) for seed in range(20)])
     offline, _ = aligned(before, merge([mission(seed + 500, 5.0, 2, -1) for seed in range(10)]))
     table = batch(offline.lists[0], len(offline.cells), 1.0)
@@ -177,7 +177,7 @@ def reported(culprits: tuple[Culprit, ...], sites: list[list[Slice]]) -> None:
 
 @given(LISTS, st.frozensets(SITES))
 @settings(max_examples=TIMES, deadline=None)
-def test_order_rank_and_score_agree_and_what_can_be_changed_comes_first(
+def test_changeable_sites_come_first_and_ranks_follow_scores(
     lists: list[dict[int, tuple[float, float]]], changeable: frozenset[int]
 ) -> None:
     per_list = [
@@ -200,7 +200,7 @@ EFFECTS = st.dictionaries(SITES, st.floats(-5, 5), max_size=6)
 
 @given(LISTS, st.frozensets(SITES), EFFECTS, st.frozensets(SITES), st.floats(0.1, 4))
 @settings(max_examples=TIMES, deadline=None)
-def test_after_a_search_they_agree_too_and_the_repaired_line_is_first(
+def test_a_repaired_line_comes_first_after_the_search(
     lists: list[dict[int, tuple[float, float]]],
     changeable: frozenset[int],
     gained: dict[int, float],

@@ -77,7 +77,7 @@ def through_a_file(recorded: Sample) -> Sample:
 
 @given(Monitor, SIZES, st.integers(1, 4), st.integers(1, 9), st.integers(0, 2**20))
 @settings(max_examples=40, deadline=None)
-def test_a_verdict_is_the_same_to_the_last_bit_from_file_and_from_memory(
+def test_a_verdict_is_bitwise_equal_from_file_and_from_memory(
     kind: str, size: float, cells: int, most: int, seed: int
 ) -> None:
     offline, online = (world(seed + first, 12, kind, size, cells, most) for first in (0, 100))
@@ -96,7 +96,7 @@ def test_a_verdict_is_the_same_to_the_last_bit_from_file_and_from_memory(
     st.integers(0, 2**20),
 )
 @settings(max_examples=60, deadline=None)
-def test_a_reward_that_is_constant_in_a_cell_leaves_no_residual_there(
+def test_a_constant_reward_of_a_cell_leaves_no_residual(
     kind: str, size: float, cells: int, most: int, seed: int
 ) -> None:
     offline, online = aligned(
@@ -108,7 +108,7 @@ def test_a_reward_that_is_constant_in_a_cell_leaves_no_residual_there(
 
 @given(SIZES, st.integers(2, 9), st.integers(0, 2**20))
 @settings(max_examples=40, deadline=None)
-def test_totals_that_cancel_out_are_nothing(size: float, most: int, seed: int) -> None:
+def test_totals_that_cancel_out_are_exactly_zero(size: float, most: int, seed: int) -> None:
     totals = world(seed, 12, "there and back", size, 2, most).total
     assert not totals.any()
     assert permuted_loss(totals, totals[:4], generator(seed, "a")) == 1.0
@@ -116,7 +116,7 @@ def test_totals_that_cancel_out_are_nothing(size: float, most: int, seed: int) -
 
 @given(st.integers(0, 2**20), st.floats(-1e6, 1e6), st.integers(1, 5))
 @settings(max_examples=40, deadline=None)
-def test_columns_that_differ_by_rounding_alone_are_constant(seed: int, value: float, columns: int) -> None:
+def test_columns_that_differ_only_by_rounding_are_constant(seed: int, value: float, columns: int) -> None:
     draws = np.random.default_rng(seed)
     jitter = 1.0 + draws.choice([-1e-15, 0.0, 1e-15], (20, columns))
     jitter[:10] = 1.0  # one group has it, the other has not
@@ -124,7 +124,7 @@ def test_columns_that_differ_by_rounding_alone_are_constant(seed: int, value: fl
 
 
 @pytest.mark.parametrize("scale", [1e-200, 1.0, 1e200])
-def test_a_difference_is_as_significant_in_any_unit(scale: float) -> None:
+def test_the_significance_does_not_depend_on_the_unit(scale: float) -> None:
     columns = np.random.default_rng(0).normal(size=(30, 2))
     columns[:15, 0] += 2.0
     assert (
@@ -133,7 +133,7 @@ def test_a_difference_is_as_significant_in_any_unit(scale: float) -> None:
     )
 
 
-def test_a_sample_that_was_represented_stays_as_it_is() -> None:
+def test_representing_a_sample_twice_changes_nothing() -> None:
     recorded = example().sample
     once = represented(recorded)
     assert same(represented(once), once)

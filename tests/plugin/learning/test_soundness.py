@@ -63,16 +63,14 @@ def sound(sample: Any) -> bool:
     return True
 
 
-def test_the_sample_itself_is_sound() -> None:
+def test_the_unchanged_sample_is_valid() -> None:
     assert sound(SAMPLE)
     assert SAMPLE.chain.cell.size > 2
     assert SAMPLE.lists[0].edges.state.size > 2
 
 
 @pytest.mark.parametrize(("part", "name", "low", "end"), LIMITS)
-def test_a_number_that_names_nothing_is_refused_and_the_last_that_names_something_is_not(
-    part: str, name: str, low: int, end: int
-) -> None:
+def test_an_index_beyond_the_last_entry_is_refused(part: str, name: str, low: int, end: int) -> None:
     assert not sound(changed(part, name, put(low - 1)))
     assert not sound(changed(part, name, put(end)))
     assert sound(changed(part, name, put(low)))
@@ -80,14 +78,14 @@ def test_a_number_that_names_nothing_is_refused_and_the_last_that_names_somethin
 
 
 @pytest.mark.parametrize("part", ["chain", "edges"])
-def test_a_count_is_at_least_one(part: str) -> None:
+def test_counts_below_one_are_refused(part: str) -> None:
     assert not sound(changed(part, "count", put(0)))
     assert sound(changed(part, "count", put(1)))
 
 
 @pytest.mark.parametrize(("part", "name"), [("chain", "reward"), ("visits", "reward"), ("visits", "scaled")])
 @pytest.mark.parametrize("value", [np.inf, np.nan])
-def test_sums_are_finite(part: str, name: str, value: float) -> None:
+def test_infinite_sums_are_refused(part: str, name: str, value: float) -> None:
     assert not sound(changed(part, name, put(value)))
 
 
@@ -101,7 +99,7 @@ def test_sums_are_finite(part: str, name: str, value: float) -> None:
         ("visits", "reward_squared"),
     ],
 )
-def test_columns_are_of_one_length(part: str, name: str) -> None:
+def test_columns_of_unequal_length_are_refused(part: str, name: str) -> None:
     assert not sound(changed(part, name, lambda column: column[:-1]))
 
 
@@ -118,10 +116,10 @@ def test_columns_are_of_one_length(part: str, name: str) -> None:
     ],
     ids=lambda wrong: next(iter(wrong)),
 )
-def test_episodes_and_cells_are_those_that_it_names(wrong: dict[str, Any]) -> None:
+def test_other_numbers_of_episodes_or_cells_than_declared_are_refused(wrong: dict[str, Any]) -> None:
     assert not sound(replace(SAMPLE, **wrong))
 
 
-def test_tables_have_a_row_for_each_cell_and_a_column_for_each_site() -> None:
+def test_tables_need_a_row_per_cell_and_a_column_per_site() -> None:
     with pytest.raises(DamagedError):
         check(SAMPLE, len(FIXTURE.sensors), [TABLES[0][:-1], *TABLES[1:]])

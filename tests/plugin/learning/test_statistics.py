@@ -54,7 +54,7 @@ def same(first: Sample, second: Sample) -> bool:
 
 
 @given(st.integers(0, 10**6))
-def test_rewards_over_events_sum_to_the_episodes_total(seed: int) -> None:
+def test_rewards_of_events_add_up_to_the_total_of_the_episode(seed: int) -> None:
     trace = random_trace(seed)
     for members in MEMBERS:
         (sequence,) = event_sequences(trace, members)
@@ -82,9 +82,7 @@ def only(trace: Trace, thread: int) -> Trace:
 
 
 @given(st.integers(0, 10**6), st.integers(2, 4))
-def test_every_thread_has_a_sequence_of_its_own_and_rewards_still_sum_to_the_total(
-    seed: int, threads: int
-) -> None:
+def test_every_thread_has_its_own_sequence_and_rewards_still_add_up(seed: int, threads: int) -> None:
     trace = threaded(seed, threads)
     for members in MEMBERS:
         found = event_sequences(trace, members)
@@ -96,7 +94,7 @@ def test_every_thread_has_a_sequence_of_its_own_and_rewards_still_sum_to_the_tot
 
 
 @given(st.integers(0, 10**6))
-def test_events_of_two_threads_never_follow_each_other(seed: int) -> None:
+def test_events_of_two_threads_are_never_consecutive(seed: int) -> None:
     trace = threaded(seed, 2)
     assert trace.thread is not None
     apart = replace(trace, site=(trace.site + 4 * trace.thread).astype(np.int32))  # sites tell the thread
@@ -109,7 +107,7 @@ def test_events_of_two_threads_never_follow_each_other(seed: int) -> None:
 
 
 @given(st.integers(0, 10**6))
-def test_the_order_in_which_threads_are_numbered_does_not_matter(seed: int) -> None:
+def test_the_numbering_of_threads_does_not_matter(seed: int) -> None:
     trace = threaded(seed, 2)
     assert trace.thread is not None
     swapped = replace(trace, thread=1 - trace.thread)
@@ -123,7 +121,7 @@ def test_the_order_in_which_threads_are_numbered_does_not_matter(seed: int) -> N
         assert one.visits.reward == pytest.approx(other.visits.reward)
 
 
-def test_threads_that_act_in_one_step_share_its_reward() -> None:
+def test_threads_active_in_one_step_share_its_reward() -> None:
     trace = Trace(
         cells=((0,),),
         site=np.array([0, 1, 0], np.int32),
@@ -142,7 +140,9 @@ def test_threads_that_act_in_one_step_share_its_reward() -> None:
 
 @given(st.lists(st.integers(0, 50), min_size=1, max_size=8), st.randoms(use_true_random=False))
 @settings(max_examples=50)
-def test_merging_is_a_union_by_seed_in_any_order_and_grouping(seeds: list[int], random: object) -> None:
+def test_merging_is_a_union_by_seed_independent_of_order_and_grouping(
+    seeds: list[int], random: object
+) -> None:
     singles = [random_sample(seed) for seed in seeds]
     whole = merge(singles)
     assert whole.seeds == tuple(sorted(set(seeds)))
@@ -154,7 +154,7 @@ def test_merging_is_a_union_by_seed_in_any_order_and_grouping(seeds: list[int], 
     assert same(merge(groups), whole)
 
 
-def test_aligned_samples_share_their_cells_and_keep_their_sums() -> None:
+def test_aligned_samples_have_the_same_cells_and_keep_their_sums() -> None:
     first, second = merge([random_sample(1), random_sample(2)]), random_sample(3)
     a, b = aligned(first, second)
     assert a.cells == b.cells == tuple(sorted({*first.cells, *second.cells}))
@@ -182,7 +182,7 @@ def test_a_step_without_events_gives_its_reward_to_the_latest_earlier_event() ->
     assert sequence.scaled.tolist() == [0.0, 20.0, 30.0, 1000.0]
 
 
-def test_sites_that_the_node_no_longer_has_record_nothing() -> None:
+def test_removed_sites_have_no_events() -> None:
     trace = random_trace(5)
     recorded = sample(trace, 5, True, ((0, -1, 2),)).lists[0]
     assert recorded.width == 3
@@ -200,7 +200,7 @@ def test_the_chain_counts_every_step_with_a_known_cell() -> None:
 
 @given(lengths=st.lists(st.integers(0, 300), max_size=12), seed=st.integers(0, 2**16))
 @settings(max_examples=40)
-def test_totals_of_many_episodes_are_those_of_each_to_the_last_bit(lengths: list[int], seed: int) -> None:
+def test_totals_of_many_episodes_equal_those_of_each_one_bitwise(lengths: list[int], seed: int) -> None:
     draws = np.random.default_rng(seed)
     reward = draws.normal(size=sum(lengths)) * 10.0 ** draws.integers(-8, 8, sum(lengths))
     ends = np.concatenate(([0], np.cumsum(np.array(lengths, np.int64))))

@@ -24,13 +24,13 @@ from pytest_tarl.learning.student import difference_bounds, student_quantile
         (0.95, 1e6, 1.6449),
     ],
 )
-def test_students_quantile_agrees_with_the_tables(
+def test_quantiles_of_students_distribution_agree_with_published_tables(
     probability: float, degrees: float, expected: float
 ) -> None:
     assert student_quantile(probability, degrees) == pytest.approx(expected, rel=2e-3)
 
 
-def test_the_interval_covers_the_true_difference_as_often_as_it_says() -> None:
+def test_the_interval_has_the_stated_coverage() -> None:
     covered = 0
     for seed in range(400):
         draws = np.random.default_rng(seed)
@@ -41,17 +41,17 @@ def test_the_interval_covers_the_true_difference_as_often_as_it_says() -> None:
     assert 0.86 <= covered / 400 <= 0.95
 
 
-def test_rewards_that_never_vary_give_a_point() -> None:
+def test_constant_rewards_give_an_interval_of_length_zero() -> None:
     lower, upper = difference_bounds([3.0] * 8, [3.0] * 20, 0.01)
     assert lower == upper == 0.0
     assert not math.isnan(lower)
 
 
-def test_the_effect_size_is_the_difference_in_standard_deviations_corrected_for_few_episodes() -> None:
+def test_the_effect_size_is_hedges_g() -> None:
     first, second = [3.0, 5.0, 7.0], [1.0, 3.0, 5.0]
     assert effect_size(first, second) == pytest.approx((1 - 3 / 15) * 2.0 / 2.0)
     assert effect_size(second, first) == -effect_size(first, second)
 
 
-def test_there_is_no_effect_size_where_nothing_varies() -> None:
+def test_constant_rewards_have_no_effect_size() -> None:
     assert math.isnan(effect_size([1.0, 1.0], [2.0, 2.0]))

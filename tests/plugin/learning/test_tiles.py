@@ -22,12 +22,12 @@ def walks() -> Chain:
     return merge([sample(walk_trace(seed), seed, True, ()) for seed in range(400)]).chain
 
 
-def test_without_tilings_there_are_no_tiles_and_a_table_it_is() -> None:
+def test_without_tilings_the_table_is_used() -> None:
     assert tiled([(0,), (1,)], [replace(PLACE, tilings=0)]) is None
     assert tiled_chain(walks(), WALK, None).tolist() == chain_utility(walks(), WALK).tolist()
 
 
-def test_each_cell_lies_in_one_tile_of_every_grid_and_shares_it_with_its_neighbours_only() -> None:
+def test_each_cell_lies_in_one_tile_per_grid_and_shares_it_only_with_neighbours() -> None:
     tiles = tiled([(i,) for i in range(8)], [replace(PLACE, bins=8, tilings=4)])
     assert tiles is not None
     assert tiles.of.shape == (8, 4)
@@ -37,21 +37,21 @@ def test_each_cell_lies_in_one_tile_of_every_grid_and_shares_it_with_its_neighbo
     assert shared[4:] == [0, 0, 0, 0]
 
 
-def test_tiles_of_an_angle_meet_at_the_ends_of_its_range() -> None:
+def test_tiles_of_an_angle_wrap_around_its_range() -> None:
     heading = Sensor("heading", angle=True, bins=8, tilings=4)
     tiles = tiled([(i,) for i in range(8)], [heading])
     assert tiles is not None
     assert {*tiles.of[0]} & {*tiles.of[7]}
 
 
-def test_the_random_walk_whose_values_lie_on_a_line_is_learned_as_by_the_table() -> None:
+def test_tiles_and_table_learn_equal_values_of_a_linear_random_walk() -> None:
     tiles = tiled([(i,) for i in range(WALK)], [PLACE])
     learned = tiled_chain(walks(), WALK, tiles, gamma=1.0)
     assert learned == pytest.approx(np.arange(1, 6) / 6, abs=0.08)
     assert learned == pytest.approx(chain_utility(walks(), WALK, gamma=1.0), abs=0.03)
 
 
-def test_a_cell_that_was_never_visited_is_known_by_its_neighbours_tiles() -> None:
+def test_an_unvisited_cell_takes_its_value_from_tiles_of_its_neighbours() -> None:
     chain = walks()
     cells = [(i,) for i in range(WALK + 3)]
     tiles = tiled(cells, [replace(PLACE, bins=WALK + 3)])
@@ -64,7 +64,7 @@ def test_a_cell_that_was_never_visited_is_known_by_its_neighbours_tiles() -> Non
     assert not np.isnan(tiled_chain(gap, WALK, tiled(cells[:WALK], [PLACE]), gamma=0.9)[2])
 
 
-def test_each_site_has_tiles_of_its_own_and_none_where_it_was_not_executed() -> None:
+def test_each_site_has_its_own_tiles_where_it_was_executed() -> None:
     whole = merge([sample(walk_trace(seed), seed, True, ((0, 1),)) for seed in range(400)])
     tiles = tiled([(i,) for i in range(WALK)], [PLACE])
     table = tiled_batch(whole.lists[0], WALK, np.inf, tiles, gamma=0.9)
@@ -72,7 +72,7 @@ def test_each_site_has_tiles_of_its_own_and_none_where_it_was_not_executed() -> 
     assert np.isnan(table[:, 1]).all()
 
 
-def test_tilings_need_bins() -> None:
+def test_a_sensor_with_tilings_needs_bins() -> None:
     from pytest_tarl.errors import SettingsError
 
     with pytest.raises(SettingsError, match="tilings must be at least 1 and needs a sensor with bins"):

@@ -22,7 +22,7 @@ from tests.plugin.learning.test_fixture import example
 from tests.plugin.tank import RECORD, fixture_file
 
 
-def test_a_recording_is_read_only_where_there_is_the_memory(
+def test_a_recording_larger_than_the_free_memory_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.npz"
@@ -37,7 +37,7 @@ def test_a_recording_is_read_only_where_there_is_the_memory(
         assert load(path).test == "test_node.py::test_it"
 
 
-def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_free_memory_is_read_from_the_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     meminfo = tmp_path / "meminfo"
     monkeypatch.setattr(free_memory, "_MEMINFO", meminfo)
     monkeypatch.setattr(free_memory, "_OWN_GROUPS", tmp_path / "no groups")
@@ -58,7 +58,7 @@ def group(folder: Path, version: int, most: str, used: int, droppable: int) -> N
 
 
 @pytest.mark.parametrize(("version", "line"), [(2, "0::"), (1, "4:cpu,memory:")])
-def test_the_limit_of_a_container_counts_wherever_it_is_set(
+def test_a_memory_limit_of_the_container_applies_at_any_level(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: int, line: str
 ) -> None:
     meminfo, groups, own = tmp_path / "meminfo", tmp_path / "cgroup", tmp_path / "own"
@@ -101,7 +101,7 @@ def walk(seed: int, steps: int = 300) -> Sample:
     return sample(recorder.finish(), seed, True, [range(10)])
 
 
-def test_merging_and_writing_take_no_more_memory_than_is_said(tmp_path: Path) -> None:
+def test_merging_and_writing_stay_within_the_predicted_memory(tmp_path: Path) -> None:
     template = example()
     lists = (replace(template.lists[0], sites=template.lists[0].sites[:1] * 10),)
     template = replace(template, sensors=template.sensors[:1], lists=lists)
@@ -119,7 +119,7 @@ def test_merging_and_writing_take_no_more_memory_than_is_said(tmp_path: Path) ->
     assert nbytes(whole) == pytest.approx(held, rel=0.01)
 
 
-def test_the_first_episodes_tell_that_memory_will_not_suffice(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_first_episodes_predict_that_memory_will_not_suffice(monkeypatch: pytest.MonkeyPatch) -> None:
     one = walk(0)
     told: list[str] = []
     need = PEAK * nbytes(one)
@@ -144,7 +144,7 @@ def test_the_first_episodes_tell_that_memory_will_not_suffice(monkeypatch: pytes
     assert (enough.warning, unknown.warning) == ("", "")
 
 
-def test_later_episodes_that_are_larger_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_larger_later_episodes_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     small, large = walk(0, 10), walk(0, 2000)
     monkeypatch.setattr(footprint, "available", lambda: 60 * PEAK * nbytes(large))
     told: list[str] = []
@@ -154,7 +154,7 @@ def test_later_episodes_that_are_larger_are_noticed(monkeypatch: pytest.MonkeyPa
     assert "100 episodes will need" in told[0]
 
 
-def test_recording_stops_before_memory_runs_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_recording_stops_before_memory_is_exhausted(monkeypatch: pytest.MonkeyPatch) -> None:
     one = walk(0)
     monkeypatch.setattr(footprint, "STRIDE", 1)
     seen = Footprint(expected=1000)
@@ -167,7 +167,7 @@ def test_recording_stops_before_memory_runs_out(monkeypatch: pytest.MonkeyPatch)
         seen.add(one)
 
 
-def test_recording_says_it_before_the_other_episodes_and_writes_nothing_where_memory_ends(
+def test_insufficient_memory_is_reported_early_and_nothing_is_written(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(footprint, "available", lambda: 1000)

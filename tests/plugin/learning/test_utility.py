@@ -43,7 +43,7 @@ def walk_trace(seed: int) -> Trace:
     )
 
 
-def test_the_fixed_point_solves_the_random_walk_exactly() -> None:
+def test_the_fixed_point_is_the_exact_solution_of_the_random_walk() -> None:
     state = np.repeat(np.arange(WALK), 2)
     following = np.array([END, 1, 0, 2, 1, 3, 2, 4, 3, END])
     reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # half of the last state's two exits earns 1
@@ -51,7 +51,7 @@ def test_the_fixed_point_solves_the_random_walk_exactly() -> None:
     assert values == pytest.approx(np.arange(1, 6) / 6)
 
 
-def test_a_state_never_left_has_no_utility() -> None:
+def test_a_state_that_is_never_left_has_no_utility() -> None:
     one = np.array([0])
     values = fixed_point(one, np.array([END]), np.array([1]), np.array([3.0, 0.0]), gamma=0.9)
     assert values[0] == 3.0
@@ -59,7 +59,7 @@ def test_a_state_never_left_has_no_utility() -> None:
 
 
 @pytest.mark.parametrize("kind", LEARNERS)
-def test_batch_and_what_learns_event_by_event_agree_with_the_random_walk(kind: str) -> None:
+def test_batch_and_incremental_learners_agree_on_the_random_walk(kind: str) -> None:
     traces = [walk_trace(seed) for seed in range(1500)]
     whole = merge([sample(trace, seed, True, ((0,),)) for seed, trace in enumerate(traces)])
     learned = batch(whole.lists[0], WALK, scale=np.inf, gamma=1.0)[:, 0]
@@ -73,7 +73,7 @@ def test_batch_and_what_learns_event_by_event_agree_with_the_random_walk(kind: s
     assert steps == pytest.approx(learned, abs=1e-9)
 
 
-def test_sarsa_follows_the_update_rule_by_hand() -> None:
+def test_sarsa_follows_its_update_rule() -> None:
     sequence = EventSequence(
         state=np.array([START, 1, 2]),
         reward=np.array([0.0, 1.0, 2.0]),
@@ -94,7 +94,7 @@ def sequence_of(states: list[int], rewards: list[float]) -> EventSequence:
     return EventSequence(np.array(states), np.array(rewards), nothing, nothing)
 
 
-def test_expected_sarsa_looks_at_what_followed_so_far() -> None:
+def test_expected_sarsa_averages_over_the_successors_seen_so_far() -> None:
     learner = ExpectedSarsa(2, gamma=0.5, alpha=0.5)
     learner.learn(sequence_of([START, 2], [0.0, 4.0]), [(0,)])  # q(2) = 2
     learner.learn(sequence_of([START, 1], [0.0, 0.0]), [(0,)])  # the start is followed by either, q(1) = 0
@@ -104,9 +104,7 @@ def test_expected_sarsa_looks_at_what_followed_so_far() -> None:
     assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
 
 
-def test_td_lambda_learns_from_the_whole_return_when_lambda_is_one_and_from_the_next_state_when_it_is_zero() -> (
-    None
-):
+def test_td_lambda_uses_the_whole_return_at_one_and_one_step_at_zero() -> None:
     whole, next_only = (TDLambda(2, gamma=0.5, alpha=0.5, trace=trace) for trace in (1.0, 0.0))
     for learner in (whole, next_only):
         learner.learn(sequence_of([START, 1, 2], [0.0, 1.0, 4.0]), [(0,)])
@@ -131,7 +129,7 @@ def test_the_flow_term_can_be_switched_off() -> None:
     assert batch(recorded, 1, scale=2.5, gamma=0.5).tolist() == [[2.5, 1.0]]
 
 
-def test_sarsa_knows_cells_by_what_they_are_and_not_by_their_number_in_a_trace() -> None:
+def test_sarsa_identifies_cells_by_value_and_not_by_index_in_a_trace() -> None:
     learner = Sarsa(1, gamma=0.5, alpha=0.1)
     for cells, state in (([(4,)], 1), ([(9,), (4,)], 2)):
         sequence = EventSequence(np.array([START, state]), np.array([0.0, 1.0]), np.zeros(2), np.zeros(2))
@@ -141,7 +139,7 @@ def test_sarsa_knows_cells_by_what_they_are_and_not_by_their_number_in_a_trace()
     assert np.isnan(table[1:, 0]).all()
 
 
-def test_solving_step_by_step_agrees_with_solving_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_solving_one_step_at_a_time_equals_solving_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     draws = np.random.default_rng(3)
     state, following = np.repeat(np.arange(40), 5), draws.integers(-1, 40, 200)
     arguments = (state, following, draws.integers(1, 9, 200), draws.normal(size=40))
@@ -150,7 +148,7 @@ def test_solving_step_by_step_agrees_with_solving_at_once(monkeypatch: pytest.Mo
     assert fixed_point(*arguments, gamma=0.95) == pytest.approx(at_once, abs=1e-9)
 
 
-def test_where_the_gradients_break_down_the_sweeps_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_iteration_continues_if_conjugate_gradients_break_down(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(utility, "DENSE", 1)
     monkeypatch.setattr(utility, "STEPS", 2)
     state = np.arange(300)
@@ -158,14 +156,14 @@ def test_where_the_gradients_break_down_the_sweeps_go_on(monkeypatch: pytest.Mon
     assert values == pytest.approx(10 * (1 - 0.9 ** np.arange(300, 0, -1)))
 
 
-def test_a_hundred_thousand_states_need_no_table_of_all_their_pairs() -> None:
+def test_a_hundred_thousand_states_need_no_dense_matrix() -> None:
     state = np.arange(100_000)
     following = np.append(state[1:], END)
     values = fixed_point(state, following, np.ones_like(state), np.ones(state.size), gamma=0.5)
     assert values[0] == pytest.approx(2.0)
 
 
-def test_a_world_without_any_cell_has_an_empty_utility() -> None:
+def test_a_world_without_cells_has_an_empty_utility() -> None:
     trace = Trace(
         cells=(),
         site=np.zeros(1, np.int32),

@@ -32,7 +32,7 @@ def one_by_one(pool: np.ndarray, bins: np.ndarray, draws: np.ndarray) -> np.ndar
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 20), st.integers(1, 4), st.integers(0, 30))
-def test_ranks_of_many_missions_at_once_are_those_one_by_one(
+def test_ranks_computed_at_once_equal_ranks_computed_one_by_one(
     seed: int, count: int, scores: int, offline: int
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -51,7 +51,7 @@ def test_ranks_of_many_missions_at_once_are_those_one_by_one(
 
 
 @pytest.mark.parametrize("scores", [(0, 1, 2, 3, 4, 5), (0, 0, 1, 1, 1, 2), (3, 3, 3, 3, 3, 3)])
-def test_over_all_orders_the_ranks_of_the_last_three_are_uniform_and_independent(
+def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
     scores: tuple[int, ...],
 ) -> None:
     """Given an order, a rank is uniform on an interval; over all orders the boxes of three ranks fill the cube."""
@@ -68,7 +68,7 @@ def test_over_all_orders_the_ranks_of_the_last_three_are_uniform_and_independent
     np.testing.assert_allclose(density * parts**3 / len(orders), 1.0, rtol=1e-9)
 
 
-def test_every_bet_has_integral_one_and_is_never_negative() -> None:
+def test_every_bet_integrates_to_one_and_is_nonnegative() -> None:
     """Substitute p = s^8, which takes the poles away, on either half of the unit interval."""
     nodes, weights = leggauss(80)
     top = 0.5 ** (1 / 8)
@@ -85,7 +85,7 @@ def test_every_bet_has_integral_one_and_is_never_negative() -> None:
 
 
 @given(st.lists(st.floats(-1e6, 1e6, allow_nan=False), min_size=0, max_size=200), st.floats(1e-3, 1e6))
-def test_bins_are_in_order_and_rounding_moves_no_value_into_another(values: list[float], unit: float) -> None:
+def test_bins_are_ordered_and_rounding_changes_no_bin(values: list[float], unit: float) -> None:
     found = edges(np.array(values), unit)
     assert found.shape == (BINS - 1,)
     assert (np.diff(found[np.isfinite(found)]) > 0).all()
@@ -96,7 +96,7 @@ def test_bins_are_in_order_and_rounding_moves_no_value_into_another(values: list
         assert shaken[0] == shaken[1]
 
 
-def test_values_beyond_all_that_was_fitted_fall_into_bins_of_their_own() -> None:
+def test_values_outside_the_fitted_range_have_bins_of_their_own() -> None:
     found = edges(np.random.default_rng(0).normal(size=100), 1.0)
     assert np.searchsorted(found, -100.0) == 0
     bins = np.searchsorted(found, [-100.0, -3.0, 0.0, 3.0, 100.0])

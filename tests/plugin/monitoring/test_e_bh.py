@@ -11,9 +11,7 @@ from pytest_tarl.monitoring.e_bh import adjusted, chosen
 
 
 @given(st.lists(st.floats(-5, 20), max_size=12), st.sampled_from([0.05, 0.2, 0.5]))
-def test_e_bh_rejects_the_largest_k_for_which_k_values_are_large_enough(
-    logs: list[float], alpha: float
-) -> None:
+def test_e_bh_rejects_the_largest_k_with_k_large_enough_e_values(logs: list[float], alpha: float) -> None:
     values = 2.0 ** np.array(logs)
     largest = 0
     for k in range(1, len(logs) + 1):
@@ -25,7 +23,7 @@ def test_e_bh_rejects_the_largest_k_for_which_k_values_are_large_enough(
         assert values[picked].min() >= values[~picked].max()
 
 
-def test_the_adjuster_takes_no_more_than_one() -> None:
+def test_the_adjuster_integrates_to_at_most_one() -> None:
     """∫ F(x)/x² dx over [1, ∞) with x = e^u is ∫ F(e^u) e^(-u) du."""
     u = np.linspace(0.0, 400.0, 400_001)
     value = np.exp2(adjusted(u / np.log(2.0))) * np.exp(-u)
@@ -34,12 +32,12 @@ def test_the_adjuster_takes_no_more_than_one() -> None:
 
 
 @given(st.floats(0, 2000), st.floats(0, 2000))
-def test_the_adjuster_rises(a: float, b: float) -> None:
+def test_the_adjuster_increases(a: float, b: float) -> None:
     low, high = adjusted(np.array(sorted((a, b))))
     assert low <= high + 1e-9
 
 
-def test_cells_that_nothing_is_known_of_are_never_chosen() -> None:
+def test_cells_without_evidence_are_never_selected() -> None:
     assert not chosen(adjusted(np.zeros(40)), 0.05).any()
     assert chosen(np.empty(0), 0.05).tolist() == []
     assert adjusted(np.array([0.0]))[0] == pytest.approx(-1.0)

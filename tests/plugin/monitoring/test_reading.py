@@ -91,7 +91,7 @@ SIZES = st.sampled_from([1, 7, 100, 400, 1000, 5000, blocks.BLOCK])
 
 @settings(max_examples=200 if SLOW else 40)
 @given(cuts=st.lists(st.integers(0, 10_000), max_size=12), restart=st.booleans(), size=SIZES)
-def test_a_log_that_grows_piece_by_piece_gives_every_mission_once(
+def test_a_log_that_grows_in_pieces_gives_every_mission_once(
     tmp_path_factory: pytest.TempPathFactory, cuts: list[int], restart: bool, size: int
 ) -> None:
     some = walks(6, 3)
@@ -165,7 +165,7 @@ def everything(path: Path, size: int) -> tuple[list[tuple[object, ...]], object]
 
 @settings(max_examples=300 if SLOW else 30)
 @given(kinds=st.lists(st.sampled_from(KINDS), max_size=14), size=SIZES, torn=st.integers(0, 60))
-def test_what_is_read_is_the_same_wherever_blocks_end(
+def test_the_result_does_not_depend_on_block_boundaries(
     tmp_path_factory: pytest.TempPathFactory, kinds: list[str], size: int, torn: int
 ) -> None:
     """One record a block has every record read as JSON, a large block missions that were written at once by pattern."""
@@ -175,7 +175,7 @@ def test_what_is_read_is_the_same_wherever_blocks_end(
     assert everything(path, size) == everything(path, 1)
 
 
-def test_missions_that_were_read_ahead_and_not_taken_come_again(tmp_path: Path) -> None:
+def test_missions_read_but_not_processed_are_read_again(tmp_path: Path) -> None:
     some = walks(5, 3)
     reading = Reading(log(tmp_path / "m.log", some))
     for mission in reading.readers[0].missions():
@@ -185,7 +185,7 @@ def test_missions_that_were_read_ahead_and_not_taken_come_again(tmp_path: Path) 
     assert reading.rewards == sums(some)
 
 
-def test_a_record_that_is_no_json_is_named(tmp_path: Path) -> None:
+def test_an_invalid_json_record_is_reported(tmp_path: Path) -> None:
     path = log(tmp_path / "m.log", walks(2, 2))
     payload = zlib.compress(b"no json")
     with path.open("ab") as file:
@@ -195,7 +195,7 @@ def test_a_record_that_is_no_json_is_named(tmp_path: Path) -> None:
     assert "is damaged at byte" in reading.problems[0]
 
 
-def test_steps_cells_and_new_cells_are_told(tmp_path: Path) -> None:
+def test_steps_cells_and_new_cells_are_read(tmp_path: Path) -> None:
     some = walks(4, 7)
     other = type(some[0])(((9, 9), (0, 0), (9, 9)), (1.0, 2.0, 3.0), True)
     path = log(tmp_path / "m.log", [*some, other])
@@ -209,7 +209,7 @@ def test_steps_cells_and_new_cells_are_told(tmp_path: Path) -> None:
         assert mission.new == ()
 
 
-def test_a_rotated_log_is_read_to_its_end_and_then_the_new_one(tmp_path: Path) -> None:
+def test_a_rotated_log_is_finished_before_its_successor_is_read(tmp_path: Path) -> None:
     some = walks(6, 2)
     path, old = tmp_path / "m.log", tmp_path / "m.log.1"
     log(path, some[:2])
@@ -229,7 +229,7 @@ def test_a_rotated_log_is_read_to_its_end_and_then_the_new_one(tmp_path: Path) -
     assert again.read() == 0
 
 
-def test_one_log_under_two_names_counts_once_and_says_so(tmp_path: Path) -> None:
+def test_one_log_under_two_names_is_counted_once_and_reported(tmp_path: Path) -> None:
     path = log(tmp_path / "m.log", walks(3, 2))
     os.link(path, tmp_path / "same.log")
     reading = Reading(path, tmp_path / "same.log")
@@ -237,7 +237,7 @@ def test_one_log_under_two_names_counts_once_and_says_so(tmp_path: Path) -> None
     assert "is the same log as" in reading.problems[0]
 
 
-def test_a_log_that_was_cut_short_is_named_and_nothing_counts_twice(tmp_path: Path) -> None:
+def test_a_truncated_log_is_reported_and_counted_once(tmp_path: Path) -> None:
     some = walks(5, 2)
     path = log(tmp_path / "m.log", some)
     reading = Reading(path)
@@ -252,7 +252,7 @@ def test_a_log_that_was_cut_short_is_named_and_nothing_counts_twice(tmp_path: Pa
     assert reading.problems == []
 
 
-def test_another_log_in_its_place_is_read_from_its_beginning(tmp_path: Path) -> None:
+def test_a_replaced_log_is_read_from_the_beginning(tmp_path: Path) -> None:
     some = walks(5, 2)
     path = log(tmp_path / "m.log", some[:3])
     reading = Reading(path)
@@ -271,7 +271,7 @@ def test_another_log_in_its_place_is_read_from_its_beginning(tmp_path: Path) -> 
         ({"bins": "0123"}, "had other bins"),
     ],
 )
-def test_missions_of_another_fixture_are_named_and_never_mixed(
+def test_missions_of_another_recording_are_reported_and_not_counted(
     tmp_path: Path, changes: dict[str, object], says: str
 ) -> None:
     some = walks(4, 2)
@@ -297,7 +297,7 @@ def test_a_log_of_an_older_version_without_bins_is_read(tmp_path: Path) -> None:
     assert Reading(path).read() == 2
 
 
-def test_a_damaged_record_is_named(tmp_path: Path) -> None:
+def test_a_damaged_record_is_reported(tmp_path: Path) -> None:
     path = log(tmp_path / "m.log", walks(5, 2))
     whole = bytearray(path.read_bytes())
     whole[len(whole) // 2] ^= 1
@@ -307,7 +307,7 @@ def test_a_damaged_record_is_named(tmp_path: Path) -> None:
     assert "is damaged at byte" in reading.problems[0]
 
 
-def test_files_that_are_none_or_not_there_are_named(tmp_path: Path) -> None:
+def test_missing_files_and_other_formats_are_reported(tmp_path: Path) -> None:
     other = tmp_path / "picture.png"
     other.write_bytes(b"\x89PNG")
     reading = Reading(other, tmp_path / "none.log", tmp_path)
@@ -320,7 +320,7 @@ def test_files_that_are_none_or_not_there_are_named(tmp_path: Path) -> None:
     assert reading.read() == 1
 
 
-def test_missions_without_an_end_are_counted_apart(tmp_path: Path) -> None:
+def test_missions_without_an_end_are_counted_separately(tmp_path: Path) -> None:
     some = walks(3, 2)
     path = tmp_path / "m.log"
     pieces = [encoded(record) for one in some for record in records(one, pieces=3)]

@@ -37,14 +37,14 @@ def naive(factors: np.ndarray) -> float:
     return float(value)
 
 
-def test_the_recursion_is_the_mixture_over_all_restarts_and_bets() -> None:
+def test_the_recursion_equals_the_mixture_over_all_restarts_and_bets() -> None:
     factors = np.random.default_rng(0).uniform(0.3, 2.2, (40, BETS, 3))
     evidence = log_evidence(watched(factors))
     for process in range(3):
         assert 2.0 ** evidence[process] == pytest.approx(naive(factors[:, :, process]), rel=1e-12)
 
 
-def test_the_weights_of_restarts_sum_to_one() -> None:
+def test_restart_weights_sum_to_one() -> None:
     left = reserve(np.arange(10_000))
     assert left[0] == 1.0
     assert (np.diff(left) < 0).all()
@@ -52,7 +52,7 @@ def test_the_weights_of_restarts_sum_to_one() -> None:
 
 
 @pytest.mark.parametrize("bound", [Fraction(1, 2), Fraction(9, 10)])
-def test_the_mean_over_all_outcomes_at_the_bound_is_one_and_alarms_are_as_rare_as_promised(
+def test_expected_evidence_at_the_bound_is_one_and_alarms_are_as_rare_as_alpha(
     bound: Fraction,
 ) -> None:
     length, alpha = 10, 0.25
@@ -69,7 +69,7 @@ def test_the_mean_over_all_outcomes_at_the_bound_is_one_and_alarms_are_as_rare_a
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=8), st.integers(0, 2**32 - 1))
-def test_any_portions_give_the_same_bits(portions: list[int], seed: int) -> None:
+def test_processing_in_portions_gives_bitwise_equal_results(portions: list[int], seed: int) -> None:
     rng = np.random.default_rng(seed)
     count = sum(portions)
     taken = rng.random((count, 4)) < 0.7
@@ -87,14 +87,14 @@ def test_evidence_beyond_the_largest_float_is_kept() -> None:
     assert processes.peak[0] == pytest.approx(log_evidence(processes)[0], rel=1e-12)
 
 
-def test_the_onset_is_where_the_factors_changed() -> None:
+def test_the_onset_is_the_change_of_the_factors() -> None:
     factors = np.concatenate([np.full((300, BETS, 1), 0.8), np.full((30, BETS, 1), 2.0)])
     processes = watched(factors)
     assert onset(processes, 0) == 300
     assert 300 < processes.alarm[0] < 330
 
 
-def test_a_process_that_observes_nothing_stays() -> None:
+def test_a_process_without_observations_is_unchanged() -> None:
     factors = np.ones((5, BETS, 2))
     factors[:, :, 0] = 1.5
     taken = np.zeros((5, 2), bool)

@@ -49,7 +49,7 @@ missions = st.builds(
 
 
 @given(some=st.lists(missions, min_size=1, max_size=6))
-def test_chain_total_and_steps_are_those_that_a_recording_keeps(fitted: Scale, some: list[Walk]) -> None:
+def test_totals_and_steps_of_the_chain_equal_those_of_a_recording(fitted: Scale, some: list[Walk]) -> None:
     ours = sampled(fitted, columns(fitted, some))
     kept = [
         represented(merge([sample(trace(one), n, one.passed, ())], fitted.cells))
@@ -67,14 +67,16 @@ def test_chain_total_and_steps_are_those_that_a_recording_keeps(fitted: Scale, s
 
 
 @given(some=st.lists(missions, min_size=2, max_size=8), cut=st.integers(1, 7))
-def test_scores_do_not_depend_on_the_missions_beside(fitted: Scale, some: list[Walk], cut: int) -> None:
+def test_scores_of_a_mission_do_not_depend_on_other_missions(
+    fitted: Scale, some: list[Walk], cut: int
+) -> None:
     parts = [part for part in (some[:cut], some[cut:]) if part]
     whole = binned(fitted, sampled(fitted, columns(fitted, some)))
     found = [binned(fitted, sampled(fitted, columns(fitted, part))) for part in parts]
     np.testing.assert_array_equal(whole, np.concatenate(found))
 
 
-def test_recorded_episodes_that_are_logged_fall_into_the_bins_of_the_recording(tmp_path: Path) -> None:
+def test_logged_recorded_episodes_fall_into_the_bins_of_the_recording(tmp_path: Path) -> None:
     some = walks(60, 1)
     constant = [replace(one, reward=(-0.1,) * len(one.cells)) for one in some]
     for number, world in enumerate((some, constant)):
@@ -85,7 +87,7 @@ def test_recorded_episodes_that_are_logged_fall_into_the_bins_of_the_recording(t
         np.testing.assert_array_equal(held_out, bins[[n for seed, n in seeds if not in_fit(seed)]])
 
 
-def test_a_mission_without_steps_has_only_its_success_and_one_without_rewards_all_that_needs_none(
+def test_missing_steps_or_rewards_leave_the_other_scores(
     fitted: Scale,
 ) -> None:
     known = walks(1, 5)[0]
@@ -102,6 +104,6 @@ def test_a_mission_without_steps_has_only_its_success_and_one_without_rewards_al
     assert {names[place] for place in np.flatnonzero(whole >= 0)} == {*names}
 
 
-def test_a_fixture_of_few_episodes_is_refused(tmp_path: Path) -> None:
+def test_a_recording_with_few_episodes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FixtureError, match="has 2 episodes: too few"):
         scale(fixture(tmp_path / "f.npz", walks(2, 1)))

@@ -49,7 +49,7 @@ def read(watched: Watch) -> bytes:
 
 @settings(max_examples=15)
 @given(ends=st.lists(st.integers(1, 30), max_size=6))
-def test_a_watch_that_ends_anywhere_goes_on_to_the_same_bytes(world: Path, ends: list[int]) -> None:
+def test_a_watch_continued_from_its_state_ends_with_the_same_bytes(world: Path, ends: list[int]) -> None:
     whole = read(begun(world, world / "whole.npz"))
     (world / "whole.npz").unlink()
     with pytest.MonkeyPatch.context() as patch:
@@ -65,14 +65,14 @@ def test_a_watch_that_ends_anywhere_goes_on_to_the_same_bytes(world: Path, ends:
     (world / "parts.npz").unlink()
 
 
-def test_another_seed_breaks_ties_otherwise(world: Path, tmp_path: Path) -> None:
+def test_the_seed_decides_how_ties_are_broken(world: Path, tmp_path: Path) -> None:
     first, second = (begun(world, tmp_path / f"{seed}.npz", seed=seed) for seed in (0, 1))
     read(first)
     read(second)
     assert not np.array_equal(first.monitor.processes.stake, second.monitor.processes.stake)
 
 
-def test_the_state_of_another_recording_alpha_or_seed_is_refused(world: Path, tmp_path: Path) -> None:
+def test_a_state_with_another_recording_alpha_or_seed_is_refused(world: Path, tmp_path: Path) -> None:
     read(begun(world, tmp_path / "s.npz"))
     for changes, says in (({"alpha": 0.1}, "begun with --alpha 0.05"), ({"seed": 3}, "begun with --seed 0")):
         with pytest.raises(MonitorError, match=says):
@@ -86,7 +86,7 @@ def test_the_state_of_another_recording_alpha_or_seed_is_refused(world: Path, tm
 
 @settings(max_examples=60)
 @given(data=st.data())
-def test_a_damaged_state_is_one_sentence(world: Path, data: st.DataObject) -> None:
+def test_a_damaged_state_gives_one_sentence(world: Path, data: st.DataObject) -> None:
     path = world / "damaged.npz"
     path.unlink(missing_ok=True)
     whole = bytearray(
@@ -102,7 +102,7 @@ def test_a_damaged_state_is_one_sentence(world: Path, data: st.DataObject) -> No
         begun(world, path).close()
 
 
-def test_two_watches_do_not_share_a_state(tmp_path: Path) -> None:
+def test_two_watches_cannot_share_a_state(tmp_path: Path) -> None:
     with (
         state.locked(tmp_path / "s.npz"),
         pytest.raises(MonitorError, match="in use by another watch"),
@@ -113,7 +113,7 @@ def test_two_watches_do_not_share_a_state(tmp_path: Path) -> None:
         pass
 
 
-def test_a_watch_that_is_killed_goes_on_to_the_same_bytes(world: Path, tmp_path: Path) -> None:
+def test_a_killed_watch_continues_to_the_same_bytes(world: Path, tmp_path: Path) -> None:
     """`kill -9` at any moment, while the log grows; the state is at most some missions behind and never wrong."""
     path, whole = tmp_path / "m.log", (world / "a.log").read_bytes()
     command = [

@@ -30,7 +30,7 @@ def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_missions_as_off_line_raise_no_alarm(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missions_as_recorded_raise_no_alarm(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log(root / "m.log", walks(200, 2))
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
     out = capsys.readouterr().out
@@ -42,7 +42,7 @@ def test_missions_as_off_line_raise_no_alarm(root: Path, capsys: pytest.CaptureF
     assert (root / ".tarl/watch/f.npz").exists()
 
 
-def test_a_drift_after_a_quiet_life_is_told_with_when_and_where(
+def test_a_drift_raises_an_alarm_with_its_onset_and_cells(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     log(root / "m.log", [*walks(300, 2), *walks(60, 3, drift=1.0)])
@@ -60,14 +60,14 @@ def test_a_drift_after_a_quiet_life_is_told_with_when_and_where(
     assert "where   x 2-3" in out
 
 
-def test_new_cells_are_named(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_new_cells_are_reported(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     elsewhere = [Walk((*one.cells, (3, 5)), (*one.reward, 1.0), True) for one in walks(30, 4)]
     log(root / "m.log", elsewhere)
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
     assert "new     x 3-4, wet 5: no recorded episode visited it" in capsys.readouterr().out
 
 
-def test_logs_of_other_worlds_are_named_and_the_others_counted(
+def test_logs_of_other_worlds_are_reported_and_the_rest_is_counted(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     log(root / "m.log", walks(5, 2))
@@ -93,7 +93,7 @@ def test_logs_of_other_worlds_are_named_and_the_others_counted(
         (["--once", "--json", "f.npz/s"], "f.npz/s cannot be written"),
     ],
 )
-def test_what_cannot_be_is_a_sentence(
+def test_invalid_arguments_give_one_sentence(
     root: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], says: str
 ) -> None:
     log(root / "m.log", walks(5, 2))
@@ -103,7 +103,7 @@ def test_what_cannot_be_is_a_sentence(
     assert (root / "f.npz").read_bytes() == before
 
 
-def test_a_fixture_in_which_every_mission_failed_states_nothing_to_test(
+def test_a_recording_in_which_every_mission_failed_has_no_bound(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -115,7 +115,7 @@ def test_a_fixture_in_which_every_mission_failed_states_nothing_to_test(
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out
 
 
-def test_missions_without_rewards_and_without_steps_are_told(
+def test_missions_without_rewards_or_steps_are_reported(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     some = walks(6, 2)
@@ -155,9 +155,7 @@ def until(what: object, process: subprocess.Popen[str]) -> None:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_follows_a_log_that_comes_later_and_grows_and_ends_with_a_signal(
-    root: Path, number: signal.Signals
-) -> None:
+def test_the_watch_follows_a_growing_log_until_a_signal(root: Path, number: signal.Signals) -> None:
     process = started(root, "--json", "w.json")
 
     def missions() -> int:
@@ -176,7 +174,7 @@ def test_it_follows_a_log_that_comes_later_and_grows_and_ends_with_a_signal(
     validate(json.loads((root / "w.json").read_text()), dashboard.schema())
 
 
-def test_until_alarm_ends_with_the_first_one(root: Path) -> None:
+def test_until_alarm_exits_at_the_first_alarm(root: Path) -> None:
     log(root / "m.log", walks(60, 3, drift=1.0))
     process = started(root, "--until-alarm")
     out, err = process.communicate(timeout=60)
@@ -185,7 +183,7 @@ def test_until_alarm_ends_with_the_first_one(root: Path) -> None:
     assert "most of all" in out
 
 
-def test_without_output_to_write_to_it_ends_quietly(root: Path) -> None:
+def test_a_closed_output_ends_the_watch_without_a_traceback(root: Path) -> None:
     log(root / "m.log", walks(5, 2))
     command = f"{sys.executable} -m pytest_tarl watch m.log --fixture f.npz --once | true"
     done = subprocess.run(
@@ -194,9 +192,7 @@ def test_without_output_to_write_to_it_ends_quietly(root: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_the_mean_is_tested_where_a_range_was_declared(
-    root: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_mean_is_tested_if_a_range_was_declared(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     fixture(root / "g.npz", walks(200, 1), Range(0.0, 12.0))
     less = [replace(one, reward=tuple(0.6 * amount for amount in one.reward)) for one in walks(300, 3)]
     log(root / "same.log", walks(300, 4))
@@ -214,7 +210,7 @@ def test_the_mean_is_tested_where_a_range_was_declared(
     assert total["evidence"]["alarm"]["mission"] < 200
 
 
-def test_totals_outside_of_the_declared_range_are_told(
+def test_totals_outside_the_declared_range_are_reported(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fixture(root / "g.npz", walks(80, 1), Range(0.0, 12.0))
@@ -233,9 +229,7 @@ def test_a_recording_of_equal_episodes_has_no_bound(root: Path, capsys: pytest.C
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out
 
 
-def test_before_the_first_mission_the_report_names_the_bounds(
-    root: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_bounds_are_printed_before_the_first_mission(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log(root / "m.log", [])
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
     out = capsys.readouterr().out
@@ -245,7 +239,7 @@ def test_before_the_first_mission_the_report_names_the_bounds(
 
 
 @pytest.mark.parametrize("time", [float("nan"), float("inf"), -1e300, 1e300, 0.0])
-def test_a_clock_that_is_wrong_ends_nothing(
+def test_a_wrong_clock_does_not_stop_the_watch(
     root: Path, capsys: pytest.CaptureFixture[str], time: float
 ) -> None:
     log(root / "m.log", walks(20, 3, drift=1.0), first=time)
@@ -253,13 +247,13 @@ def test_a_clock_that_is_wrong_ends_nothing(
     assert "ALARM with mission" in capsys.readouterr().out
 
 
-def test_a_log_that_is_named_twice_is_refused(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_named_twice_is_refused(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log(root / "m.log", walks(5, 2))
     assert main(["watch", "m.log", "./m.log", "--fixture", "f.npz", "--once"]) == 2
     assert "m.log is named twice: name each log once." in capsys.readouterr().err
 
 
-def test_false_alarms_are_as_rare_as_promised_with_a_fresh_fixture_each(tmp_path: Path) -> None:
+def test_false_alarms_are_rarer_than_alpha_over_fresh_recordings(tmp_path: Path) -> None:
     """60 short lives at α = 30 %, each with a fixture of its own."""
     alarms = 0
     rng = np.random.default_rng(0)

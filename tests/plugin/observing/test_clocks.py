@@ -25,7 +25,7 @@ class Clock:
 
 
 @pytest.mark.parametrize("jump", [-YEAR, YEAR, -1e10])
-def test_a_wall_clock_that_jumps_changes_nothing_but_the_dates(
+def test_a_jump_of_the_wall_clock_changes_only_the_dates(
     jump: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wall = Clock(1.7e9)
@@ -49,7 +49,7 @@ def test_a_wall_clock_that_jumps_changes_nothing_but_the_dates(
 
 
 @pytest.mark.parametrize("asleep", [5.0, 8 * 3600.0])
-def test_after_a_sleep_longer_than_idle_another_mission_begins_and_no_step_is_lost(
+def test_a_pause_longer_than_idle_begins_a_new_mission_without_losing_steps(
     asleep: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = Clock(1000.0)

@@ -59,7 +59,7 @@ ENDINGS = [
 
 
 @pytest.mark.parametrize(("error", "passed", "failure", "comes_out"), ENDINGS, ids=repr)
-def test_a_mission_that_is_the_life_of_the_node_ends_as_the_node_does(
+def test_a_mission_without_marks_ends_with_the_node(
     error: BaseException | None,
     passed: bool,
     failure: str | None,
@@ -74,13 +74,13 @@ def test_a_mission_that_is_the_life_of_the_node_ends_as_the_node_does(
 
 
 @pytest.mark.parametrize("more", [{"mission": "/mission"}, {"idle": 1.0}])
-def test_a_node_alone_begins_no_mission_where_others_tell_them_apart(
+def test_the_start_of_the_node_begins_no_mission_if_a_topic_does(
     more: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert ended(tmp_path, monkeypatch, None, **more)[0] == []
 
 
-def test_orders_begin_and_end_missions_and_other_words_do_nothing(tmp_path: Path) -> None:
+def test_begin_and_end_words_delimit_missions_and_others_are_ignored(tmp_path: Path) -> None:
     observer = Observer([], tmp_path / "log", ABOUT)
     for word in ("succeeded", "begin", "rest", "begin", "failed", "failed", "begin", "succeeded"):
         observer.order(word)
@@ -93,7 +93,7 @@ def test_orders_begin_and_end_missions_and_other_words_do_nothing(tmp_path: Path
     ]
 
 
-def test_changes_of_signals_and_sensors_are_written_once_each_with_their_time(tmp_path: Path) -> None:
+def test_each_change_of_signals_and_sensors_is_written_once_with_its_time(tmp_path: Path) -> None:
     speed = Signal("speed", topic="/speed", field="x")
     place = Sensor("place", topic="/place", field="x", low=0, high=10, bins=2)
     observer = Observer([place], tmp_path / "log", ABOUT, signals=[speed], following=True)
@@ -125,7 +125,7 @@ def test_changes_of_signals_and_sensors_are_written_once_each_with_their_time(tm
     assert "Signal 'speed'" in observer.problem
 
 
-def test_without_formulas_no_change_is_written(tmp_path: Path) -> None:
+def test_without_formulas_changes_are_not_written(tmp_path: Path) -> None:
     observer = Observer([], tmp_path / "log", ABOUT, signals=[Signal("speed", topic="/speed", field="x")])
     observer.begin()
     observer.signalled(observer.signals[0], SimpleNamespace(x=1.0))
@@ -135,7 +135,7 @@ def test_without_formulas_no_change_is_written(tmp_path: Path) -> None:
     assert all("changes" not in one for one in records(tmp_path / "log"))
 
 
-def test_what_was_sent_does_not_count_as_waiting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sent_records_do_not_count_as_waiting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(outlet, "MOST_WAITING", 30_000)
     observer = Observer([], tmp_path / "log", ABOUT)
     observer.begin()

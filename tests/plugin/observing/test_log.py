@@ -24,13 +24,13 @@ def written(path: Path, some: list[dict[str, object]]) -> bytes:
     return path.read_bytes()
 
 
-def test_what_was_appended_is_read_in_order(tmp_path: Path) -> None:
+def test_appended_records_are_read_in_order(tmp_path: Path) -> None:
     written(tmp_path / "log", RECORDS[:2])
     written(tmp_path / "log", RECORDS[2:])
     assert list(records(tmp_path / "log")) == RECORDS
 
 
-def test_wherever_a_log_is_torn_the_whole_records_before_are_read_and_writing_goes_on(tmp_path: Path) -> None:
+def test_complete_records_of_a_torn_log_are_read_and_writing_continues(tmp_path: Path) -> None:
     content = written(tmp_path / "log", RECORDS)
     ends = [len(MAGIC)]
     for record in RECORDS:
@@ -44,7 +44,7 @@ def test_wherever_a_log_is_torn_the_whole_records_before_are_read_and_writing_go
         assert list(records(torn)) == [*whole, {"kind": "start"}]
 
 
-def test_a_damaged_record_ends_what_is_read(tmp_path: Path) -> None:
+def test_reading_stops_at_a_damaged_record(tmp_path: Path) -> None:
     content = bytearray(written(tmp_path / "log", RECORDS))
     content[len(MAGIC) + len(encoded(RECORDS[0])) + 12] ^= 1
     (tmp_path / "log").write_bytes(content)
@@ -52,7 +52,7 @@ def test_a_damaged_record_ends_what_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"PK\x03\x04 a fixture", b"tarl log 2\n"])
-def test_another_file_is_neither_read_nor_written_over(tmp_path: Path, content: bytes) -> None:
+def test_a_file_of_another_format_is_not_read_or_overwritten(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "other"
     path.write_bytes(content)
     with pytest.raises(LogError, match="is not a log"):
@@ -62,7 +62,7 @@ def test_another_file_is_neither_read_nor_written_over(tmp_path: Path, content: 
     assert path.read_bytes() == content
 
 
-def test_two_observers_do_not_share_a_log(tmp_path: Path) -> None:
+def test_two_observers_cannot_share_a_log(tmp_path: Path) -> None:
     first = LogFile(tmp_path / "log")
     with pytest.raises(LogError, match="being written by another observer"):
         LogFile(tmp_path / "log")
@@ -83,7 +83,7 @@ for number in range(1_000_000):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_what_was_synced_before_a_kill_is_read(tmp_path: Path, seed: int) -> None:
+def test_synced_records_survive_a_kill(tmp_path: Path, seed: int) -> None:
     path = tmp_path / "log"
     process = subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None

@@ -65,7 +65,7 @@ def order(root: Path, **changes: object) -> Order:
     return Order(**{"node": root / "keeper.py", "reward": "/monitor", "mission": "/mission", **changes})  # type: ignore[arg-type]
 
 
-def test_each_mission_holds_every_step_event_and_cell(recorded: Path) -> None:
+def test_each_mission_contains_every_step_event_and_cell(recorded: Path) -> None:
     drive(order(recorded), [1.0, 0.1])
     fixture = load(next(recorded.glob(".tarl/utility/*.npz")))
     first, second = missions(recorded / ".tarl/missions.log", fixture)
@@ -76,7 +76,7 @@ def test_each_mission_holds_every_step_event_and_cell(recorded: Path) -> None:
     assert set(first.sites) >= {site.id for one in fixture.lists for site in one.sites}
 
 
-def test_a_log_of_another_world_is_degraded_and_one_of_the_same_is_not(
+def test_a_log_of_a_drifted_world_is_degraded_and_a_nominal_one_is_not(
     recorded: Path, pytester: pytest.Pytester
 ) -> None:
     drive(order(recorded, log=recorded / "clogged.log"), [0.05] * 8)
@@ -85,7 +85,7 @@ def test_a_log_of_another_world_is_degraded_and_one_of_the_same_is_not(
     assert result.ret == 1
 
 
-def test_missions_of_logs_that_were_set_aside_are_compared_as_well(recorded: Path) -> None:
+def test_missions_of_renamed_logs_are_compared_too(recorded: Path) -> None:
     drive(order(recorded, log_size=1), [1.0, 0.1, 1.0])
     assert len(list(recorded.glob(".tarl/missions.log.*"))) == 3
     fixture = load(next(recorded.glob(".tarl/utility/*.npz")))
@@ -93,9 +93,7 @@ def test_missions_of_logs_that_were_set_aside_are_compared_as_well(recorded: Pat
     assert [(one.ended, one.passed) for one in found] == [(True, True), (True, False), (True, True)]
 
 
-def test_a_mission_without_an_end_takes_no_part_and_is_told(
-    recorded: Path, pytester: pytest.Pytester
-) -> None:
+def test_a_mission_without_an_end_is_skipped_with_a_note(recorded: Path, pytester: pytest.Pytester) -> None:
     drive(order(recorded), [0.05] * 8)
     log = recorded / ".tarl/missions.log"
     log.write_bytes(log.read_bytes()[:-20])
@@ -103,7 +101,7 @@ def test_a_mission_without_an_end_takes_no_part_and_is_told(
     result.stdout.fnmatch_lines(["*1 mission has no end or no reward in missions.log: skipped*"])
 
 
-def test_without_a_reward_topic_the_markers_judge_rewards_the_steps(
+def test_without_a_reward_topic_the_judge_of_the_marker_gives_rewards(
     recorded: Path, pytester: pytest.Pytester
 ) -> None:
     drive(order(recorded, reward="", step=0.001), [0.05] * 8, pause=0.003)
@@ -125,14 +123,16 @@ def test_without_a_reward_topic_the_markers_judge_rewards_the_steps(
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
-def test_what_cannot_be_observed_is_said(recorded: Path, changes: dict[str, object], says: str) -> None:
+def test_a_node_that_cannot_be_observed_gives_one_sentence(
+    recorded: Path, changes: dict[str, object], says: str
+) -> None:
     ros = Ros()
     with ros.installed(), pytest.raises(Exception, match=says):
         ros.start(lambda: observe(order(recorded, **changes)) and None, name="observe")
     ros.close()
 
 
-def test_only_a_comparison_takes_a_log(pytester: pytest.Pytester) -> None:
+def test_a_log_needs_online_mode(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("def test_nothing(): pass")
     for flags, says in (
         (["--tarl-log=x"], "*--tarl-log needs --tarl-online*"),
@@ -141,7 +141,7 @@ def test_only_a_comparison_takes_a_log(pytester: pytest.Pytester) -> None:
         pytester.runpytest_inprocess(*flags).stderr.fnmatch_lines([says])
 
 
-def test_a_fixture_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_observing_needs_a_recording(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "keeper.py").write_text(NODE)
     with pytest.raises(LogError, match="Choose one with --fixture"):

@@ -33,7 +33,7 @@ def drive(recorder: Recorder, begin: int, end: int) -> None:
             recorder.reward(number / 10)
 
 
-def test_emptied_in_pieces_it_records_what_it_records_in_one() -> None:
+def test_draining_in_pieces_records_the_same_as_draining_once() -> None:
     whole = Recorder(threads=True)
     drive(whole, 0, 60)
     trace = whole.finish()
@@ -53,7 +53,7 @@ def test_emptied_in_pieces_it_records_what_it_records_in_one() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
-def test_chunks_in_a_row_are_one() -> None:
+def test_consecutive_chunks_are_merged() -> None:
     whole, pieces = Emptied(), Emptied()
     chunks, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):
@@ -67,7 +67,7 @@ def test_chunks_in_a_row_are_one() -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
-def test_a_site_whose_value_is_still_to_come_waits_for_it() -> None:
+def test_a_site_waits_for_the_value_of_an_unfinished_statement() -> None:
     recorder = Emptied()
     entries = recorder._entries()
     entries.append(3)
@@ -77,7 +77,7 @@ def test_a_site_whose_value_is_still_to_come_waits_for_it() -> None:
     assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3], [1.5])
 
 
-def test_threads_that_record_while_it_is_emptied_lose_nothing() -> None:
+def test_concurrent_threads_lose_nothing_during_draining() -> None:
     recorder = Emptied()
     count, over = 20_000, threading.Event()
 
@@ -99,7 +99,7 @@ def test_threads_that_record_while_it_is_emptied_lose_nothing() -> None:
         assert flow[site == number].tolist() == list(range(count))
 
 
-def test_memory_is_bounded_when_the_disk_stands_still(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_memory_is_bounded_while_the_disk_is_blocked(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr(stream, "MOST_ENTRIES", 100)
     recorder = Emptied()
     for _ in range(10):

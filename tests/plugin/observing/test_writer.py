@@ -59,7 +59,7 @@ def column(steps: list[dict[str, Any]], name: str, kind: str) -> list[Any]:
     return [*chain.from_iterable(unpacked(one[name], kind).tolist() for one in steps)]
 
 
-def test_every_step_event_reading_and_cell_comes_through_in_order(tmp_path: Path) -> None:
+def test_every_step_event_reading_and_cell_is_written_in_order(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     observer.told(SENSOR, Message(9.0))  # a cell from before the mission
     until(lambda: not observer.stream._cells or observer.stream._told)
@@ -98,7 +98,7 @@ for number in range(10**6):
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_what_was_sent_before_the_node_is_killed_is_written(tmp_path: Path, how: signal.Signals) -> None:
+def test_records_sent_before_the_node_is_killed_are_written(tmp_path: Path, how: signal.Signals) -> None:
     path = tmp_path / "log"
     command = [sys.executable, "-c", NODE, str(path)]
     with subprocess.Popen(
@@ -126,7 +126,7 @@ def test_what_was_sent_before_the_node_is_killed_is_written(tmp_path: Path, how:
     assert len(found) > last - 200
 
 
-def test_a_writer_that_is_ended_is_told_and_the_node_goes_on(tmp_path: Path) -> None:
+def test_a_killed_writer_is_reported_and_the_node_continues(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     mission(observer, 10)
     observer._outlet._process.kill()
@@ -138,9 +138,7 @@ def test_a_writer_that_is_ended_is_told_and_the_node_goes_on(tmp_path: Path) -> 
     assert observer.problem == "The process that writes the log was ended: later records are lost."
 
 
-def test_a_disk_that_stands_still_costs_events_and_no_time(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_blocked_disk_costs_events_but_no_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(outlet, "MOST_WAITING", 1000)
     monkeypatch.setattr(stream, "MOST_ENTRIES", 2000)
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
@@ -161,7 +159,7 @@ def test_a_disk_that_stands_still_costs_events_and_no_time(
 
 
 @pytest.mark.parametrize("content", [b"PK\x03\x04 a fixture", b"tarl log 2\n"])
-def test_a_log_that_cannot_be_taken_is_refused_before_the_node_starts(tmp_path: Path, content: bytes) -> None:
+def test_an_unusable_log_is_refused_before_the_node_starts(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "log").write_bytes(content)
     with pytest.raises(LogError, match="is not a log of"):
         Observer([SENSOR], tmp_path / "log", ABOUT)
@@ -183,7 +181,7 @@ def long_log(path: Path, missions: int, rotation: Rotation) -> None:
     writer.close()
 
 
-def test_a_long_log_is_set_aside_between_missions_and_each_part_stands_alone(tmp_path: Path) -> None:
+def test_a_long_log_is_renamed_between_missions_and_each_part_is_complete(tmp_path: Path) -> None:
     path = tmp_path / "missions.log"
     (tmp_path / "missions.log.gz").write_text("not ours")
     long_log(path, 40, Rotation(size=2000))
@@ -200,7 +198,7 @@ def test_a_long_log_is_set_aside_between_missions_and_each_part_stands_alone(tmp
     assert last["cells"][unpacked(last["step_cell"], "int32")[0]] == [39]
 
 
-def test_of_those_set_aside_only_the_newest_are_kept(tmp_path: Path) -> None:
+def test_only_the_newest_renamed_logs_are_kept(tmp_path: Path) -> None:
     path = tmp_path / "missions.log"
     long_log(path, 40, Rotation(size=2000, keep=2))
     kept = set_aside(path)
