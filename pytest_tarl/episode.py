@@ -143,7 +143,10 @@ class Tarl:
         self.ros.start(program, name=name or path.stem, argv=argv)
 
     def step(self, dt: float) -> None:
-        """Run the nodes and advance virtual time by `dt` seconds, until every node waits again."""
+        """Run the nodes and advance virtual time by `dt` seconds, until every node waits again.
+
+        Raise SettingsError for an invalid `dt`.
+        """
         seconds = as_number(dt)
         if seconds is None or not 0 <= seconds < math.inf:
             raise SettingsError(f"tarl.step got {dt!r}: give a finite number of seconds, such as 0.1.")
@@ -167,7 +170,10 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Report a message delivered to the node, for a test that delivers messages itself."""
+        """Report a message delivered to the node, for a test that delivers messages itself.
+
+        Raise SettingsError if the topic is not a string.
+        """
         if not isinstance(topic, str):
             raise SettingsError(
                 f"tarl.message got {topic!r} as topic: the topic name comes first, as in tarl.message('/odom', "
@@ -187,7 +193,10 @@ class Tarl:
         self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
-        """Give the reward of this simulation step, once a step; named parts are summed and reported separately."""
+        """Give the reward of this simulation step, once per step; named parts are summed and reported separately.
+
+        Raise SettingsError for a value that is not a finite number.
+        """
         if total is None and not parts:
             raise SettingsError(
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."

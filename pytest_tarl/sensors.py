@@ -179,7 +179,10 @@ class Sensor:
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
-        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN."""
+        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN.
+
+        Raise SettingsError for a value that the sensor cannot have.
+        """
         if self.bins is not None:
             number = self._measurement(value)
             return None if math.isnan(number) else self._place(number)

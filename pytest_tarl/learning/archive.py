@@ -30,7 +30,7 @@ class TooLargeError(ValueError):
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name.
+    """Return the arrays by name, in the shapes stated in the file.
 
     Raises TooLargeError, before anything is unpacked, and DamagedError; damaged zip and npy headers raise further
     exceptions.

@@ -121,10 +121,11 @@ def mean_of(
 
 
 def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
-    """Return the lower bound of the mean of values in [0, 1]: below it, a bet multiplies its wealth by 1 / risk.
+    """Return the lower bound of the mean of `values` in [0, 1], shape (episodes,).
 
-    The bet stakes λ on values above m; if the mean is m, the wealth is a martingale. λ depends on earlier values only,
-    and is tuned for the given number of values, or with `anytime` for any number.
+    Against any mean below the bound, a bet has multiplied its wealth by 1 / risk. The bet stakes λ on values above m;
+    if the mean is m, the wealth is a martingale. λ depends on earlier values only, and is tuned for the given number
+    of values, or with `anytime` for any number.
     """
     if not values.size:
         return 0.0
@@ -180,9 +181,10 @@ def loss_between(
 
 
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
-    """Return the loss that a test of this size at `risk` detects with probability POWER, by normal approximation.
+    """Return the loss that a test at `risk` detects with probability POWER; inputs have shape (episodes,).
 
-    Infinite if there are so few permutations of the episodes that no loss is significant.
+    The result is a normal approximation; infinite if there are so few permutations of the episodes that no loss is
+    significant.
     """
     if risk * comb(offline.size + online.size, online.size) <= 1:
         return inf

@@ -93,7 +93,7 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 def loss_bounds(
     offline: Floats, online: Floats, risk: float, declared: Range | None = None
 ) -> tuple[float, float]:
-    """Return the confidence interval of the loss, each end at `risk`."""
+    """Return the confidence interval of the loss, each end at `risk`; totals have shape (episodes,)."""
     bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
 

@@ -34,7 +34,7 @@ class Evidence:
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:
-        """Return the blocks of columns: cells three times, slabs by move and by reward, totals."""
+        """Return the blocks of columns, each of shape (episodes, …): cells three times, slabs twice, totals."""
         parts = ((self.move, self.move_error), (self.reward, self.reward_error))
         slabs = [beyond(_summed(part, self.slabs), _summed(error, self.slabs)) for part, error in parts]
         return (self.move, self.reward, self.novel, *slabs, self.totals)
@@ -72,9 +72,9 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
 
 
 def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
-    """Return the rows of the cells that share a bin of one sensor, for every bin of every sensor; last all rows.
+    """Return the rows of the cells in each slab, arrays of shape (cells of the slab,).
 
-    A single sensor's bins are the cells themselves and make no slabs.
+    There is a slab for every bin of every sensor, and a last one with all cells. The bins of a single sensor are the
     """
     table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
     columns = table.T if table.shape[1] > 1 else ()

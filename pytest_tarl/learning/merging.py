@@ -75,7 +75,7 @@ class _Place:
         return _kept(moved)
 
     def state(self, state: Ints, width: int) -> Ints:
-        """Renumber states; the start and the end stay."""
+        """Return renumbered states of the same shape; the start and the end keep their numbers."""
         cell, site = np.divmod(np.maximum(state - 1, 0), max(width, 1))
         return np.where(state > START, 1 + self.cell[cell] * width + site, state) if state.size else state
 
@@ -90,7 +90,7 @@ class _Place:
         return _kept(moved)
 
     def flow(self, i: int, merged: Floats) -> None:
-        """Write the flows of a taint list to the rows of its episodes in the merged sample."""
+        """Write the flows of a taint list to its episodes' rows of `merged`, shape (merged episodes, sites)."""
         kept = self.episode >= 0
         merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
 

@@ -100,7 +100,7 @@ def unpacked_list(name: str, arrays: Mapping[str, NDArray[Any]], width: int) -> 
 
 
 def packed_table(name: str, table: Floats) -> Arrays:
-    """Return the arrays of a table that may hold NaN."""
+    """Return the arrays of a table, shape (cells, sites), that may contain NaN."""
     seen = ~np.isnan(table)
     values = np.where(seen, table, 0.0).ravel()
     arrays = _stacked(name, [_packed(values, np.zeros(values.size, np.int64), FINE)])
@@ -108,7 +108,7 @@ def packed_table(name: str, table: Floats) -> Arrays:
 
 
 def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
-    """Return the table of these arrays."""
+    """Return the table of these arrays, shape (cells, sites)."""
     seen = arrays[f"{name}.seen"]
     (column,) = _columns(name, arrays)
     values, _ = _unpacked(column, np.zeros(seen.size, np.int64), FINE)
@@ -169,7 +169,7 @@ def _values(signs: Signs, code: Ints) -> Floats:
 
 
 def narrowed(whole: Ints) -> NDArray[Any]:
-    """Return whole numbers in the smallest type that holds them."""
+    """Return whole numbers, in any shape, as the smallest sufficient type."""
     kinds = (np.int8, np.int16, np.int32, np.int64)
     low, high = whole.min(initial=0), whole.max(initial=0)
     return whole.astype(next(k for k in kinds if np.iinfo(k).min <= low and high <= np.iinfo(k).max))

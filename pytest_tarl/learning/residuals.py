@@ -86,7 +86,7 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, 0 if they are no larger than their error."""
+    """Return the values, 0 if not larger than their error; all of the same shape."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 

@@ -23,7 +23,7 @@ AT_ONCE = 2_000  # shuffles drawn together, which take a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
-    """Return the least and the largest shift between the groups that a permutation test at `risk` does not reject."""
+    """Return the least and the largest shift that a permutation test at `risk` does not reject; inputs (episodes,)."""
     difference = float(offline.mean() - online.mean())
     unit = float(np.ptp(offline) + np.ptp(online))  # beyond this shift, the groups do not overlap
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):

@@ -75,7 +75,7 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
 
 
 def total_reward(reward: Floats) -> float:
-    """Return the total reward of an episode; exactly 0 if its rewards cancel out."""
+    """Return the sum of an episode's rewards, shape (steps,); exactly 0 if they cancel out."""
     total, size = float(np.add.reduce(reward)), float(np.add.reduce(np.abs(reward)))
     return total if abs(total) > CANCELLED * size else 0.0
 

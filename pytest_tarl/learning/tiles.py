@@ -96,7 +96,7 @@ def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints
     start, end, weight = state[inside], next_state[inside], gamma * count[inside]
 
     def spread(values: Floats) -> Floats:
-        """Add a number per state to all of its tiles."""
+        """Add a number per state, shape (states,), to all of its tiles; shape (weights,)."""
         return sum_by(of.ravel(), np.repeat(values, grids), size)
 
     def system(weights: Floats) -> Floats:

@@ -72,7 +72,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 
 
 def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
-    """Return the best approximate solution of system(x) = right found by biconjugate gradients from x = right."""
+    """Return the best solution of system(x) = right found by biconjugate gradients, shape (states,)."""
     best = solution = right.copy()
     shadow = residual = right - system(solution)
     direction = residual.copy()

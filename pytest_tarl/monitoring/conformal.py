@@ -85,7 +85,7 @@ def _counted(found: NDArray[np.bool_]) -> Ints:
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:
-    """Return the pool with these scores added."""
+    """Return the pool, shape (scores, BINS), with the scores in `bins`, shape (missions, scores), added."""
     score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
     has = bins >= 0
     added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)

@@ -17,7 +17,8 @@ from pytest_tarl.learning.tables import Floats
 def adjusted(log_peak: NDArray[np.float64]) -> Floats:
     """Return log2 of the adjusted running maximum, (x - 1 - ln x) / ln² x, from log2 of x, which is at least 0.
 
-    This is the mean of the adjusters k·x^(1-k) over k in (0, 1): an adjuster F has ∫ F(x)/x² dx ≤ 1 over [1, ∞).
+    Input and result have the same shape. This is the mean of the adjusters k·x^(1-k) over k in (0, 1): an adjuster F
+    has ∫ F(x)/x² dx ≤ 1 over [1, ∞).
     """
     natural = np.asarray(log_peak) * np.log(2.0)
     small = np.minimum(natural, 30.0)
@@ -29,7 +30,7 @@ def adjusted(log_peak: NDArray[np.float64]) -> Floats:
 
 
 def chosen(log_evidence: NDArray[np.float64], alpha: float) -> NDArray[np.bool_]:
-    """Return which hypotheses e-BH rejects at the rate α of false discoveries; input is log2 of e-values."""
+    """Return which hypotheses e-BH rejects at the false discovery rate α, from log2 of e-values; both (cells,)."""
     count = len(log_evidence)
     if not count:
         return np.zeros(0, bool)

@@ -130,7 +130,7 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 
 
 def shares(stated: int, scores: int) -> Floats:
-    """Return each process's share of α: half for the bounds, if any, the rest in equal parts for missions and cells."""
+    """Return the shares of α, shape (processes,): half for bounds, if any, the rest for missions and cells."""
     cells = scores - len(WHOLE)
     rest = 0.5 if stated else 1.0
     parts = [(stated, 0.5), (len(WHOLE), rest / 2 if cells else rest), (cells, rest / 2)]

@@ -68,7 +68,7 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the total weight of restarts after `age` observations: 1 for none, then ½·age^(-1/8)."""
+    """Return the weight of all restarts after `age` observations, same shape: 1 for none, then ½·age^(-1/8)."""
     root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
     return np.where(age > 0, 0.5 / root, 1.0)
 

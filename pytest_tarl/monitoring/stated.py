@@ -28,7 +28,7 @@ class Bound:
     high: float = 1.0
 
     def share(self, value: NDArray[np.float64] | float) -> Floats:
-        """Scale values to the range, 0 to 1; clip values outside."""
+        """Scale values of any shape to 0 to 1 over the range; clip values outside."""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 

@@ -124,7 +124,7 @@ def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
 
 
 def packed(column: Ints | Floats) -> str:
-    """Return a column as text: base64 of its little-endian bytes."""
+    """Return a column, shape (rows,), as text: base64 of its little-endian bytes."""
     little = column.astype(column.dtype.newbyteorder("<"))
     return base64.b64encode(little.tobytes()).decode()
 

@@ -25,7 +25,7 @@ class Purse:
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
-        """Return the trials of a phase; pass them to `settle` afterwards."""
+        """Return the trials of a phase, which raise BudgetSpentError at its end; pass them to `settle` afterwards."""
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)
 
