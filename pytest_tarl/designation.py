@@ -14,11 +14,12 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.formulas.declared import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
 from pytest_tarl.formulas.said import NOTHING_SAID, Said
 from pytest_tarl.options import number_within
+from pytest_tarl.promises import must_hold
 from pytest_tarl.sensors import Sensor, as_number
 
 MARKER_ARGUMENTS = (
     *("nodes", "sensors", "drifts", "episodes", "min_success", "confidence", "total_range", "tolerance"),
-    *("judge", "monitor"),
+    *("judge", "monitor", "must_hold"),
     *ARGUMENTS,
 )
 
@@ -44,6 +45,9 @@ class Designation:
         None  # computes the rewards of a bag's missions; or a class of such functions
     )
     requirements: Requirements = NOTHING_REQUIRED
+    must_hold: Mapping[str, tuple[Any, ...]] = field(
+        default_factory=dict
+    )  # by direction of a space: the two ends of a range, or options, within which the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 
@@ -64,10 +68,11 @@ def designation(
             hint = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(MARKER_ARGUMENTS)}."
             raise SettingsError(f"{where}: @pytest.mark.tarl has no argument {name!r}; {hint}")
     sensors = _sensors(where, arguments.get("sensors", ()))
+    drifts = _drifts(where, arguments.get("drifts", {}))
     return Designation(
         nodes=_nodes(where, arguments.get("nodes", ())),
         sensors=sensors,
-        drifts=_drifts(where, arguments.get("drifts", {})),
+        drifts=drifts,
         episodes=number_within(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
         min_success=number_within(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
         confidence=_confidence(where, arguments),
@@ -76,6 +81,7 @@ def designation(
         judge=_judge(where, arguments.get("judge")),
         monitor=_monitor(where, arguments.get("monitor")),
         requirements=requirements(where, arguments, sensors, said),
+        must_hold=must_hold(where, arguments.get("must_hold", {}), drifts),
     )
 
 

@@ -53,6 +53,18 @@ FLAGS = (
         asks=True,
         metavar="NAME",
     ),
+    Flag(
+        "--tarl-stress",
+        "stress mode: find how far each direction of a drift space may change before the guarantee fails",
+        asks=True,
+    ),
+    Flag(
+        "--tarl-stress-budget",
+        "limit of --tarl-stress per test: a number of episodes (default 600)",
+        metavar="N",
+        type=int,
+        default=600,
+    ),
     Flag("--tarl-seed", "seed of all random numbers (default 0)", metavar="N", type=int, default=0),
     Flag(
         "--tarl-episodes",

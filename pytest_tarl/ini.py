@@ -20,13 +20,13 @@ SWITCHES = {
     "off": False,
     "0": False,
 }
-MODES = ("record", "online", "repair")
+MODES = ("record", "online", "repair", "stress")
 # Options of some modes only: runs in other modes ignore them in the ini file
 WITHIN: Mapping[str, tuple[str, ...]] = {
-    "drift": ("record", "online"),
+    "drift": ("record", "online", "stress"),
     "search": ("repair",),
     "localize": ("repair",),
-    "strict": ("online",),
+    "strict": ("online", "stress"),
     "holm": ("online",),
     "log": ("online",),
     "bag": ("online",),

@@ -29,6 +29,8 @@ from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import guarantees
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
+from pytest_tarl.stressing.delivering import deliver
+from pytest_tarl.stressing.search import Request
 from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis, analyse
 
@@ -68,6 +70,8 @@ class Mission:
         Raise TarlError if the test cannot be recorded or compared.
         """
         fixture = None if self.options.mode == "record" else self._fixture()
+        if fixture is not None and self.options.mode == "stress":
+            return self._stress(rollout_with, fixture)
         analysis = self._analysis()
         sites = plan(analysis)
         positions = {self.root / path: at for path, at in sites.positions.items()}
@@ -244,6 +248,14 @@ class Mission:
         told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
         name = f"{slug(self.test)}-{slug(self.drift or 'online')}"
         return Compared(name, self.root, self.width, told, online, episodes, interrupted)
+
+    def _stress(self, rollout_with: RolloutWith, fixture: Fixture) -> Account:
+        sensors = self._sensors(rollout_with, fixture)
+        rollout = rollout_with(Instruments(), sensors)
+        request = Request(rollout, fixture, self.designation, self.options, self.drift or "", self.progress)
+        self._ignore()
+        found = deliver(request, self.root)
+        return Account(found.lines, found.problem, interrupted=found.interrupted)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
         """Return a note if a scenario replaces the design instead of changing it."""

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from pytest_tarl.errors import SettingsError
 
-Mode = Literal["plain", "record", "online", "repair"]
+Mode = Literal["plain", "record", "online", "repair", "stress"]
 SEARCHES = ("sweep", "halving", "epsilon-greedy")
 EDITS = ("auto", "use", "definition")
 RANKINGS = ("repair", "full")
@@ -46,6 +46,7 @@ class Options:
     holm: bool = False  # whether to correct verdicts over all tests of the run
     comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
+    stress_budget: int = 600  # limit of a stress run, in episodes
 
     ONLINE_EPISODES = 40
     LOOKS = 3
@@ -104,7 +105,8 @@ def options(given: Mapping[str, Any]) -> Options:
     if given["looks"] is not None:
         number_within("--tarl-looks", "it", given["looks"], int, 1, 5)
     budget = _budget(str(given["budget"]))
-    mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
+    modes: tuple[Mode, ...] = ("record", "stress", "repair", "online")
+    mode = next(one for one in modes if given[one] or one == "online")
     return Options(
         mode=mode,
         seed=given["seed"],
@@ -126,12 +128,17 @@ def options(given: Mapping[str, Any]) -> Options:
         log=_log(given),
         holm=given["holm"],
         bags=_bags(given),
+        stress_budget=number_within(
+            "--tarl-stress-budget", "it", given["stress-budget"], int, 32, MOST_EPISODES
+        ),
     )
 
 
 def _check_modes(given: Mapping[str, Any]) -> None:
     """Raise SettingsError for flags that conflict or need another flag."""
-    if not (given["record"] or given["online"] or given["repair"]):
+    if given["stress"]:
+        _check_stress(given)
+    elif not (given["record"] or given["online"] or given["repair"]):
         stray = next(
             (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
             "drift",
@@ -149,6 +156,20 @@ def _check_modes(given: Mapping[str, Any]) -> None:
             "--tarl-holm and --tarl-repair are two runs: verdicts are corrected after all tests, but a repair is "
             "searched during its test. Compare with --tarl-holm first, then repair the degraded tests."
         )
+
+
+def _check_stress(given: Mapping[str, Any]) -> None:
+    """Raise SettingsError for flags of other modes beside --tarl-stress."""
+    other = next((name for name in ("record", "online", "repair") if given[name]), None)
+    if other is not None:
+        raise SettingsError(
+            f"--tarl-stress and --tarl-{other} are two runs: stress the test in one of its own."
+        )
+    stray = next((name for name in ("search", "localize", "log", "bag", "holm") if given[name]), None)
+    if stray is not None:
+        raise SettingsError(f"--tarl-{stray} needs --tarl-online: remove it from the stress run.")
+    if given["ros"] == "real":
+        raise SettingsError("--tarl-stress needs the embedded ROS: remove --tarl-ros=real.")
 
 
 def _budget(text: str) -> tuple[int, float | None]:

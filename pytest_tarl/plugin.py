@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MARKER = (
     "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, confidence=None, total_range=None, tolerance=None, "
-    "judge=None, monitor=None, requires=[], signals=[], reward=None): "
+    "judge=None, monitor=None, must_hold={}, requires=[], signals=[], reward=None): "
     "a simulation test that TARL records and compares."
 )
 

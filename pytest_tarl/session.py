@@ -27,6 +27,7 @@ from pytest_tarl.repeating import (
 )
 from pytest_tarl.scenarios import scenario, without_drift
 from pytest_tarl.sensors import Sensor
+from pytest_tarl.spaces import Space
 from pytest_tarl.summary import Summary, attach
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ class TarlSession:
             names = []  # the world of recorded missions has no name
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
+        if self.options.mode == "stress":
+            names = [name for name in names if _is_space(drifts[name])]
         if "tarl_drift" in metafunc.fixturenames:
             metafunc.parametrize("tarl_drift", names or [None], ids=names or ["online"], indirect=True)
 
@@ -85,6 +88,8 @@ class TarlSession:
         if self.options.drift is not None:
             self._check_drift(marked)
             marked = [item for item in marked if self._chosen(item)]
+        if self.options.mode == "stress":
+            marked = self._spaced(marked)
         if self.options.holm:
             self.options = replace(self.options, comparisons=max(len(marked), 1))
         kept = set(marked)
@@ -92,6 +97,16 @@ class TarlSession:
         if others:
             config.hook.pytest_deselected(items=others)
             items[:] = marked
+
+    def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
+        """Return the items with a space. Raise UsageError if there is none."""
+        found = [item for item in marked if _has_space(item)]
+        if marked and not found:
+            raise pytest.UsageError(
+                "No test declares a space of drifts, which --tarl-stress searches: declare one in the marker, such as "
+                'drifts={"world": Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0))}.'
+            )
+        return found
 
     def _chosen(self, item: pytest.Item) -> bool:
         """Return whether an item has the selected scenario, or would have it with the fixture `tarl_drift`."""
@@ -314,6 +329,21 @@ def _drift_names(item: pytest.Item) -> list[str]:
     except SettingsError as error:
         raise pytest.UsageError(str(error)) from None
     return list(marked.drifts) if marked else []
+
+
+def _is_space(drift: object) -> bool:
+    return isinstance(getattr(drift, "value", None), Space)
+
+
+def _has_space(item: pytest.Item) -> bool:
+    """Return whether an item's scenario is a space, or would be if it took the fixture."""
+    marker = item.get_closest_marker("tarl")
+    drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
+    if not isinstance(drifts, Mapping):
+        return True  # an invalid marker is reported when the test runs
+    if _takes_drift(item):
+        return _is_space(drifts.get(scenario(item)))
+    return any(map(_is_space, drifts.values()))
 
 
 def _takes_drift(item: pytest.Item) -> bool:

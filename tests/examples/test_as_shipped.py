@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -14,7 +16,7 @@ from tests.examples.driving import EXAMPLES
 FORMULAS = sys.version_info < (3, 13) and find_spec("rtamt") is not None
 
 
-@pytest.mark.parametrize(("example", "tests"), [("shuttle", 3), ("line_follower", 1), ("quadrotor", 1)])
+@pytest.mark.parametrize(("example", "tests"), [("shuttle", 4), ("line_follower", 1), ("quadrotor", 1)])
 def test_an_example_passes_without_flags_in_its_own_folder(example: str, tests: int) -> None:
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"],
@@ -36,3 +38,19 @@ def test_the_swapped_node_differs_by_the_order_of_two_lines_only() -> None:
     swapped = re.sub(r"( +err = .*\n)( +vel = .*\n)", r"\2\1", here)
     assert swapped != here
     assert swapped == there
+
+
+def test_the_shuttle_has_limits(tmp_path: Path) -> None:
+    copy = tmp_path / "shuttle"
+    shutil.copytree(EXAMPLES / "shuttle", copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
+    for flags in (("--tarl-record", "--tarl-episodes=10"), ("--tarl-stress", "--tarl-stress-budget=40")):
+        run = subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_limits.py", *flags],
+            cwd=copy,
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert run.returncode == 0, run.stdout + run.stderr
+    assert re.search(r"stress, \d+ episodes\n  guarantee .*\n  mud  ", run.stdout)
+    assert "The budget of 40 episodes was used up" in run.stdout

@@ -34,6 +34,8 @@ FLAGS: dict[str, Any] = {
     "localize": None,
     "looks": None,
     "strict": False,
+    "stress": False,
+    "stress-budget": 600,
 }
 
 

@@ -1,0 +1,1 @@
+"""`--tarl-stress`: the nearest drifts of a space under which the guarantee of a recording fails."""

@@ -1,0 +1,95 @@
+"""Run the episodes of drifts, within a budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.spaces import Point, Space
+from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, refuted
+
+SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
+FRESH = (16, 48)  # episodes on fresh seeds after which a failure is confirmed or not
+
+Progress = Callable[[int, int, str], None]
+
+
+class BudgetSpentError(Exception):
+    """The budget does not suffice for the next episodes."""
+
+
+@dataclass
+class Evaluator:
+    """Run drifts of the space `drift` on pools of common seeds, and remember the outcomes; `spent` counts episodes."""
+
+    rollout: Rollout
+    space: Space
+    drift: str
+    guarantee: Guarantee
+    seed: int
+    budget: int
+    progress: Progress
+    spent: int = 0
+    _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
+
+    def examine(self, point: Point, most: int) -> Evidence:
+        """Return the evidence at a point after at most so many episodes; end early once it is decided.
+
+        Raise BudgetSpentError before an episode that the budget does not cover.
+        """
+        found = self._evidence(point, SIZES[0])
+        for size in SIZES[1:]:
+            if found.result != "open" or size > most:
+                break
+            found = self._evidence(point, size)
+        return found
+
+    def confirm(self, point: Point, pool: str, risk: float) -> bool:
+        """Return whether the fresh seeds of a pool show at `risk` that the guarantee fails, paired with nominal.
+
+        A pool may serve several points if none of them was chosen by its outcomes.
+        """
+        for size in FRESH:
+            outcomes = self._of(pool, point, size)
+            if refuted(self.guarantee, outcomes, self._of(pool, self.space.nominal, size), risk / len(FRESH)):
+                return True
+        return False
+
+    def _evidence(self, point: Point, count: int) -> Evidence:
+        outcomes = self.common(point, count)
+        return examined(self.guarantee, outcomes, self.common(self.space.nominal, count))
+
+    def common(self, point: Point, count: int) -> Sequence[Outcome]:
+        """Return the outcomes on the search's first seeds. Raise BudgetSpentError if the budget does not cover them."""
+        return self._of("search", point, count)
+
+    def _of(self, pool: str, point: Point, count: int) -> Sequence[Outcome]:
+        known = self._known.setdefault((pool, *point.values()), [])
+        if len(known) < count:
+            seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", count)
+            known += self._run(point, seeds[len(known) :])
+        return known[:count]
+
+    def _run(self, point: Point, seeds: Sequence[int]) -> list[Outcome]:
+        if self.spent + len(seeds) > self.budget:
+            raise BudgetSpentError
+        plans = (EpisodePlan(seed, self.drift, point=point) for seed in seeds)
+        outcomes = []
+        for pending in in_order(self.rollout, plans):
+            outcomes.append(outcome(pending.result()))
+            self.spent += 1
+            self.progress(self.spent, self.budget, f"{self.drift} stress")
+        return outcomes
+
+
+def outcome(run: EpisodeRun) -> Outcome:
+    """Return the outcome of an episode; a node that never waits has failed. Raise RecordingError for a broken test."""
+    if run.broken and not run.stuck:
+        where = ", ".join(f"{name}={number:g}" for name, number in (run.plan.point or {}).items())
+        raise RecordingError(
+            f"An episode at {where} (seed {run.plan.seed}) failed outside the mission:\n{run.broken}"
+        )
+    return Outcome(run.passed and not run.stuck, float(run.trace.reward.sum()))

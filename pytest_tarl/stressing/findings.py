@@ -1,0 +1,115 @@
+"""What a stress run found: margins along rays, boundaries, failing combinations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pytest_tarl.spaces import Point, Space
+from pytest_tarl.stressing.guarantee import Evidence, Guarantee
+from pytest_tarl.stressing.rays import Ray, distance
+
+
+@dataclass
+class Curve:
+    """The evidence along a ray, which grows during a search.
+
+    `confirmed` is the nearest t at which fresh seeds showed a failure; `rejected` are those at which they did not.
+    """
+
+    ray: Ray
+    evidence: dict[float, Evidence] = field(default_factory=dict)
+    confirmed: float | None = None
+    rejected: tuple[float, ...] = ()
+    swept: bool = False  # whether the coarse sweep is complete
+
+    @property
+    def failing(self) -> list[float]:
+        """Return the t of failing points, ascending."""
+        return sorted(t for t, one in self.evidence.items() if one.failing)
+
+    @property
+    def bracket(self) -> tuple[float, float] | None:
+        """Return the nearest failing t after the farthest holding one before it; None without a failing one."""
+        if not self.failing:
+            return None
+        far = self.failing[0]
+        return max((t for t in self.evidence if t < far), default=0.0), far
+
+    @property
+    def boundary(self) -> Boundary | None:
+        """Return the boundary; None unless fresh seeds confirmed a failure."""
+        if self.confirmed is None or self.bracket is None:
+            return None
+        near, far = self.bracket
+        before = self.evidence[near].margin if near in self.evidence else 1.0
+        share = before / (before - self.evidence[far].margin) if before > 0.0 else 0.0
+        open_from = min(
+            (t for t, one in self.evidence.items() if t <= self.confirmed and one.result != "holds"),
+            default=far,
+        )
+        shown = max(
+            (t for t, one in self.evidence.items() if t < open_from and one.result == "holds"), default=0.0
+        )
+        at = near + (far - near) * share if self.ray.continuous else far
+        return Boundary(min(at, self.confirmed), min(shown, at), self.confirmed, self.monotone)
+
+    @property
+    def monotone(self) -> bool:
+        """Return whether no measured point beyond the nearest failing one holds."""
+        nearest = self.failing[0] if self.failing else 1.0
+        return not any(t > nearest and not one.failing for t, one in self.evidence.items())
+
+
+@dataclass(frozen=True, slots=True)
+class Boundary:
+    """Where a guarantee begins to fail along a ray: the estimate `at`, held up to `near`, shown to fail at `far`."""
+
+    at: float
+    near: float
+    far: float
+    monotone: bool
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A drift under which the guarantee fails, confirmed on fresh seeds."""
+
+    point: Point
+    distance: float
+    names: tuple[str, ...]  # the directions that are not nominal
+
+
+@dataclass(frozen=True)
+class Stress:
+    """The result of a stress run of one test and space."""
+
+    test: str
+    drift: str
+    seed: int
+    space: Space
+    guarantee: Guarantee
+    budget: int
+    episodes: int
+    curves: tuple[Curve, ...]
+    combinations: tuple[Failure, ...] = ()
+    must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    tried: int = 0  # combinations
+    ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
+
+    @property
+    def failures(self) -> tuple[Failure, ...]:
+        """Return all confirmed failing drifts, the nearest first."""
+        single = [
+            failure(self.space, curve.ray.point(curve.confirmed))
+            for curve in self.curves
+            if curve.confirmed is not None
+        ]
+        return tuple(sorted([*single, *self.combinations], key=lambda one: (one.distance, one.names)))
+
+
+def failure(space: Space, point: Point) -> Failure:
+    """Return a failing drift."""
+    names = tuple(name for name, number in point.items() if number != space.nominal[name])
+    return Failure(point, distance(space, point), names)

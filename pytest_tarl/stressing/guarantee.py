@@ -1,0 +1,114 @@
+"""What a recording guarantees, and what the episodes of a drift say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+from typing import Literal
+
+from pytest_tarl.designation import Designation
+from pytest_tarl.learning.bounds import Range, loss_between, mean_of, rate
+from pytest_tarl.learning.drift import tolerated
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.guarantees import CONFIDENCE
+
+LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
+SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it guarantees nothing
+
+Answer = Literal["fails", "holds", "open"]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The result of one episode."""
+
+    passed: bool
+    total: float
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What episodes at a drift say. `margin` is 1 as designed, and 0 where the guarantee is just met."""
+
+    result: Answer
+    margin: float
+    episodes: int
+    passed: int
+    loss: float  # reward per episode, against the nominal drift with the same seeds
+
+    @property
+    def failing(self) -> bool:
+        """Return whether the guarantee fails here as far as is known."""
+        return self.result == "fails" or (self.result == "open" and self.margin < 0.0)
+
+
+@dataclass(frozen=True)
+class Guarantee:
+    """The guaranteed success rate, and the tolerated loss of reward per episode; `totals` are the recorded rewards."""
+
+    rate: float
+    tolerance: float
+    totals: tuple[float, ...]
+    share: float  # of the recorded episodes that passed
+    declared: Range | None = None
+
+    def margin(self, passed: float, loss: float) -> float:
+        """Return how far a share of passed episodes and a loss are from breaking the guarantee, in designed units."""
+        room = max(self.share - self.rate, 1e-9)
+        of_rate = (passed - self.rate) / room
+        of_loss = 1.0 - loss / self.tolerance if self.tolerance > 0 else (1.0 if loss <= 0.0 else -1.0)
+        return min(of_rate, of_loss, 1.0)
+
+
+def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
+    """Return what the recording guarantees: its bound of the success rate, at most min_success, and the loss δ."""
+    sample = fixture.sample
+    passed, episodes = int(sample.passed.sum()), sample.episodes
+    shown = rate(passed, episodes, CONFIDENCE).low
+    return Guarantee(
+        rate=min(designation.min_success, shown),
+        tolerance=tolerated(sample, designation.tolerance),
+        totals=tuple(sample.total.tolist()),
+        share=passed / episodes,
+        declared=Range(*designation.total_range) if designation.total_range else None,
+    )
+
+
+def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> Evidence:
+    """Return what outcomes say, paired by seed with those of the nominal drift; approximate, to guide the search."""
+    count, passed = len(outcomes), sum(one.passed for one in outcomes)
+    losses = _losses(outcomes, nominal)
+    loss = fmean(losses)
+    bound = mean_of(losses, 1.0 - SEARCH_RISK)
+    failing = rate(passed, count, 1.0 - SEARCH_RISK).high < given.rate or bound.low > given.tolerance
+    holding = count >= LEAST and passed / count >= given.rate and bound.high < given.tolerance
+    answer: Answer = "fails" if failing else "holds" if holding else "open"
+    return Evidence(answer, given.margin(passed / count, loss), count, passed, loss)
+
+
+def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:
+    """Return whether fresh episodes show at `risk` that the guarantee fails: too few pass, or too much is lost.
+
+    The loss is paired by seed with the nominal drift. Its bound is exact if the marker declares total_range, and
+    Student's otherwise.
+    """
+    count, passed = len(outcomes), sum(one.passed for one in outcomes)
+    if rate(passed, count, 1.0 - risk / 2).high < given.rate:
+        return True
+    ends = given.declared
+    differences = None if ends is None else Range(ends.low - ends.high, ends.high - ends.low)
+    return mean_of(_losses(outcomes, nominal), 1.0 - risk / 2, differences).low > given.tolerance
+
+
+def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
+    """Return whether episodes show at `risk` that the guarantee fails against the recorded rewards."""
+    count, passed = len(outcomes), sum(one.passed for one in outcomes)
+    if rate(passed, count, 1.0 - risk / 2).high < given.rate:
+        return True
+    totals = [one.total for one in outcomes]
+    return loss_between(given.totals, totals, 1.0 - risk / 2, given.declared).low > given.tolerance
+
+
+def _losses(outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> list[float]:
+    return [before.total - after.total for before, after in zip(nominal, outcomes, strict=True)]

@@ -1,0 +1,94 @@
+"""Straight lines through a space, from its nominal point to a farthest one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
+
+SWEEP = (0.25, 0.5, 0.75, 1.0)  # shares of a ray that the coarse sweep looks at
+
+
+@dataclass(frozen=True)
+class Ray:
+    """The points (1 - t) · nominal + t · farthest, t from 0 to 1; `names` are the directions that change."""
+
+    space: Space
+    names: tuple[str, ...]
+    farthest: Point
+    extra: tuple[float, ...] = ()  # further places that the sweep looks at
+
+    @property
+    def continuous(self) -> bool:
+        """Return whether every t is a point; a ray along an option has only its end."""
+        return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Return the t of the coarse sweep, from the far end."""
+        places = {*SWEEP, *self.extra} if self.continuous else {1.0}
+        return tuple(sorted(places, reverse=True))
+
+    @property
+    def length(self) -> float:
+        """Return the distance of the farthest point."""
+        return distance(self.space, self.farthest)
+
+    def point(self, t: float) -> Point:
+        """Return the point at t; options change at any t above 0."""
+        start = self.space.nominal
+        return {
+            name: _between(extent, start[name], self.farthest[name], t)
+            for name, extent in self.space.extents.items()
+        }
+
+    def value(self, t: float) -> float:
+        """Return the number of the ray's only direction at t."""
+        return self.point(t)[self.names[0]]
+
+
+def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
+    """Return the rays along each single direction: both ways for a range, one per option of a choice."""
+    found = []
+    for name, extent in space.extents.items():
+        usual = nominal(extent)
+        ends = range(len(extent.options)) if isinstance(extent, Choice) else (extent.low, extent.high)
+        for end in ends:
+            if end != usual:
+                along = [(one - usual) / (end - usual) for one in _limits(extent, must_hold.get(name, ()))]
+                extra = tuple(t for t in along if 0.0 < t < 1.0)
+                found.append(Ray(space, (name,), {**space.nominal, name: float(end)}, extra))
+    return found
+
+
+def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
+    """Return the ray to the point that has each ray's place in its direction."""
+    space = parts[0][0].space
+    farthest = dict(space.nominal)
+    for ray, t in parts:
+        farthest[ray.names[0]] = ray.value(t)
+    return Ray(space, tuple(ray.names[0] for ray, _ in parts), farthest)
+
+
+def distance(space: Space, point: Point) -> float:
+    """Return a point's Euclidean distance from the nominal one, in units of the declared ranges; an option is 1."""
+    return sqrt(sum(offset(extent, point[name]) ** 2 for name, extent in space.extents.items()))
+
+
+def offset(extent: Span | Choice, number: float) -> float:
+    """Return the distance of a number from the nominal one, in units of the range."""
+    away = abs(number - nominal(extent))
+    return float(away > 0) if isinstance(extent, Choice) else away / (extent.high - extent.low)
+
+
+def _between(extent: Span | Choice, start: float, end: float, t: float) -> float:
+    if isinstance(extent, Choice):
+        return end if t > 0.0 else start
+    return end if t == 1.0 else start + (end - start) * t
+
+
+def _limits(extent: Span | Choice, must_hold: Sequence[Any]) -> Sequence[float]:
+    return [float(one) for one in must_hold] if isinstance(extent, Span) else ()

@@ -1,0 +1,96 @@
+"""Stress one test in one space: all single directions, then their combinations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pytest_tarl.designation import Designation
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.options import Options
+from pytest_tarl.rollout import Rollout
+from pytest_tarl.spaces import Space
+from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
+from pytest_tarl.stressing.combinations import Together, pairs, search
+from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
+from pytest_tarl.stressing.findings import Curve, Stress
+from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
+from pytest_tarl.stressing.rays import rays
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is stressed, and how."""
+
+    rollout: Rollout
+    fixture: Fixture
+    designation: Designation
+    options: Options
+    drift: str
+    progress: Progress
+
+
+def stress(request: Request) -> Stress:
+    """Find the boundary in each direction and in their combinations; Ctrl-C or the budget end the search early.
+
+    Each claim that the guarantee fails is confirmed on fresh seeds; all of them together are wrong with a probability
+    of at most alpha. Raise RecordingError if the test itself is broken.
+    """
+    space: Any = request.designation.drifts[request.drift].value
+    evaluator = _evaluator(request, space)
+    must_hold = {
+        name: limits for name, limits in request.designation.must_hold.items() if name in space.extents
+    }
+    curves = [Curve(ray) for ray in rays(space, must_hold)]
+    share = request.options.alpha / (len(curves) + 2)  # of each ray, of all combinations, and of nominal
+    together = Together(share, curves)
+    ended = ""
+    try:
+        if _nominal_fails(evaluator, share):
+            ended = "nominal"
+        else:
+            along_rays(curves, evaluator, share)
+            pairs(evaluator, together)
+            search(evaluator, together)
+    except BudgetSpentError:
+        ended = "budget"
+    except KeyboardInterrupt:
+        ended = "interrupted"
+    return Stress(
+        test=request.fixture.test,
+        drift=request.drift,
+        seed=request.options.seed,
+        space=space,
+        guarantee=evaluator.guarantee,
+        budget=evaluator.budget,
+        episodes=evaluator.spent,
+        curves=tuple(curves),
+        combinations=tuple(together.found),
+        must_hold=must_hold,
+        tried=together.tried,
+        ended=ended,
+    )
+
+
+def _evaluator(request: Request, space: Space) -> Evaluator:
+    given = guarantee(request.fixture, request.designation)
+    options = request.options
+    return Evaluator(
+        request.rollout, space, request.drift, given, options.seed, options.stress_budget, request.progress
+    )
+
+
+def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
+    """Return whether the guarantee fails in the nominal world, which then is not the recorded one."""
+    outcomes = evaluator.common(evaluator.space.nominal, COARSE)
+    return unlike_recorded(evaluator.guarantee, outcomes, risk)
+
+
+def along_rays(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> None:
+    """Find the boundary along each ray; each is confirmed at a risk of `share`. Raise BudgetSpentError."""
+    for curve in curves:
+        sweep(curve, evaluator)
+    for curve in curves:
+        bisect(curve, evaluator)
+        confirm(curve, evaluator, share)

@@ -1,0 +1,157 @@
+"""The result of a stress run in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+from typing import Any
+
+from pytest_tarl.spaces import Choice, Point, Span, nominal, value_of
+from pytest_tarl.stressing.findings import Boundary, Curve, Failure, Stress
+from pytest_tarl.stressing.rays import Ray
+
+MOST_SHOWN = 5  # combinations
+ROUNDING = 1e-9  # of numbers on a ray
+
+ENDED = {
+    "budget": "The budget of {budget} episodes was used up before the search ended: raise --tarl-stress-budget.",
+    "interrupted": "Interrupted after {episodes} episodes: this is what was known by then.",
+}
+
+
+def lines(stress: Stress) -> Iterator[str]:
+    """Yield the report of the terminal."""
+    yield f"{stress.test}[{stress.drift}]: stress, {stress.episodes} episodes"
+    yield f"  guarantee  {guarantee_words(stress)}"
+    if stress.ended == "nominal":
+        yield f"  nominal    {nominal_words()}"
+        return
+    for name, sentences in directions(stress):
+        for number, sentence in enumerate(sentences):
+            yield f"  {name if not number else '':10} {sentence}"
+    for number, sentence in enumerate(together(stress)):
+        yield f"  {'together' if not number else '':10} {sentence}"
+    if stress.ended in ENDED:
+        yield f"  {ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)}"
+
+
+def guarantee_words(stress: Stress) -> str:
+    """Return what must hold."""
+    given = stress.guarantee
+    return (
+        f"At least {100 * given.rate:.4g} % of the episodes pass, and the mean reward is at most "
+        f"{given.tolerance:.3g} below the recorded one."
+    )
+
+
+def nominal_words() -> str:
+    """Return what to do if the guarantee fails without any drift."""
+    return (
+        "The guarantee fails at the nominal values already, so the nominal world is not the recorded one: correct the "
+        "nominal values, or record again with `pytest --tarl-record`."
+    )
+
+
+def directions(stress: Stress) -> Iterator[tuple[str, list[str]]]:
+    """Yield each direction with its sentences."""
+    for name, curves in groupby(stress.curves, key=lambda curve: curve.ray.names[0]):
+        own = list(curves)
+        extent = stress.space.extents[name]
+        if isinstance(extent, Choice):
+            yield name, [_option(curve) for curve in own]
+        else:
+            yield name, _range(name, extent, own)
+
+
+def together(stress: Stress) -> Iterator[str]:
+    """Yield sentences on combinations, the nearest first."""
+    found = sorted(stress.combinations, key=lambda one: (one.distance, one.names))
+    for one in found[:MOST_SHOWN]:
+        yield f"Fails with {_point(stress, one)} (distance {one.distance:.2g}), although each alone holds."
+    if len(found) > MOST_SHOWN:
+        yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
+    if not found and stress.tried:
+        yield f"No combination of directions was found to fail before each alone does ({stress.tried} tried)."
+
+
+def broken_promises(stress: Stress) -> list[str]:
+    """Return a sentence for each direction that fails inside the range of `must_hold`."""
+    found = []
+    for curve in stress.curves:
+        name = curve.ray.names[0]
+        limits = stress.must_hold.get(name)
+        if curve.confirmed is None or limits is None:
+            continue
+        number = curve.ray.value(curve.confirmed)
+        value = value_of(stress.space.extents[name], number)
+        if isinstance(stress.space.extents[name], Choice):
+            if value in limits:
+                found.append(f"The guarantee fails with {name}={value!r}, but must_hold includes {value!r}.")
+        elif limits[0] - ROUNDING <= number <= limits[1] + ROUNDING:
+            found.append(
+                f"The guarantee fails at {name}={number:.3g}, but must_hold is {limits[0]:g} to {limits[1]:g}."
+            )
+    return found
+
+
+def shown(extent: Span | Choice, number: float) -> str:
+    """Return the text of a direction's value."""
+    value = value_of(extent, number)
+    return f"{value:.3g}" if isinstance(value, float) else repr(value)
+
+
+def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
+    if all(not curve.swept for curve in curves):
+        return ["Not examined."]
+    whole = [curve for curve in curves if curve.swept]
+    if not any(curve.failing for curve in whole) and len(whole) == len(curves):
+        places = sum(len(curve.evidence) for curve in curves)
+        return [
+            f"Not affected by {name}: no failure found from {extent.low:.3g} to {extent.high:.3g} ({places} values)."
+        ]
+    return [_side(name, curve) for curve in curves]
+
+
+def _side(name: str, curve: Curve) -> str:
+    """Return the sentence of one way from nominal along a range."""
+    ray, boundary = curve.ray, curve.boundary
+    sign = "≤" if ray.value(1.0) > nominal(ray.space.extents[name]) else "≥"
+    if boundary is not None:
+        return f"No failure found while {name} {sign} {_number(ray, boundary.at)} ({_uncertainty(ray, boundary)})."
+    if curve.failing:
+        return (
+            f"No failure confirmed while {name} {sign} {_number(ray, 1.0)}; suspicious from {name} = "
+            f"{_number(ray, curve.failing[0])} on."
+        )
+    if not curve.swept:
+        return f"Not examined from {_number(ray, 0.0)} to {_number(ray, 1.0)}."
+    return f"No failure found while {name} {sign} {_number(ray, 1.0)}, the end of the range."
+
+
+def _uncertainty(ray: Ray, boundary: Boundary) -> str:
+    low, high = sorted((ray.value(boundary.near), ray.value(boundary.far)))
+    monotone = "monotone: checked" if boundary.monotone else "not monotone: it holds again beyond"
+    return f"boundary {low:.3g} to {high:.3g}, {monotone}"
+
+
+def _option(curve: Curve) -> str:
+    name = curve.ray.names[0]
+    option = value_of(curve.ray.space.extents[name], curve.ray.farthest[name])
+    if curve.confirmed is not None:
+        return f"Fails with {name}={option!r}."
+    if curve.failing:
+        return f"No failure confirmed with {name}={option!r}, which is suspicious."
+    return f"{'No failure found' if curve.swept else 'Not examined'} with {name}={option!r}."
+
+
+def _point(stress: Stress, one: Failure) -> str:
+    return " and ".join(f"{name}={shown(stress.space.extents[name], one.point[name])}" for name in one.names)
+
+
+def _number(ray: Ray, t: float) -> str:
+    return f"{ray.value(t):.3g}"
+
+
+def point_values(stress: Stress, point: Point) -> dict[str, Any]:
+    """Return the values of a point by direction: numbers, or options."""
+    return {name: value_of(extent, point[name]) for name, extent in stress.space.extents.items()}

@@ -1,0 +1,197 @@
+"""Boundaries and combinations in worlds in which they are known."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import jsonschema
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl import Drift
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import json_result, page, words
+from pytest_tarl.stressing.guarantee import Outcome, examined, refuted
+from pytest_tarl.stressing.rays import distance, rays
+from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
+
+MUD = Drift.range(0.0, 1.0, nominal=1.0)
+SLOPE = Drift.range(-0.5, 0.5, nominal=0.0)
+CAMERA = Drift.choice("up", "down", "left")
+
+
+def noisy(total: float, draws: np.random.Generator, spread: float = 0.2) -> tuple[bool, float]:
+    return True, total + float(draws.normal(0.0, spread))
+
+
+@settings(max_examples=12)
+@given(st.floats(0.1, 0.9), st.integers(0, 1000))
+def test_the_boundary_of_a_lost_reward_is_found(edge: float, seed: int) -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return noisy(
+            10.0 - 0.5 * (1.0 - point["mud"]) / (1.0 - edge), draws
+        )  # loses 0.5, the tolerance, at `edge`
+
+    found = stressed(world, space_of(mud=MUD), seed=seed)
+    boundary = found.curves[0].boundary
+    assert boundary is not None
+    value = found.curves[0].ray.value
+    assert value(boundary.at) == pytest.approx(edge, abs=0.1)
+    assert value(boundary.far) < edge + 0.02
+    assert boundary.near <= boundary.at <= boundary.far
+
+
+@settings(max_examples=12)
+@given(st.floats(0.1, 0.9), st.integers(0, 1000))
+def test_the_boundary_of_failed_missions_is_found(edge: float, seed: int) -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(point["mud"] > edge + draws.normal(0.0, 0.01)), 1.0
+
+    found = stressed(world, space_of(mud=MUD), seed=seed)
+    boundary = found.curves[0].boundary
+    assert boundary is not None
+    assert found.curves[0].ray.value(boundary.at) == pytest.approx(edge, abs=0.03)
+
+
+def test_both_ways_of_a_range_have_boundaries_of_their_own() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return -0.4 < point["slope"] < 0.1, float(draws.normal(1.0, 0.01))
+
+    down, up = stressed(world, space_of(slope=SLOPE)).curves
+    assert down.boundary is not None
+    assert up.boundary is not None
+    assert down.ray.value(down.boundary.at) == pytest.approx(-0.4, abs=0.02)
+    assert up.ray.value(up.boundary.at) == pytest.approx(0.1, abs=0.02)
+
+
+def test_options_are_told_apart() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return point["camera"] != 1.0, 1.0
+
+    found = stressed(world, space_of(camera=CAMERA))
+    told = dict(words.directions(found))
+    assert told["camera"] == ["Fails with camera='down'.", "No failure found with camera='left'."]
+
+
+def test_what_breaks_nothing_is_told() -> None:
+    found = stressed(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD, slope=SLOPE))
+    assert found.failures == ()
+    told = "\n".join(words.lines(found))
+    assert "Not affected by mud: no failure found from 0 to 1 (4 values)." in told
+    assert "No combination of directions was found to fail" in told
+
+
+@pytest.mark.parametrize("spread", [0.1, 1.5])
+def test_chance_alone_hardly_ever_makes_a_boundary(spread: float) -> None:
+    def world(_: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(draws.random() < 0.96), float(draws.normal(10.0, spread))
+
+    found = [stressed(world, space_of(mud=MUD, slope=SLOPE), seed=seed, budget=400) for seed in range(10)]
+    assert sum(bool(one.failures) for one in found) <= 1
+
+
+def test_an_island_of_failures_is_not_called_monotone() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return not 0.4 < point["mud"] < 0.6, float(draws.normal(1.0, 0.01))
+
+    (curve,) = stressed(world, space_of(mud=MUD)).curves
+    assert curve.boundary is not None
+    assert not curve.boundary.monotone
+    assert curve.ray.value(curve.boundary.at) == pytest.approx(0.6, abs=0.02)
+
+
+def test_two_harmless_directions_that_break_it_together_are_found() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool((1.0 - point["mud"]) + abs(point["slope"]) < 1.2), float(draws.normal(1.0, 0.01))
+
+    space = space_of(mud=MUD, slope=SLOPE)
+    found = stressed(world, space, budget=4000)
+    assert all(curve.confirmed is None for curve in found.curves)
+    nearest = found.failures[0]
+    assert nearest.names == ("mud", "slope")
+    # the true distance is 1.2 / √2, or more where slope ends: (0.7, 0.5)
+    assert sqrt(0.7**2 + 0.5**2) * 0.98 <= nearest.distance < sqrt(0.7**2 + 0.5**2) * 1.12
+    assert "although each alone holds" in "\n".join(words.together(found))
+
+
+def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
+    names = ("a", "b", "c", "d")
+
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return point["a"] + point["b"] + point["c"] < 1.5, float(draws.normal(1.0, 0.01))
+
+    space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in names})
+    nearest = stressed(world, space, budget=6000).failures[0]
+    assert nearest.distance < 1.1  # √0.75 at best, √1.25 for the nearest pair
+    assert nearest.point["d"] < 0.2
+
+
+def test_a_budget_ends_the_search_and_keeps_what_is_known() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(point["mud"] > 0.5), 1.0
+
+    whole = stressed(world, space_of(mud=MUD, slope=SLOPE))
+    assert whole.ended == ""
+    for budget in range(32, whole.episodes, 40):
+        found = stressed(world, space_of(mud=MUD, slope=SLOPE), budget=budget)
+        assert (found.ended, found.episodes <= budget) == ("budget", True)
+        jsonschema.validate(json_result.document(found), json_result.schema())
+        assert page.render(found)
+        assert "used up" in list(words.lines(found))[-1]
+
+
+@given(
+    st.floats(0.2, 0.8),
+    st.floats(0.1, 0.4),
+    st.integers(0, 99),
+    st.sampled_from([64, 200, 500]),
+)
+@settings(max_examples=10)
+def test_the_same_seed_gives_the_same_bytes_on_any_number_of_workers(
+    edge: float, tilt: float, seed: int, budget: int
+) -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(point["mud"] > edge), 10.0 - abs(point["slope"]) / tilt + float(draws.normal(0.0, 0.3))
+
+    space = space_of(mud=MUD, slope=SLOPE, camera=CAMERA)
+    one, other = (stressed(world, space, seed=seed, budget=budget) for _ in range(2))
+    assert json_result.text(one) == json_result.text(other)
+    assert page.render(one) == page.render(other)
+    plans = []
+    for workers in (1, 4):
+        evaluator = evaluator_of(world, space, seed=seed)
+        simulated = Simulated(world, workers=workers)
+        evaluator.rollout = simulated
+        evaluator.examine(rays(space, {})[0].point(0.3), 32)
+        plans.append([(plan.seed, plan.point) for plan in simulated.plans])
+    assert plans[0] == plans[1]
+
+
+def test_the_margin_is_one_as_designed_and_zero_where_the_guarantee_is_just_met() -> None:
+    given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
+    assert given_.margin(1.0, 0.0) == 1.0
+    assert given_.margin(1.0, given_.tolerance) == pytest.approx(0.0)
+    assert given_.margin(given_.rate, 0.0) == pytest.approx(0.0)
+    assert given_.margin(0.5, 0.0) < -1.0
+
+
+def test_one_failure_among_few_episodes_refutes_nothing() -> None:
+    given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
+    fine, failed = Outcome(True, 10.0), Outcome(False, 10.0)
+    assert examined(given_, [fine] * 7 + [failed], [fine] * 8).result == "open"
+    assert examined(given_, [fine] * 8, [fine] * 8).result == "holds"
+    assert examined(given_, [failed] * 4, [fine] * 4).result == "fails"
+    assert not refuted(given_, [fine] * 15 + [failed], [fine] * 16, 0.01)
+    assert refuted(given_, [fine] * 4 + [failed] * 12, [fine] * 16, 0.01)
+    assert refuted(given_, [Outcome(True, 9.0)] * 16, [fine] * 16, 0.01)
+    wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, but from a few episodes
+    assert not refuted(given_, wild, [fine] * 16, 0.01)
+
+
+def test_distances_are_in_units_of_the_declared_ranges() -> None:
+    space = space_of(mud=Drift.range(0.0, 4.0, nominal=4.0), slope=SLOPE, camera=CAMERA)
+    assert distance(space, space.nominal) == 0.0
+    assert distance(space, {"mud": 2.0, "slope": 0.0, "camera": 0.0}) == 0.5
+    assert distance(space, {"mud": 4.0, "slope": -0.5, "camera": 2.0}) == sqrt(1.25)

@@ -1,0 +1,166 @@
+"""`pytest --tarl-stress` as users see it: report, files, promises, mistakes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from pytest_tarl import Drift, faults
+from pytest_tarl.drifts import drift
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.promises import must_hold
+from pytest_tarl.stressing import json_result, kept
+from pytest_tarl.stressing.findings import failure
+from tests.plugin.stressing.worlds import space_of
+from tests.plugin.tank import RECORD, changed
+
+STRESS = ("--tarl-stress", "--tarl-stress-budget=320")
+SPACE = (
+    '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0),'
+    ' gauge=faults.bias("/level", "data", 0.0, 0.5))}'
+)
+
+
+@pytest.fixture
+def spaced(tank: pytest.Pytester) -> pytest.Pytester:
+    """A recorded tank whose pump may be clogged, and whose gauge may be wrong."""
+    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor, faults")
+    changed(tank, "test_tank", '{"clogged": 0.25}', SPACE)
+    changed(tank, "test_tank", "1.0 if tarl_drift is None else tarl_drift", 'tarl_drift["pump"]')
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    return tank
+
+
+def written(tank: pytest.Pytester) -> tuple[bytes, bytes]:
+    folder = tank.path / ".tarl"
+    (found,), (page,) = folder.glob("results/*-stress.json"), folder.glob("report/*-stress.html")
+    return found.read_bytes(), page.read_bytes()
+
+
+def test_a_run_reports_writes_keeps_and_replays(spaced: pytest.Pytester) -> None:
+    done = spaced.runpytest(*STRESS)
+    done.assert_outcomes(passed=1, deselected=1)
+    done.stdout.fnmatch_lines(
+        [
+            "*test_fills[[]world]: stress, * episodes",
+            "  guarantee  At least *",
+            "  pump       No failure found while*",
+        ]
+    )
+    first = written(spaced)
+    found = json.loads(first[0])
+    jsonschema.validate(found, json_result.schema())
+    pump, gauge = found["directions"]
+    # the reward is about -3.6 / pump, and 5 % less than -3.6 is tolerated: 1 / 1.05 = 0.952
+    assert 0.93 < pump["boundary"]["estimate"] < 0.98
+    assert 0.0 < gauge["boundary"]["estimate"] < 0.05  # 25 steps of so little each are tolerated
+    again = spaced.runpytest(*STRESS, "--tarl-workers=2")
+    assert "still fails." in again.stdout.str()
+    assert written(spaced) == first
+
+
+def test_a_failure_inside_must_hold_fails_the_test(spaced: pytest.Pytester) -> None:
+    changed(spaced, "test_tank", "    episodes=30,", '    episodes=30,\n    must_hold={"pump": (0.2, 1.0)},')
+    done = spaced.runpytest(*STRESS)
+    done.assert_outcomes(failed=1, deselected=1)
+    assert "but must_hold is 0.2 to 1." in done.stdout.str()
+
+
+def test_a_nominal_world_that_is_not_the_recorded_one_is_told(spaced: pytest.Pytester) -> None:
+    changed(spaced, "test_tank", "nominal=1.0", "nominal=0.2")
+    done = spaced.runpytest(*STRESS)
+    done.assert_outcomes(failed=1, deselected=1)
+    assert "The guarantee fails at the nominal values already" in done.stdout.str()
+
+
+def test_ctrl_c_keeps_what_is_known(spaced: pytest.Pytester) -> None:
+    stop = "    if tarl_drift['pump'] < 0.5:\n        raise KeyboardInterrupt\n    tarl.start"
+    changed(spaced, "test_tank", "    tarl.start", stop)
+    done = spaced.runpytest_subprocess(*STRESS)
+    assert done.ret == pytest.ExitCode.INTERRUPTED
+    assert "Interrupted after" in done.stdout.str()
+    assert json.loads(written(spaced)[0])["ended"] == "interrupted"
+
+
+def test_without_a_recording_or_a_space_the_next_step_is_told(tank: pytest.Pytester) -> None:
+    done = tank.runpytest(*STRESS)
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines(["*No test declares a space of drifts*"])
+    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor, faults")
+    changed(tank, "test_tank", '{"clogged": 0.25}', SPACE)
+    done = tank.runpytest(*STRESS, "-rs")
+    done.assert_outcomes(skipped=1, deselected=1)
+    assert "--tarl-record" in done.stdout.str()
+
+
+@pytest.mark.parametrize(
+    ("flags", "told"),
+    [
+        (("--tarl-stress", "--tarl-online"), "are two runs"),
+        (("--tarl-stress", "--tarl-record"), "are two runs"),
+        (("--tarl-stress", "--tarl-holm"), "--tarl-holm needs --tarl-online"),
+        (("--tarl-stress", "--tarl-ros=real"), "needs the embedded ROS"),
+        (("--tarl-stress", "--tarl-stress-budget=3"), "--tarl-stress-budget"),
+    ],
+)
+def test_flags_that_do_not_go_together_are_told(
+    tank: pytest.Pytester, flags: tuple[str, ...], told: str
+) -> None:
+    done = tank.runpytest(*flags)
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines([f"*{told}*"])
+
+
+DRIFTS = {
+    "world": drift(
+        "t",
+        "world",
+        Drift.space(
+            mud=Drift.range(0.0, 1.0, nominal=1.0),
+            camera=Drift.choice("up", "down"),
+            late=faults.latency("/cmd", 0.5),
+        ),
+    )
+}
+
+
+def test_promises_are_ranges_or_options_of_a_direction() -> None:
+    given = {"mud": (0.4, 1), "camera": ["up", "down"], "late": (0, 0.1)}
+    assert must_hold("t", given, DRIFTS) == {"mud": (0.4, 1.0), "camera": ("up", "down"), "late": (0.0, 0.1)}
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (3, "must_hold maps directions"),
+        ({"mdu": (0.4, 1.0)}, r"'mdu', which is no direction of a space \(mud, camera, late\)"),
+        ({"mud": (0.4, 0.9)}, "around the nominal 1"),
+        ({"mud": 0.4}, "two numbers from 0 to 1"),
+        ({"mud": (-1, 1)}, "two numbers from 0 to 1"),
+        ({"camera": ("left",)}, "options of its choice"),
+        ({"camera": "up"}, "options of its choice"),
+    ],
+)
+def test_other_promises_are_told(value: Any, told: str) -> None:
+    with pytest.raises(SettingsError, match=told):
+        must_hold("t", value, DRIFTS)
+
+
+def test_a_damaged_or_foreign_memory_is_ignored(tmp_path: Path) -> None:
+    space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
+    path = tmp_path / "kept.json"
+    assert kept.read(path, space) == []
+    point = {"mud": 0.5, "camera": 1.0}
+    kept.write([failure(space, point)], path)
+    assert kept.read(path, space) == [point]
+    assert kept.read(path, space_of(mud=Drift.range(0.0, 1.0, nominal=1.0))) == []
+    assert kept.read(path, space_of(mud=Drift.range(0.6, 1.0, nominal=1.0), camera=Drift.choice(1, 2))) == []
+    for text in ("", "{", "[]", '{"format": 2, "failing": [{}]}', '{"format": 1, "failing": [3]}'):
+        path.write_text(text)
+        assert kept.read(path, space) == []
+    kept.write([], path)
+    assert not path.exists()
