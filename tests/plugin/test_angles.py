@@ -19,14 +19,14 @@ HEADING = Sensor("heading", topic="/pose", field="theta", bins=12, angle=True, u
 ACROSS = Conjunct(HEADING, *HEADING.interval(10, 13))  # the last two bins and the first two
 
 
-def test_the_hull_of_cells_on_both_sides_is_the_short_way_round() -> None:
+def test_the_hull_of_cells_on_both_sides_takes_the_shorter_arc() -> None:
     assert candidates._hull([(11,), (0,), (1,)], 0, HEADING) == (11, 13)
     assert candidates._hull([(3,), (5,)], 0, HEADING) == (3, 5)
     assert candidates._hull([(11,), (3,)], 0, HEADING) == (11, 15)
 
 
 @given(st.floats(-20, 20))
-def test_the_guard_holds_in_the_bins_of_the_arc_however_often_the_angle_was_turned_round(
+def test_a_guard_holds_in_the_bins_of_its_arc_after_any_number_of_turns(
     value: float,
 ) -> None:
     code = condition(Guard((ACROSS,)), {"heading": Reading("theta")}, {})
@@ -37,17 +37,17 @@ def test_the_guard_holds_in_the_bins_of_the_arc_however_often_the_angle_was_turn
         assert eval(code, {"theta": value}) is (index in (10, 11, 0, 1))
 
 
-def test_a_cell_is_under_the_guard_that_spans_it() -> None:
+def test_a_cell_matches_the_guard_of_its_arc() -> None:
     assert [i for i in range(12) if holds(Guard((ACROSS,)), (i,), (HEADING,))] == [0, 1, 10, 11]
 
 
-def test_the_region_in_words_says_that_it_runs_across() -> None:
+def test_the_description_of_the_region_crosses_the_end_of_the_range() -> None:
     vocabulary = Vocabulary((HEADING,), [(i,) for i in range(12)])
     assert vocabulary.words([(10,), (11,), (0,), (1,)]) == "heading above 2.1 or below -2.1 rad"
     assert vocabulary.words([(0,), (5,)]).startswith("heading -3.1 to -2.6 or ")
 
 
-def test_a_wider_arc_stays_an_arc_or_becomes_the_whole_circle() -> None:
+def test_a_widened_arc_is_an_arc_or_the_whole_circle() -> None:
     wider = candidates._wider(ACROSS)
     assert [i for i in range(12) if holds(Guard((wider,)), (i,), (HEADING,))] == [0, 1, 2, 3, 8, 9, 10, 11]
     whole = candidates._wider(wider)

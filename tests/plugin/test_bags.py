@@ -48,7 +48,7 @@ def some(tank: pytest.Pytester, ending: str, pump: float, count: int = 6) -> lis
 
 
 @pytest.mark.parametrize("ending", [".bag", ".mcap", ".db3", ""])
-def test_missions_in_a_drifted_world_are_degraded_in_every_format(
+def test_missions_in_a_drifted_world_are_degraded_in_every_bag_format(
     deployed: pytest.Pytester, ending: str
 ) -> None:
     told = online(deployed, *some(deployed, ending, CLOGGED))
@@ -61,7 +61,7 @@ def test_missions_in_a_drifted_world_are_degraded_in_every_format(
     told.stdout.no_fnmatch_line("*--tarl-repair*")
 
 
-def test_missions_in_the_nominal_world_pass_even_a_single_one(deployed: pytest.Pytester) -> None:
+def test_nominal_missions_pass_even_if_there_is_only_one(deployed: pytest.Pytester) -> None:
     online(deployed, *some(deployed, ".mcap", 1.0)).assert_outcomes(passed=1, deselected=1)
     assert result(deployed)["verdict"]["result"] == "no difference"
     online(deployed, deployed.path / "mission0.mcap").assert_outcomes(passed=1, deselected=1)
@@ -99,7 +99,7 @@ def test_an_unreadable_bag_is_skipped(deployed: pytest.Pytester) -> None:
     online(deployed, torn).stdout.fnmatch_lines(["*No bag can be compared with the recording. *torn.bag*"])
 
 
-def test_a_sensor_topic_that_is_missing_or_of_another_type_is_named(deployed: pytest.Pytester) -> None:
+def test_a_sensor_topic_that_is_missing_or_of_another_type_is_reported(deployed: pytest.Pytester) -> None:
     (bag,) = some(deployed, ".mcap", 1.0, 1)
     other = write_bag(deployed.path / "other.mcap", iter([(0.0, [("/depth", NUMBER, {"data": 1.0})])]))
     kind = "std_msgs/msg/Float32"
@@ -129,7 +129,7 @@ def test_subscribed_topics_may_be_missing_or_of_another_type(
     assert "/lamp was not replayed: the bag has std_msgs/msg/Bool there, the node subscribes to it as" in text
 
 
-def test_the_nodes_own_topics_are_not_replayed_but_readable_by_the_monitor(
+def test_topics_of_the_node_are_not_replayed_but_available_to_the_monitor(
     deployed: pytest.Pytester,
 ) -> None:
     changed(deployed, "test_tank", MONITOR, "    monitor=Watch,\n")

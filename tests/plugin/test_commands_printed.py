@@ -24,7 +24,9 @@ def printed(result: pytest.RunResult, label: str) -> list[str]:
     return shlex.split(line.partition(label)[2])
 
 
-def test_they_name_the_test_from_there_and_repeat_the_options(nested: pytest.Pytester) -> None:
+def test_printed_commands_name_the_test_from_the_current_folder_and_repeat_the_options(
+    nested: pytest.Pytester,
+) -> None:
     test = "tank/test_tank.py::test_fills"
     nested.runpytest(test, "--tarl-record", "--tarl-episodes=16").assert_outcomes(passed=1)
     result = nested.runpytest(test, "--tarl-online", "--tarl-episodes=12", "--tarl-alpha=0.1")
@@ -36,7 +38,7 @@ def test_they_name_the_test_from_there_and_repeat_the_options(nested: pytest.Pyt
     nested.runpytest(*again[1:]).assert_outcomes(failed=1)
 
 
-def test_the_command_for_a_missing_fixture_can_be_pasted(nested: pytest.Pytester) -> None:
+def test_the_command_for_a_missing_recording_can_be_pasted(nested: pytest.Pytester) -> None:
     result = nested.runpytest("tank", "--tarl-online", "--tarl-strict")
     assert "run `pytest tank/test_tank.py::test_fills --tarl-record` first" in result.stdout.str()
 

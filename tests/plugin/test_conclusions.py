@@ -42,7 +42,7 @@ def properties(path: Path) -> dict[str, dict[str, str]]:
 
 
 @pytest.mark.parametrize("workers", ["-n0", "-n2"])
-def test_junit_has_what_was_found_as_properties_of_the_test(drifting: pytest.Pytester, workers: str) -> None:
+def test_junit_has_the_findings_as_properties_of_the_test(drifting: pytest.Pytester, workers: str) -> None:
     drifting.runpytest(*ONLINE, "--junitxml=found.xml", workers)
     found = properties(drifting.path / "found.xml")
     clogged, fine = found["test_fills[clogged]"], found["test_fills[fine]"]
@@ -56,13 +56,13 @@ def test_junit_has_what_was_found_as_properties_of_the_test(drifting: pytest.Pyt
     assert "tarl_culprit" not in fine
 
 
-def test_the_patch_is_a_property_too(drifting: pytest.Pytester) -> None:
+def test_the_patch_is_a_junit_property_too(drifting: pytest.Pytester) -> None:
     drifting.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged", "--junitxml=found.xml")
     (found,) = properties(drifting.path / "found.xml").values()
     assert (drifting.path / found["tarl_patch"]).is_file()
 
 
-def test_on_github_the_line_of_the_culprit_is_annotated(
+def test_github_gets_an_annotation_at_the_line_of_the_culprit(
     drifting: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = drifting.runpytest(*ONLINE)
@@ -78,7 +78,7 @@ def test_on_github_the_line_of_the_culprit_is_annotated(
     assert "%0AWhere: level" in message
 
 
-def test_several_drifts_stand_side_by_side_and_one_alone_does_not(drifting: pytest.Pytester) -> None:
+def test_several_drifts_are_shown_in_a_table_and_a_single_one_is_not(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE)
     told.stdout.fnmatch_lines(
         [
@@ -91,7 +91,7 @@ def test_several_drifts_stand_side_by_side_and_one_alone_does_not(drifting: pyte
     drifting.runpytest(*ONLINE, "--tarl-drift=fine").stdout.no_fnmatch_line("*side by side*")
 
 
-def test_the_part_that_is_lost_is_told_with_where(drifting: pytest.Pytester) -> None:
+def test_the_lost_part_of_the_reward_is_shown_with_its_region(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-drift=clogged")
     told.stdout.fnmatch_lines(["  parts    level -* where level *"])
     told.stdout.no_fnmatch_line("*time -*")
@@ -99,7 +99,7 @@ def test_the_part_that_is_lost_is_told_with_where(drifting: pytest.Pytester) -> 
     assert "Lost where" in page.read_text("utf-8")
 
 
-def test_holm_corrects_the_verdicts_of_all_tests_when_they_have_run(drifting: pytest.Pytester) -> None:
+def test_holm_corrects_the_verdicts_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-holm", "-v")
     told.assert_outcomes(failed=1, passed=1, deselected=1)
     told.stdout.fnmatch_lines(["*clogged?*FAILED*", "*fine?*PASSED*", "*corrected for the 2 comparisons*"])
@@ -112,7 +112,7 @@ def test_holm_corrects_the_verdicts_of_all_tests_when_they_have_run(drifting: py
     assert corrected["p_loss"] == pytest.approx(2 * alone["p_loss"])
 
 
-def test_a_loss_that_is_significant_alone_may_not_be_so_among_many(drifting: pytest.Pytester) -> None:
+def test_a_loss_that_is_significant_alone_may_not_be_after_correction(drifting: pytest.Pytester) -> None:
     many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
     changed(drifting, "test_tank", '"fine": 1.0', many)
     short = (
@@ -127,7 +127,7 @@ def test_a_loss_that_is_significant_alone_may_not_be_so_among_many(drifting: pyt
     told.stdout.fnmatch_lines(["*too few*", "*This test cannot reach significance*"])
 
 
-def test_many_comparisons_get_the_permutations_that_they_need(drifting: pytest.Pytester) -> None:
+def test_many_comparisons_get_as_many_permutations_as_holm_needs(drifting: pytest.Pytester) -> None:
     many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
     changed(drifting, "test_tank", '"fine": 1.0', many)
     told = drifting.runpytest("--tarl-online", "--tarl-episodes=8", "--tarl-alpha=0.002", "--tarl-holm")
@@ -139,7 +139,7 @@ def test_many_comparisons_get_the_permutations_that_they_need(drifting: pytest.P
     ("other", "said"),
     [("--tarl-repair", "--tarl-repair are two runs"), ("-n2", "with -n no process knows them all")],
 )
-def test_where_holm_cannot_be_it_is_said(drifting: pytest.Pytester, other: str, said: str) -> None:
+def test_a_run_that_cannot_be_corrected_says_so(drifting: pytest.Pytester, other: str, said: str) -> None:
     told = drifting.runpytest("--tarl-online", "--tarl-holm", other)
     told.stderr.fnmatch_lines([f"*--tarl-holm*{said}*"])
     assert told.ret == pytest.ExitCode.USAGE_ERROR

@@ -22,13 +22,13 @@ seeds = st.integers(0, 2**63 - 1)
 
 
 @given(plain, seeds)
-def test_a_plain_value_is_what_the_test_gets(given_value: Any, seed: int) -> None:
+def test_a_plain_value_is_passed_to_the_test(given_value: Any, seed: int) -> None:
     assert drawn(drift("t", "mud", given_value), "mud", seed) is given_value
     assert drawn(drift("t", "mud", Drift(given_value, permanent=True)), "mud", seed) is given_value
 
 
 @given(ranges, seeds)
-def test_a_range_is_drawn_from_by_seed(ends: tuple[float, float], seed: int) -> None:
+def test_each_seed_draws_a_value_from_the_range(ends: tuple[float, float], seed: int) -> None:
     mud = drift("t", "mud", Drift.range(*ends))
     found = drawn(mud, "mud", seed)
     assert ends[0] <= found <= ends[1]
@@ -37,7 +37,7 @@ def test_a_range_is_drawn_from_by_seed(ends: tuple[float, float], seed: int) -> 
 
 
 @given(st.dictionaries(st.text(min_size=1, max_size=3), st.one_of(plain, ranges), max_size=4), seeds)
-def test_parts_of_a_dictionary_are_drawn_apart(parts: dict[str, Any], seed: int) -> None:
+def test_parts_of_a_dictionary_are_drawn_independently(parts: dict[str, Any], seed: int) -> None:
     made = {name: Drift.range(*part) if isinstance(part, tuple) else part for name, part in parts.items()}
     found = drawn(drift("t", "world", made), "world", seed)
     assert found.keys() == parts.keys()
@@ -63,7 +63,7 @@ def test_a_range_needs_two_numbers(ends: tuple[Any, Any]) -> None:
         Drift.range(*ends)
 
 
-def test_parts_change_for_good_together() -> None:
+def test_all_parts_of_a_scenario_are_permanent_or_none() -> None:
     lasting = Drift(0.8, permanent=True)
     assert drift("t", "worn", {"left": lasting, "right": lasting}).permanent
     assert drift("t", "worn", Drift({"left": 0.8, "right": 0.7}, permanent=True)).permanent
@@ -75,7 +75,7 @@ def test_parts_change_for_good_together() -> None:
         drift("t", "worn", Drift(lasting))
 
 
-def test_changes_combine_where_they_have_names() -> None:
+def test_scenarios_are_merged_if_both_are_dictionaries() -> None:
     assert combined([{"wheel": 0.8}, {"mud": 0.15}]) == {"wheel": 0.8, "mud": 0.15}
     assert combined([0.8, 0.15]) == 0.15
     assert combined([{"wheel": 0.8}, 0.15]) == 0.15
@@ -85,7 +85,7 @@ def _drifts(**values: Any) -> dict[str, Drift]:
     return {name: drift("t", name, one) for name, one in values.items()}
 
 
-def test_the_design_is_what_was_recorded_and_a_scenario_changes_it() -> None:
+def test_the_recorded_design_is_the_base_and_a_scenario_changes_it() -> None:
     drifts = _drifts(worn=Drift({"wheel": 0.8}, permanent=True), mud={"slip": 0.15}, dusk=0.3)
     assert value(drifts, (), None, 1) is None
     assert value(drifts, ("worn",), None, 1) == {"wheel": 0.8}
@@ -95,7 +95,7 @@ def test_the_design_is_what_was_recorded_and_a_scenario_changes_it() -> None:
     assert value(drifts, ("worn",), AS_WRITTEN, 1) is None
 
 
-def test_a_recording_adds_to_the_design_or_goes_back() -> None:
+def test_recording_adds_to_the_design_or_returns_to_the_original_world() -> None:
     drifts = _drifts(worn={"wheel": 0.8}, moved={"camera": 0.1}, dusk=0.3)
     assert adopting((), None, drifts) == ()
     assert adopting(("worn",), None, drifts) == ("worn",)
@@ -105,7 +105,7 @@ def test_a_recording_adds_to_the_design_or_goes_back() -> None:
     assert adopting(("worn", "moved"), AS_WRITTEN, drifts) == ()
 
 
-def test_a_design_that_the_marker_no_longer_declares_is_told() -> None:
+def test_a_design_that_the_marker_no_longer_declares_is_refused() -> None:
     with pytest.raises(
         SettingsError, match="'worn' as part of the design, but the marker no longer declares it"
     ):
@@ -113,7 +113,7 @@ def test_a_design_that_the_marker_no_longer_declares_is_told() -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 no zip", b"text"])
-def test_what_is_no_fixture_says_nothing_of_the_design(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_not_a_recording_gives_no_design(tmp_path: Path, content: bytes) -> None:
     assert adopted(tmp_path / "missing.npz") == ()
     (tmp_path / "broken.npz").write_bytes(content)
     assert adopted(tmp_path / "broken.npz") == ()

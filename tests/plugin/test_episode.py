@@ -33,7 +33,7 @@ def episode(folder: Path, seed: int = 7) -> Iterator[tuple[Tarl, Recorder]]:
         tarl.close()
 
 
-def test_streams_are_told_by_their_names_whatever_was_drawn_before(tmp_path):
+def test_a_random_stream_depends_on_its_name_and_not_on_earlier_draws(tmp_path):
     with episode(tmp_path) as (tarl, _):
         first = tarl.rng("wind").random(4).tolist()
         tarl.rng("noise").random(100)
@@ -45,7 +45,7 @@ def test_streams_are_told_by_their_names_whatever_was_drawn_before(tmp_path):
         assert tarl.rng("wind").random(4).tolist() != first
 
 
-def test_a_cell_is_latched_when_its_last_sensor_is_known_and_holds_until_the_next_message(tmp_path):
+def test_a_cell_begins_when_its_last_sensor_is_known_and_lasts_until_the_next_message(tmp_path):
     with episode(tmp_path) as (tarl, recorder):
         tarl.message("odom", SimpleNamespace(data=3.5))
         tarl.reward(0.0)
@@ -65,7 +65,7 @@ def test_a_cell_is_latched_when_its_last_sensor_is_known_and_holds_until_the_nex
 @pytest.mark.parametrize(
     "value", [2, 1.5, True, np.float32(0.5), np.int64(3), np.array(1.0)], ids=lambda v: type(v).__name__
 )
-def test_rewards_are_numbers_of_any_kind(tmp_path, value):
+def test_rewards_may_be_numbers_of_any_type(tmp_path, value):
     with episode(tmp_path) as (tarl, recorder):
         tarl.reward(value)
         tarl.reward(progress=value, clearance=-1)
@@ -106,7 +106,7 @@ MISTAKES: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_told_in_a_sentence(tmp_path, mistake):
+def test_a_mistake_of_the_test_gives_one_sentence(tmp_path, mistake):
     call, words = MISTAKES[mistake]
     with episode(tmp_path) as (tarl, recorder):
         with pytest.raises(SettingsError, match=words):
@@ -114,7 +114,7 @@ def test_a_mistake_is_told_in_a_sentence(tmp_path, mistake):
         assert not recorder.finish().steps
 
 
-def test_what_happens_while_a_node_is_being_ended_is_a_note(tmp_path):
+def test_errors_during_shutdown_of_a_node_become_a_note(tmp_path):
     (tmp_path / "node.py").write_text(
         "import rospy\nrospy.init_node('late')\nrospy.on_shutdown(lambda: 1 / 0)\nrospy.spin()\n"
     )
@@ -126,7 +126,7 @@ def test_what_happens_while_a_node_is_being_ended_is_a_note(tmp_path):
     assert "the episode still counts" in note
 
 
-def test_places_where_nothing_can_be_recorded_are_a_note(tmp_path):
+def test_positions_that_cannot_be_recorded_become_a_note(tmp_path):
     node = tmp_path / "node.py"
     node.write_text("x = 1.0\nimport math\n")
     recorder = Recorder()

@@ -24,7 +24,7 @@ from pytest_tarl import extras
         ("no record of pip", 'pip install "tarl[ros]"'),
     ],
 )
-def test_an_extra_is_installed_from_where_tarl_is(
+def test_the_install_command_uses_the_source_tree_of_tarl(
     monkeypatch: pytest.MonkeyPatch, record: object, command: str
 ) -> None:
     text = None if record is None else json.dumps(record)

@@ -9,7 +9,7 @@ import pytest
 from pytest_tarl.files import check_writable, write_atomically
 
 
-def test_a_file_is_replaced_whole(tmp_path):
+def test_a_file_is_replaced_atomically(tmp_path):
     target = tmp_path / "new" / "report.html"
     write_atomically(target, b"old")
     write_atomically(target, b"new")
@@ -17,7 +17,7 @@ def test_a_file_is_replaced_whole(tmp_path):
     assert [p.name for p in target.parent.iterdir()] == ["report.html"]
 
 
-def test_a_pipe_or_device_is_written_to_and_stays_what_it_is(tmp_path):
+def test_a_pipe_or_device_is_written_to_and_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     read: list[bytes] = []
@@ -31,14 +31,14 @@ def test_a_pipe_or_device_is_written_to_and_stays_what_it_is(tmp_path):
 
 
 @pytest.mark.parametrize("there", ["", "a", "a/b"])
-def test_asking_whether_a_file_can_be_written_leaves_nothing_behind(tmp_path, there):
+def test_checking_whether_a_file_is_writable_leaves_nothing_behind(tmp_path, there):
     (tmp_path / there).mkdir(parents=True, exist_ok=True)
     before = sorted(tmp_path.rglob("*"))
     check_writable(tmp_path / "a" / "b" / "c.npz")
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_what_keeps_a_file_from_being_written_is_raised_and_nothing_is_left(tmp_path):
+def test_a_write_error_is_raised_and_leaves_no_temporary_file(tmp_path):
     (tmp_path / "a").write_text("a file")
     with pytest.raises(OSError, match="a"):
         check_writable(tmp_path / "a" / "b" / "c.npz")

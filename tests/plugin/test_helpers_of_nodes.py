@@ -49,7 +49,9 @@ def helped(tank: pytest.Pytester, module: str) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = flow_of(missing)")
 
 
-def test_a_package_that_wraps_rospy_does_so_in_every_episode(tank: pytest.Pytester, installed: Path) -> None:
+def test_a_package_that_wraps_rospy_is_instrumented_in_every_episode(
+    tank: pytest.Pytester, installed: Path
+) -> None:
     (installed / "counted_ros.py").write_text(WRAPPER)
     (installed / "counted_facade.py").write_text("from counted_ros import COUNTED\n")
     changed(tank, "keeper", "import rospy\n", "import rospy\nfrom counted_facade import COUNTED\n")
@@ -62,7 +64,7 @@ def test_a_package_that_wraps_rospy_does_so_in_every_episode(tank: pytest.Pytest
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
 
 
-def test_a_constant_in_a_helper_is_moved_where_the_node_lies_outside_of_rootdir(
+def test_a_constant_in_a_helper_is_changed_if_the_node_lies_outside_rootdir(
     tank: pytest.Pytester,
 ) -> None:
     source = tank.path / "src"
@@ -92,7 +94,7 @@ def test_a_constant_in_a_helper_is_moved_where_the_node_lies_outside_of_rootdir(
     assert any(abs(effect) > 1.0 for effect in effects)
 
 
-def test_a_named_helper_in_a_folder_without_init_is_told(tank: pytest.Pytester) -> None:
+def test_a_named_helper_in_a_folder_without_init_is_reported(tank: pytest.Pytester) -> None:
     helped(tank, "helpers.gains")
     (tank.path / "helpers").mkdir()
     (tank.path / "helpers" / "gains.py").write_text(GAINS)
@@ -107,7 +109,7 @@ def test_a_named_helper_in_a_folder_without_init_is_told(tank: pytest.Pytester) 
     assert "is named in nodes" not in tank.runpytest(*RECORD).stdout.str()
 
 
-def test_an_older_text_that_ran_is_an_error_and_no_outcome() -> None:
+def test_an_episode_that_ran_an_older_text_is_an_error() -> None:
     ended = EpisodeRun(EpisodePlan(1), Recorder().finish(), passed=True, older=(Path("gains.py"),))
     with pytest.raises(StaleTextError, match=r"gains\.py: a candidate was written into it"):
         _outcome(lambda: ended, -1.0)
@@ -134,7 +136,7 @@ MANIFEST = (
         ("not even <xml", "from std_msgs import msg\n", "add <exec_depend>std_msgs</exec_depend>"),
     ],
 )
-def test_a_package_that_a_patch_imports_from_and_nobody_declares_is_told(
+def test_an_undeclared_dependency_of_a_patch_is_reported(
     tmp_path: Path, manifest: str, new: str, told: str
 ) -> None:
     (tmp_path / "pilot" / "scripts").mkdir(parents=True)
@@ -149,7 +151,7 @@ def test_a_package_that_a_patch_imports_from_and_nobody_declares_is_told(
     assert all("pilot/package.xml does not depend on" in one for one in sentences)
 
 
-def test_a_repair_without_a_package_says_nothing_of_one(tank: pytest.Pytester) -> None:
+def test_a_repair_without_new_imports_reports_no_package(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE, "--tarl-repair")
     assert "package.xml" not in (tank.path / result(tank)["repair"]["patch"]).read_text()

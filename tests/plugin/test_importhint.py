@@ -18,9 +18,7 @@ bare = pytest.mark.skipif(importlib.util.find_spec("nav_msgs") is not None, reas
         ("from rclpy.node import Node", "*start it by tarl.start*"),
     ],
 )
-def test_an_import_of_ros_that_fails_is_told_what_to_write(
-    tank: pytest.Pytester, line: str, advice: str
-) -> None:
+def test_a_failed_import_of_ros_comes_with_a_hint(tank: pytest.Pytester, line: str, advice: str) -> None:
     tank.makepyfile(test_top=f"{line}\n\ndef test_it():\n    pass\n")
     told = tank.runpytest("test_top.py")
     told.assert_outcomes(errors=1)
@@ -28,7 +26,7 @@ def test_an_import_of_ros_that_fails_is_told_what_to_write(
 
 
 @pytest.mark.parametrize("line", ["import colour_of_magic", "1 / 0", "raise ImportError('no')"])
-def test_other_errors_of_a_test_module_get_none(tank: pytest.Pytester, line: str) -> None:
+def test_other_import_errors_come_without_a_hint(tank: pytest.Pytester, line: str) -> None:
     tank.makepyfile(test_top=f"{line}\n")
     told = tank.runpytest("test_top.py")
     told.assert_outcomes(errors=1)

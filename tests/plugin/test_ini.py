@@ -37,7 +37,7 @@ def test_every_flag_has_an_ini_option(pytester: pytest.Pytester) -> None:
     assert read(pytester, "")["alpha"] == 0.05
 
 
-def test_the_command_line_wins(pytester: pytest.Pytester) -> None:
+def test_the_command_line_overrides_the_ini_file(pytester: pytest.Pytester) -> None:
     lines = "tarl_seed = 7\ntarl_alpha = 0.01\ntarl_workers = auto"
     given = read(pytester, lines, "--tarl-online", "--tarl-seed=3")
     assert (given["seed"], given["alpha"], given["workers"], given["budget"]) == (3, 0.01, "auto", "300")
@@ -48,17 +48,17 @@ def test_switches(pytester: pytest.Pytester, text: str, *, said: bool) -> None:
     assert read(pytester, f"tarl_constants = {text}", "--tarl-online")["constants"] is said
 
 
-def test_a_list_is_a_line_each(pytester: pytest.Pytester) -> None:
+def test_a_list_has_one_entry_per_line(pytester: pytest.Pytester) -> None:
     lines = "tarl_search =\n    sweep\n    halving"
     assert read(pytester, lines, "--tarl-online", "--tarl-repair")["search"] == ["sweep", "halving"]
 
 
-def test_files_begin_where_the_ini_file_is(pytester: pytest.Pytester) -> None:
+def test_paths_are_relative_to_the_ini_file(pytester: pytest.Pytester) -> None:
     given = read(pytester, "tarl_log = logs/missions.log", "--tarl-online")
     assert given["log"] == str(pytester.path / "logs" / "missions.log")
 
 
-def test_what_goes_with_another_mode_is_left_out(pytester: pytest.Pytester) -> None:
+def test_options_of_another_mode_are_ignored(pytester: pytest.Pytester) -> None:
     lines = "tarl_drift = mud\ntarl_search = sweep\ntarl_strict = true\ntarl_holm = true"
     recorded = read(pytester, lines, "--tarl-record")
     assert (recorded["drift"], recorded["search"], recorded["strict"]) == ("mud", None, False)
@@ -69,7 +69,7 @@ def test_what_goes_with_another_mode_is_left_out(pytester: pytest.Pytester) -> N
 @pytest.mark.parametrize(
     ("lines", "asked"), [("tarl_online = true", True), ("tarl_drift = mud", False), ("", False)]
 )
-def test_only_a_mode_asks_for_a_run_of_ours(pytester: pytest.Pytester, lines: str, *, asked: bool) -> None:
+def test_only_a_mode_activates_the_plugin(pytester: pytest.Pytester, lines: str, *, asked: bool) -> None:
     assert ini.mode_asked(configured(pytester, lines)) is asked
     ended = pytester.runpytest("-q", "-p", "no:asyncio")
     assert ("1 deselected" if asked else "1 passed") in ended.stdout.str()
@@ -88,7 +88,7 @@ def test_only_a_mode_asks_for_a_run_of_ours(pytester: pytest.Pytester, lines: st
         ("tarl_utility = q", "(tarl_utility is set in "),
     ],
 )
-def test_mistakes_are_a_sentence(pytester: pytest.Pytester, lines: str, words: str) -> None:
+def test_an_invalid_value_gives_one_sentence(pytester: pytest.Pytester, lines: str, words: str) -> None:
     pytester.makeini(f"[pytest]\n{lines}")
     pytester.makepyfile(NO_NODE)
     ended = pytester.runpytest("--tarl-online")
@@ -97,7 +97,7 @@ def test_mistakes_are_a_sentence(pytester: pytest.Pytester, lines: str, words: s
     assert "Traceback" not in ended.stderr.str()
 
 
-def test_a_plain_run_draws_by_the_seed_of_the_ini_file(pytester: pytest.Pytester) -> None:
+def test_a_run_without_a_mode_uses_the_seed_of_the_ini_file(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(test_it=MARKED, node="")
     drawn = []
     for lines, flags in [("", ()), ("tarl_seed = 5", ()), ("", ("--tarl-seed=5",))]:

@@ -21,7 +21,7 @@ def recording(tank: pytest.Pytester, seed: int) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, cwd=tank.path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def test_a_recording_that_is_killed_leaves_a_fixture_that_loads(tank: pytest.Pytester) -> None:
+def test_killing_a_recording_leaves_a_valid_file(tank: pytest.Pytester) -> None:
     before = time.perf_counter()
     assert recording(tank, 0).wait() == 0
     lasts = time.perf_counter() - before

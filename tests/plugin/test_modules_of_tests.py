@@ -69,7 +69,7 @@ def told(project: Path, name: str, old: str, new: str) -> list[str]:
         ("node.py", "x = 1", "x = 2", []),
     ],
 )
-def test_what_changed_is_named_by_file_and_definition(
+def test_edits_are_reported_by_file_and_definition(
     project: Path, name: str, old: str, new: str, expected: list[str]
 ) -> None:
     found = [
@@ -80,15 +80,15 @@ def test_what_changed_is_named_by_file_and_definition(
     assert found == expected
 
 
-def test_a_file_that_cannot_be_parsed_is_passed_over(project: Path) -> None:
+def test_a_file_that_cannot_be_parsed_is_ignored(project: Path) -> None:
     assert told(project, "world.py", "class World:", "class World") == ["world.py is gone"]
 
 
-def test_fixtures_of_older_versions_know_nothing_of_the_test(project: Path) -> None:
+def test_recordings_of_older_versions_have_no_data_on_the_test(project: Path) -> None:
     assert list(changes({}, digests("test_it.py::test_it", project, []))) == []
 
 
-def test_an_edited_reward_is_told_with_the_verdict(tank: pytest.Pytester) -> None:
+def test_an_edited_reward_is_reported_with_the_verdict(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.no_fnmatch_line("*was edited since the recording*")
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(-2 * abs(1.0 - level))")

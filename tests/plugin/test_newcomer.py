@@ -8,7 +8,7 @@ from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 
 @pytest.mark.parametrize("start", ["inside", "above"])
-def test_the_folder_that_pytest_is_started_in_changes_nothing(
+def test_the_current_folder_does_not_matter(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
     tank.runpytest(*RECORD)
@@ -22,7 +22,7 @@ def test_the_folder_that_pytest_is_started_in_changes_nothing(
     told.stdout.fnmatch_lines(["*slices*keeper.py*", "*repair*accepted*"])
 
 
-def test_what_was_not_recorded_yet_is_told_without_asking(tank: pytest.Pytester) -> None:
+def test_missing_recordings_are_reported_without_an_option(tank: pytest.Pytester) -> None:
     told = tank.runpytest(*ONLINE, "-q")
     told.assert_outcomes(skipped=1, deselected=1)
     told.stdout.fnmatch_lines(
@@ -34,7 +34,7 @@ def test_what_was_not_recorded_yet_is_told_without_asking(tank: pytest.Pytester)
     )
 
 
-def test_tests_that_were_compared_are_told_from_those_that_were_not(tank: pytest.Pytester) -> None:
+def test_compared_tests_are_counted_separately_from_unrecorded_ones(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.no_fnmatch_line("*NOT*COMPARED*")
     source = (tank.path / "test_tank.py").read_text()
@@ -43,7 +43,7 @@ def test_tests_that_were_compared_are_told_from_those_that_were_not(tank: pytest
     told.stdout.fnmatch_lines(["NOT COMPARED: 1 of 2 tests, since it has no recording.*"])
 
 
-def test_a_folder_that_cannot_be_written_to_is_named_before_any_episode(tank: pytest.Pytester) -> None:
+def test_an_unwritable_folder_is_reported_before_the_first_episode(tank: pytest.Pytester) -> None:
     (tank.path / ".tarl").write_text("a file where the folder should be")
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
@@ -51,14 +51,14 @@ def test_a_folder_that_cannot_be_written_to_is_named_before_any_episode(tank: py
     told.stdout.no_fnmatch_line("*mkdir*")
 
 
-def test_without_a_terminal_everything_runs(tank: pytest.Pytester) -> None:
+def test_all_modes_work_without_the_terminal_plugin(tank: pytest.Pytester) -> None:
     assert tank.runpytest(*RECORD, "-p", "no:terminal").ret == pytest.ExitCode.OK
     ended = tank.runpytest(*ONLINE, "--tarl-repair", "-p", "no:terminal")
     assert ended.ret == pytest.ExitCode.TESTS_FAILED
     assert list((tank.path / ".tarl" / "patches").glob("*.patch"))
 
 
-def test_a_missing_marker_is_a_sentence_without_traceback(tank: pytest.Pytester) -> None:
+def test_a_missing_marker_gives_one_sentence_without_a_traceback(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_bare="def test_bare(tarl):\n    pass\n")
     told = tank.runpytest("test_bare.py")
     told.assert_outcomes(errors=1)
@@ -67,7 +67,7 @@ def test_a_missing_marker_is_a_sentence_without_traceback(tank: pytest.Pytester)
 
 
 @pytest.mark.parametrize("flag", ["--tarl-rekord", "--tarl-onlin=1"])
-def test_a_misspelt_flag_is_told_the_closest_one(tank: pytest.Pytester, flag: str) -> None:
+def test_a_misspelt_flag_gives_the_closest_one(tank: pytest.Pytester, flag: str) -> None:
     told = tank.runpytest(flag)
     assert told.ret == pytest.ExitCode.USAGE_ERROR
     meant = "--tarl-record" if "rek" in flag else "--tarl-online"
@@ -75,14 +75,14 @@ def test_a_misspelt_flag_is_told_the_closest_one(tank: pytest.Pytester, flag: st
     told.stderr.fnmatch_lines([said])
 
 
-def test_a_flag_of_a_conftest_file_is_no_misspelt_one(tank: pytest.Pytester) -> None:
+def test_a_flag_defined_in_conftest_is_accepted(tank: pytest.Pytester) -> None:
     tank.makeconftest("def pytest_addoption(parser):\n    parser.addoption('--tarl-recorder')\n")
     tank.makepyfile(test_plain="def test_plain():\n    pass\n")
     tank.runpytest("--tarl-recorder", "x", "test_plain.py").assert_outcomes(passed=1)
 
 
 @pytest.mark.parametrize("mode", [RECORD, ONLINE])
-def test_a_run_without_a_marked_test_says_that_nothing_was_run(
+def test_a_run_without_marked_tests_says_that_nothing_was_run(
     tank: pytest.Pytester, mode: tuple[str, ...]
 ) -> None:
     tank.makepyfile(test_plain="def test_plain():\n    pass\n")
@@ -92,7 +92,9 @@ def test_a_run_without_a_marked_test_says_that_nothing_was_run(
 
 
 @pytest.mark.parametrize("helper", [False, True])
-def test_a_mistake_outside_of_a_test_is_a_sentence_with_its_line(tank: pytest.Pytester, helper: bool) -> None:
+def test_a_mistake_outside_a_test_gives_one_sentence_with_its_line(
+    tank: pytest.Pytester, helper: bool
+) -> None:
     wrong = "from pytest_tarl.ros import message_type\n\nScan = message_type('sensor_msgs/msg/Skan')\n"
     tank.makepyfile(**({"laser": wrong, "test_laser": "import laser\n"} if helper else {"test_laser": wrong}))
     told = tank.runpytest("test_laser.py")
@@ -103,14 +105,14 @@ def test_a_mistake_outside_of_a_test_is_a_sentence_with_its_line(tank: pytest.Py
     told.stdout.no_fnmatch_line("*definitions.py*")
 
 
-def test_a_verdict_is_the_reason_of_the_failure(tank: pytest.Pytester) -> None:
+def test_the_verdict_is_the_failure_message(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(
         ["degraded: In the drift scenario 'clogged' an episode earns *"]
     )
 
 
-def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pytest.Pytester) -> None:
+def test_a_file_of_another_kind_is_refused_without_advice_to_trust_it(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     fixture_file(tank).write_text("x")
     told = tank.runpytest(*ONLINE)
@@ -118,12 +120,12 @@ def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pyt
     told.stdout.no_fnmatch_line("*pickle*")
 
 
-def test_a_failure_that_ends_in_a_full_stop_keeps_one(tank: pytest.Pytester) -> None:
+def test_a_failure_that_ends_in_a_full_stop_has_only_one(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 
 
-def test_an_interrupt_that_the_node_catches_ends_the_run_and_leaves_the_old_fixture(
+def test_an_interrupt_caught_by_the_node_still_ends_the_run_and_keeps_the_old_recording(
     tank: pytest.Pytester,
 ) -> None:
     tank.runpytest(*RECORD)
@@ -146,7 +148,7 @@ def test_an_interrupt_that_the_node_catches_ends_the_run_and_leaves_the_old_fixt
     tank.runpytest_subprocess(*RECORD).stdout.fnmatch_lines(["Interrupted *: nothing was written."])
 
 
-def test_a_node_that_the_test_does_not_drive_is_told(tank: pytest.Pytester) -> None:
+def test_a_node_that_the_test_does_not_drive_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(idle=(tank.path / "keeper.py").read_text())
     changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["idle.py"]')
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*no step of /level → /valve was executed*"])

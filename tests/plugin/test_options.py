@@ -39,7 +39,7 @@ FLAGS: dict[str, Any] = {
 }
 
 
-def test_a_good_marker_has_its_defaults() -> None:
+def test_a_valid_marker_has_default_values() -> None:
     marked = designation("t.py::test", (), GOOD | {"drifts": {"mud": 0.15}})
     assert (marked.episodes, marked.min_success, marked.tolerance) == (200, 1.0, None)
     assert marked.drifts == {"mud": Drift(0.15)}
@@ -62,7 +62,7 @@ def test_a_good_marker_has_its_defaults() -> None:
         ({"colour": 1}, "no argument 'colour'"),
     ],
 )
-def test_a_wrong_marker_is_explained(change: dict[str, Any], words: str) -> None:
+def test_an_invalid_marker_gives_one_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(SettingsError, match=words) as raised:
         designation("t.py::test", (), GOOD | change)
     assert str(raised.value).startswith("t.py::test")
@@ -77,7 +77,7 @@ def test_positional_arguments_are_refused() -> None:
     ("change", "mode"),
     [({}, "online"), ({"record": True, "online": False}, "record"), ({"repair": True}, "repair")],
 )
-def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
+def test_flags_select_the_mode(change: dict[str, Any], mode: str) -> None:
     assert options(FLAGS | change).mode == mode
 
 
@@ -94,7 +94,7 @@ def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
         ({"episodes": 1}, "--tarl-episodes"),
     ],
 )
-def test_wrong_flags_are_explained(change: dict[str, Any], words: str) -> None:
+def test_invalid_flags_give_one_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(SettingsError, match=words):
         options(FLAGS | change)
 
@@ -102,13 +102,13 @@ def test_wrong_flags_are_explained(change: dict[str, Any], words: str) -> None:
 @pytest.mark.parametrize(
     ("name", "value"), [("nodes", 5), ("tolerance", float("inf")), ("tolerance", float("nan"))]
 )
-def test_values_that_would_break_later_are_refused_in_a_sentence(name: str, value: object) -> None:
+def test_values_out_of_range_are_refused_in_one_sentence(name: str, value: object) -> None:
     arguments = {"nodes": ["a.py"], "sensors": [Sensor("x")], name: value}
     with pytest.raises(SettingsError, match=r"^here: "):
         designation("here", (), arguments)
 
 
-def test_workers_are_a_number_or_the_share_of_the_cores_that_xdist_leaves(
+def test_workers_are_a_number_or_the_share_of_cores_that_xdist_leaves(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert options(FLAGS | {"workers": "3"}).workers == 3

@@ -69,7 +69,7 @@ THEIRS = tuple(flag for tool, flags in TOOLS.items() if importlib.util.find_spec
         ),
     ],
 )
-def test_the_fixture_is_the_same_beside(
+def test_another_plugin_does_not_change_the_recording(
     tank: pytest.Pytester, expected: bytes, flags: tuple[str, ...]
 ) -> None:
     told = tank.runpytest_subprocess(*FEW, *flags)
@@ -78,7 +78,7 @@ def test_the_fixture_is_the_same_beside(
     told.stdout.fnmatch_lines(["*wrote .tarl/utility/*", "*1 passed*"])
 
 
-def test_the_fixture_is_the_same_from_a_process_of_xdist(tank: pytest.Pytester, expected: bytes) -> None:
+def test_an_xdist_process_writes_the_same_recording(tank: pytest.Pytester, expected: bytes) -> None:
     told = tank.runpytest_subprocess(*FEW, "-n", "2")
     assert told.ret == pytest.ExitCode.OK
     assert fixture_file(tank).read_bytes() == expected
@@ -87,7 +87,7 @@ def test_the_fixture_is_the_same_from_a_process_of_xdist(tank: pytest.Pytester, 
 
 @needs("pytest_asyncio")
 @pytest.mark.parametrize("mode", ["strict", "auto"])
-def test_a_coroutine_is_an_episode_too(tank: pytest.Pytester, expected: bytes, mode: str) -> None:
+def test_a_coroutine_test_is_run_for_every_episode(tank: pytest.Pytester, expected: bytes, mode: str) -> None:
     mark = "@pytest.mark.asyncio\n" if mode == "strict" else ""
     changed(tank, "test_tank", MARK, f"{mark}{MARK}")
     changed(tank, "test_tank", "def test_fills", "async def test_fills")
@@ -105,7 +105,7 @@ def test_a_coroutine_is_an_episode_too(tank: pytest.Pytester, expected: bytes, m
 
 
 @needs("anyio")
-def test_a_coroutine_of_anyio_is_an_episode_too(tank: pytest.Pytester) -> None:
+def test_a_coroutine_test_for_anyio_is_run_for_every_episode(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", MARK, f"@pytest.mark.anyio\n{MARK}")
     changed(tank, "test_tank", "def test_fills", "async def test_fills")
     tank.makeconftest("import pytest\n\n@pytest.fixture\ndef anyio_backend():\n    return 'asyncio'\n")
@@ -113,7 +113,7 @@ def test_a_coroutine_of_anyio_is_an_episode_too(tank: pytest.Pytester) -> None:
     assert fixture_file(tank)
 
 
-def test_a_coroutine_that_nobody_runs_is_told(tank: pytest.Pytester) -> None:
+def test_a_coroutine_test_without_a_runner_is_reported(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "def test_fills", "async def test_fills")
     told = tank.runpytest(*FEW, "-p", "no:anyio")
     told.assert_outcomes(failed=1, deselected=1)
@@ -122,7 +122,7 @@ def test_a_coroutine_that_nobody_runs_is_told(tank: pytest.Pytester) -> None:
 
 @needs("pytest_rerunfailures")
 @pytest.mark.parametrize("mark", ["", "@pytest.mark.flaky(reruns=2)\n"])
-def test_a_mission_that_failed_is_not_run_again(tank: pytest.Pytester, mark: str) -> None:
+def test_a_failed_mission_is_not_rerun(tank: pytest.Pytester, mark: str) -> None:
     changed(tank, *BROKEN)
     changed(tank, "test_tank", MARK, f"{mark}{MARK}")
     told = tank.runpytest_subprocess(*FEW, "-p", "rerunfailures", "--reruns", "2")
@@ -132,7 +132,7 @@ def test_a_mission_that_failed_is_not_run_again(tank: pytest.Pytester, mark: str
 
 @needs("pytest_timeout")
 @pytest.mark.parametrize("func_only", [False, True])
-def test_a_limit_of_time_holds_for_each_episode(tank: pytest.Pytester, func_only: bool) -> None:
+def test_a_timeout_applies_to_each_episode(tank: pytest.Pytester, func_only: bool) -> None:
     changed(tank, "test_tank", MARK, f"@pytest.mark.timeout(60, func_only={func_only})\n{MARK}")
     tank.makeconftest(
         """
@@ -153,7 +153,7 @@ def test_a_limit_of_time_holds_for_each_episode(tank: pytest.Pytester, func_only
 
 
 @needs("pytest_timeout")
-def test_an_episode_that_hangs_ends_the_recording_and_is_named(tank: pytest.Pytester) -> None:
+def test_an_episode_that_times_out_ends_the_recording_and_is_named(tank: pytest.Pytester) -> None:
     changed(
         tank, "test_tank", "    draws = tarl.rng", "    import time\n    time.sleep(60)\n    draws = tarl.rng"
     )
@@ -172,12 +172,12 @@ def covered(tank: pytest.Pytester, *flags: str) -> object:
 
 
 @needs("pytest_cov")
-def test_lines_and_branches_are_covered_as_they_are_without_recording(tank: pytest.Pytester) -> None:
+def test_coverage_of_lines_and_branches_is_the_same_as_without_recording(tank: pytest.Pytester) -> None:
     plain = covered(tank)
     assert covered(tank, *FEW) == plain
 
 
-def test_one_failure_is_one_for_maxfail_and_in_the_report_for_ci(tank: pytest.Pytester) -> None:
+def test_a_failed_test_counts_as_one_failure(tank: pytest.Pytester) -> None:
     changed(tank, *BROKEN)
     (tank.path / "test_zebra.py").write_text((tank.path / "test_tank.py").read_text())
     told = tank.runpytest(*FEW, "--maxfail=2", "--junitxml=found.xml")
@@ -190,7 +190,7 @@ def test_one_failure_is_one_for_maxfail_and_in_the_report_for_ci(tank: pytest.Py
         assert "episodes failed" in str(failure.get("message")) + str(failure.text)
 
 
-def test_the_first_failure_ends_the_run_when_asked(tank: pytest.Pytester) -> None:
+def test_exitfirst_ends_the_run_at_the_first_failure(tank: pytest.Pytester) -> None:
     changed(tank, *BROKEN)
     (tank.path / "test_zebra.py").write_text((tank.path / "test_tank.py").read_text())
     told = tank.runpytest(*FEW, "-x")
@@ -198,13 +198,13 @@ def test_the_first_failure_ends_the_run_when_asked(tank: pytest.Pytester) -> Non
     told.stdout.fnmatch_lines(["*stopping after 1 failures*"])
 
 
-def test_durations_are_those_of_all_episodes(tank: pytest.Pytester) -> None:
+def test_the_duration_is_the_sum_over_all_episodes(tank: pytest.Pytester) -> None:
     told = tank.runpytest(*FEW, "--durations=3", "-vv")
     (line,) = [line for line in told.outlines if re.search(r"^\d+\.\d+s call ", line)]
     assert line.endswith("test_tank.py::test_fills")
 
 
-def test_the_debugger_opens_where_an_episode_failed(tank: pytest.Pytester) -> None:
+def test_the_debugger_opens_in_the_episode_that_failed(tank: pytest.Pytester) -> None:
     changed(tank, *BROKEN)
     tank.makeconftest(
         """

@@ -32,12 +32,12 @@ def recorded(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pyt
     return tank
 
 
-def test_without_flags_it_is_an_ordinary_test_that_writes_nothing(tank: pytest.Pytester) -> None:
+def test_without_flags_a_test_runs_once_and_writes_nothing(tank: pytest.Pytester) -> None:
     tank.runpytest().assert_outcomes(passed=2)
     assert not (tank.path / ".tarl" / "utility").exists()
 
 
-def test_recording_writes_a_fixture_and_deselects_the_others(tank: pytest.Pytester) -> None:
+def test_recording_writes_a_file_and_deselects_unmarked_tests(tank: pytest.Pytester) -> None:
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(passed=1, deselected=1)
     result.stdout.fnmatch_lines(
@@ -47,7 +47,7 @@ def test_recording_writes_a_fixture_and_deselects_the_others(tank: pytest.Pytest
     assert (tank.path / ".tarl" / ".gitignore").read_text().count("!utility/") == 2
 
 
-def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tank: pytest.Pytester) -> None:
+def test_equal_seeds_give_equal_bytes_and_different_seeds_do_not(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     first = fixture_file(tank).read_bytes()
     result = tank.runpytest(*RECORD)
@@ -57,7 +57,7 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tank: pytest
     assert fixture_file(tank).read_bytes() != first
 
 
-def test_a_drift_that_costs_is_degraded_and_fails_the_test(recorded: pytest.Pytester) -> None:
+def test_a_drift_with_a_loss_is_degraded_and_fails_the_test(recorded: pytest.Pytester) -> None:
     result = recorded.runpytest(*ONLINE)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*test_fills?clogged?*degraded*", "*keeper.py:*"])
@@ -69,7 +69,7 @@ def test_a_drift_that_costs_is_degraded_and_fails_the_test(recorded: pytest.Pyte
     assert found["culprits"][0]["path"] == "keeper.py"
 
 
-def test_a_drift_that_changes_nothing_passes(tank: pytest.Pytester) -> None:
+def test_a_drift_without_an_effect_passes(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", '"clogged": 0.25', '"clean": 1.0')
     tank.runpytest(*RECORD)
     result = tank.runpytest(*ONLINE)
@@ -84,7 +84,7 @@ def test_without_a_drift_the_scenario_is_called_online(tank: pytest.Pytester) ->
 
 
 @pytest.mark.parametrize("search", ["sweep", "epsilon-greedy"])
-def test_a_repair_is_found_applies_and_heals_the_test(recorded: pytest.Pytester, search: str) -> None:
+def test_a_repair_is_found_and_applying_it_fixes_the_test(recorded: pytest.Pytester, search: str) -> None:
     result = recorded.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*git apply .tarl/patches/*.patch*"])
@@ -98,7 +98,7 @@ def test_a_repair_is_found_applies_and_heals_the_test(recorded: pytest.Pytester,
     recorded.runpytest().assert_outcomes(passed=2)
 
 
-def test_a_world_that_no_constant_can_mend_gets_no_patch(tank: pytest.Pytester) -> None:
+def test_a_drift_that_no_constant_repairs_gives_no_patch(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", '"clogged": 0.25', '"shut": 0.0')
     tank.runpytest(*RECORD)
     result = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-budget=60")
@@ -108,7 +108,7 @@ def test_a_world_that_no_constant_can_mend_gets_no_patch(tank: pytest.Pytester) 
     assert found["repair"]["accepted"] is False
 
 
-def test_without_fixture_the_test_is_skipped_with_the_command_or_fails_when_strict(
+def test_a_missing_recording_skips_the_test_and_fails_it_with_strict(
     tank: pytest.Pytester,
 ) -> None:
     result = tank.runpytest(*ONLINE, "-rs")
@@ -119,20 +119,22 @@ def test_without_fixture_the_test_is_skipped_with_the_command_or_fails_when_stri
     tank.runpytest(*ONLINE, "--tarl-strict").assert_outcomes(failed=1, deselected=1)
 
 
-def test_an_unknown_drift_is_named_with_the_known_ones(tank: pytest.Pytester) -> None:
+def test_an_unknown_drift_is_reported_with_the_known_ones(tank: pytest.Pytester) -> None:
     result = tank.runpytest(*ONLINE, "--tarl-drift=mud")
     result.stderr.fnmatch_lines(["*No test declares the drift 'mud' (declared: clogged).*"])
     assert result.ret == pytest.ExitCode.USAGE_ERROR
 
 
-def test_a_damaged_fixture_is_named(recorded: pytest.Pytester) -> None:
+def test_a_damaged_recording_is_reported(recorded: pytest.Pytester) -> None:
     fixture_file(recorded).write_bytes(fixture_file(recorded).read_bytes()[:300])
     result = recorded.runpytest(*ONLINE)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*is damaged*--tarl-record*"])
 
 
-def test_an_edited_node_loses_slices_by_name_and_keeps_its_verdict(recorded: pytest.Pytester) -> None:
+def test_an_edited_node_loses_the_slices_of_edited_lines_and_keeps_its_verdict(
+    recorded: pytest.Pytester,
+) -> None:
     changed(recorded, "keeper", "missing = 1.0 - level", "missing = 1.0 - 1.0 * level")
     result = recorded.runpytest(*ONLINE)
     told = " ".join(result.stdout.str().split())
@@ -141,7 +143,7 @@ def test_an_edited_node_loses_slices_by_name_and_keeps_its_verdict(recorded: pyt
     assert "`missing = 1.0 - level` are lost" in told
 
 
-def test_moved_lines_lose_nothing(recorded: pytest.Pytester) -> None:
+def test_moved_lines_keep_their_slices(recorded: pytest.Pytester) -> None:
     changed(recorded, "keeper", "GAIN = 2.0", "# gains\n\n\nGAIN = 2.0")
     result = recorded.runpytest(*ONLINE)
     result.stdout.no_fnmatch_line("*was edited*")
@@ -180,9 +182,7 @@ def test_moved_lines_lose_nothing(recorded: pytest.Pytester) -> None:
         ("test_tank", "valve.data if valve else 0.0", "valve.dota", "*dota*"),
     ],
 )
-def test_what_goes_wrong_says_what_to_do(
-    tank: pytest.Pytester, file: str, old: str, new: str, words: str
-) -> None:
+def test_every_mistake_gives_advice(tank: pytest.Pytester, file: str, old: str, new: str, words: str) -> None:
     changed(tank, file, old, new)
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(failed=1, deselected=1)
@@ -191,7 +191,7 @@ def test_what_goes_wrong_says_what_to_do(
     assert not list((tank.path / ".tarl").glob("utility/*"))
 
 
-def test_episodes_that_fail_are_reported_as_unfinished_software(tank: pytest.Pytester) -> None:
+def test_failing_episodes_are_reported_as_unfinished_software(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(failed=1, deselected=1)
@@ -200,14 +200,14 @@ def test_episodes_that_fail_are_reported_as_unfinished_software(tank: pytest.Pyt
     )
 
 
-def test_a_test_that_is_not_reproducible_is_told(tank: pytest.Pytester) -> None:
+def test_a_test_that_is_not_reproducible_is_reported(tank: pytest.Pytester) -> None:
     changed(
         tank, "test_tank", "draws = tarl.rng", "import numpy; draws = numpy.random.default_rng() or tarl.rng"
     )
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*not reproducible*tarl.rng*"])
 
 
-def test_every_episode_has_fresh_function_scoped_fixtures_and_one_module_fixture(
+def test_function_scoped_fixtures_are_fresh_in_every_episode_and_module_fixtures_are_shared(
     tank: pytest.Pytester,
 ) -> None:
     tank.makeconftest(
@@ -235,7 +235,7 @@ def test_every_episode_has_fresh_function_scoped_fixtures_and_one_module_fixture
     result.stdout.fnmatch_lines(["*made 1 17 17*"])  # 16 episodes, and the first one's seed again
 
 
-def test_skips_inside_a_test_are_skips(tank: pytest.Pytester) -> None:
+def test_a_skip_inside_the_test_skips_it(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",
@@ -247,12 +247,12 @@ def test_skips_inside_a_test_are_skips(tank: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*no simulator here*"])
 
 
-def test_a_fixture_used_without_the_marker_says_so(tank: pytest.Pytester) -> None:
+def test_using_the_fixture_without_the_marker_gives_one_sentence(tank: pytest.Pytester) -> None:
     tank.makepyfile("def test_it(tarl):\n    pass\n")
     tank.runpytest().stdout.fnmatch_lines(["*without the marker*@pytest.mark.tarl*"])
 
 
-def test_the_plugin_imports_nothing_heavy_until_it_is_needed(tank: pytest.Pytester) -> None:
+def test_importing_the_plugin_imports_no_heavy_package(tank: pytest.Pytester) -> None:
     code = (
         "import sys, pytest, pytest_tarl.plugin; "
         "print([m for m in ('numpy', 'libcst', 'astroid', 'greenlet', 'rosbags', 'plotly') if m in sys.modules])"
@@ -261,7 +261,7 @@ def test_the_plugin_imports_nothing_heavy_until_it_is_needed(tank: pytest.Pytest
     result.stdout.fnmatch_lines(["[[]]"])
 
 
-def test_bins_that_are_learned_are_kept_in_the_fixture_and_used_on_line(tank: pytest.Pytester) -> None:
+def test_learned_bins_are_saved_in_the_recording_and_used_in_comparisons(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "low=0, high=1, bins=10", "bins=6")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     (sensor,) = load(fixture_file(tank)).sensors
@@ -280,7 +280,7 @@ def test_a_sensor_may_be_a_function_of_the_message(tank: pytest.Pytester) -> Non
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*degraded*"])
 
 
-def test_tiles_find_what_the_table_finds(tank: pytest.Pytester) -> None:
+def test_tiles_give_the_same_verdict_as_the_table(tank: pytest.Pytester) -> None:
     regions = []
     for bins in ("bins=10", "bins=10, tilings=2"):
         changed(tank, "test_tank", "bins=10", bins)

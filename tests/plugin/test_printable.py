@@ -24,7 +24,7 @@ COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028\u2029\u202
 
 @given(st.text(st.characters()) | st.text("\x1b[]\x9b;\x07\u202e\r\n0m"))
 @example(HOSTILE)
-def test_no_command_is_left_and_text_stays(text: str) -> None:
+def test_control_sequences_are_removed_and_text_is_kept(text: str) -> None:
     shown = printable(text)
     assert not COMMANDS.search(shown)
     assert shown.encode() is not None  # no surrogate is left
@@ -39,7 +39,7 @@ def told(capsys: pytest.CaptureFixture[str], *command: str) -> str:
     return printed.out + printed.err
 
 
-def test_show_and_diff(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_and_diff_print_no_control_sequences(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plain = sound_fixture()
     place = replace(plain.lists[0].sites[0], code=f"x = '{HOSTILE}'", path=f"{HOSTILE}.py", id=HOSTILE)
     first = replace(plain.lists[0], source=f"/in{HOSTILE}", sites=(place, *plain.lists[0].sites[1:]))
@@ -54,7 +54,9 @@ def test_show_and_diff(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.parametrize("command", ["apply", "suggest"])
-def test_headers_of_patches(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_headers_of_patches_contain_no_control_sequences(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     hostile = HOSTILE.replace("\r", "").encode()
     with robot() as (_, place):
         place.write_bytes(
@@ -65,14 +67,14 @@ def test_headers_of_patches(command: str, capsys: pytest.CaptureFixture[str]) ->
     assert not COMMANDS.search(text)
 
 
-def test_names_of_files_that_are_not_there(capsys: pytest.CaptureFixture[str]) -> None:
+def test_names_of_missing_files_are_printed_safely(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ("apply", "revert", "suggest", "show"):
         text = told(capsys, command, f"{HOSTILE.replace(chr(0), '')}.patch")
         assert "owned" in text
         assert not COMMANDS.search(text)
 
 
-def test_accounts_of_runs_and_what_nodes_end_in(tank: pytest.Pytester) -> None:
+def test_errors_of_nodes_are_printed_safely(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "            flow = GAIN * missing", "            flow = GAIN * missing / FACTOR")
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 2.0\nFACTOR = 1.0\n")
     assert tank.runpytest_subprocess(*RECORD).ret == 0

@@ -16,7 +16,7 @@ def shown(times: list[float], *steps: tuple[int, int, str]) -> list[str]:
     return [text.removeprefix("t.py::test ").rstrip() for text in lines]
 
 
-def test_it_is_shown_at_once_and_then_with_rate_and_time_left() -> None:
+def test_progress_is_shown_at_once_and_later_with_rate_and_time_left() -> None:
     assert shown([0.0, 0.01, 1.0], (0, 200, "off-line"), (1, 200, "off-line"), (20, 200, "off-line")) == [
         "off-line 0/200",
         "off-line 20/200, 20/s, 9 s left",
@@ -31,7 +31,7 @@ def test_a_new_phase_is_shown_at_once_and_has_its_own_rate() -> None:
     ]
 
 
-def test_it_is_written_ten_times_a_second_at_most() -> None:
+def test_progress_is_written_at_most_ten_times_a_second() -> None:
     lines = shown(
         [place / 1000 for place in range(1000)], *((place, 1000, "off-line") for place in range(1000))
     )

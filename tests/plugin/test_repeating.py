@@ -10,7 +10,7 @@ MARK = "@pytest.mark.tarl("
 
 
 @pytest.mark.parametrize("strict", [False, True])
-def test_a_mission_that_is_expected_to_fail_is_a_failed_mission(tank: pytest.Pytester, strict: bool) -> None:
+def test_an_expected_failure_counts_as_a_failed_mission(tank: pytest.Pytester, strict: bool) -> None:
     changed(tank, "test_tank", MARK, f"@pytest.mark.xfail(strict={strict})\n{MARK}")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
@@ -19,14 +19,14 @@ def test_a_mission_that_is_expected_to_fail_is_a_failed_mission(tank: pytest.Pyt
     told.stdout.fnmatch_lines(["*5 of the first 5 episodes failed*the other 11 were not run*tank not full*"])
 
 
-def test_a_test_that_is_not_to_be_run_is_skipped(tank: pytest.Pytester) -> None:
+def test_a_test_marked_to_be_skipped_is_skipped(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", MARK, f'@pytest.mark.xfail(run=False, reason="no pump")\n{MARK}')
     told = tank.runpytest(*RECORD, "-rs")
     told.assert_outcomes(skipped=1, deselected=1)
     told.stdout.fnmatch_lines(["*no pump*"])
 
 
-def test_of_all_that_the_episodes_print_only_the_last_one_is_shown(tank: pytest.Pytester) -> None:
+def test_only_the_output_of_the_last_episode_is_shown(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "    draws = tarl.rng", '    print("begun")\n    draws = tarl.rng')
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     assert tank.runpytest(*RECORD).stdout.str().count("begun") == 1
@@ -53,7 +53,7 @@ def test_exit_in_a_test_ends_the_run(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*Exit: enough*"])
 
 
-def test_an_error_in_a_teardown_is_no_failed_mission(tank: pytest.Pytester) -> None:
+def test_an_error_in_teardown_is_not_a_failed_mission(tank: pytest.Pytester) -> None:
     tank.makeconftest(
         """
         import pytest
@@ -70,7 +70,7 @@ def test_an_error_in_a_teardown_is_no_failed_mission(tank: pytest.Pytester) -> N
 
 
 @pytest.mark.parametrize("flags", [(), ("--tarl-drift=clogged",)])
-def test_drifts_that_a_test_does_not_take_are_not_run_as_if_they_were_none(
+def test_drifts_without_the_fixture_tarl_drift_are_refused(
     tank: pytest.Pytester, flags: tuple[str, ...]
 ) -> None:
     changed(tank, "test_tank", "(tarl, tarl_drift):", "(tarl):\n    tarl_drift = None")
@@ -81,7 +81,7 @@ def test_drifts_that_a_test_does_not_take_are_not_run_as_if_they_were_none(
 
 
 @pytest.mark.parametrize("drifts", ["5", "None", "{1: 2}"])
-def test_a_marker_that_is_wrong_is_told_in_a_sentence(tank: pytest.Pytester, drifts: str) -> None:
+def test_an_invalid_marker_gives_one_sentence(tank: pytest.Pytester, drifts: str) -> None:
     changed(tank, "test_tank", '{"clogged": 0.25}', drifts)
     told = tank.runpytest(*ONLINE)
     told.assert_outcomes(failed=1, deselected=1)
@@ -91,7 +91,7 @@ def test_a_marker_that_is_wrong_is_told_in_a_sentence(tank: pytest.Pytester, dri
     told.stderr.fnmatch_lines(["*drifts maps names to values*"])
 
 
-def test_other_parameters_keep_the_fixture_whatever_they_are_called(tank: pytest.Pytester) -> None:
+def test_tests_with_any_parameter_ids_have_their_own_recordings(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", MARK, f'@pytest.mark.parametrize("pump", ["clogged", "clogged-2"])\n{MARK}')
     changed(tank, "test_tank", "(tarl, tarl_drift)", "(tarl, tarl_drift, pump)")
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
@@ -101,7 +101,7 @@ def test_other_parameters_keep_the_fixture_whatever_they_are_called(tank: pytest
     assert told.stdout.str().count(": degraded") >= 2
 
 
-def test_a_sensor_that_is_never_a_number_is_told(tank: pytest.Pytester) -> None:
+def test_a_sensor_that_is_always_nan_is_reported(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "Float64(data=level +", 'Float64(data=float("nan") +')
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(1.0)")
     told = tank.runpytest(*RECORD)
@@ -109,14 +109,14 @@ def test_a_sensor_that_is_never_a_number_is_told(tank: pytest.Pytester) -> None:
     told.stdout.fnmatch_lines(["*'level' was NaN*"])
 
 
-def test_parts_of_a_reward_are_numbers_too(tank: pytest.Pytester) -> None:
+def test_parts_of_a_reward_must_be_finite_numbers(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", 'tarl.reward(1.0, depth=float("nan"))')
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
     told.stdout.fnmatch_lines(["*rewards must be finite*"])
 
 
-def test_missions_that_fail_early_and_earn_more_for_it_are_told(tank: pytest.Pytester) -> None:
+def test_failed_missions_that_earn_more_because_they_end_early_are_reported(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",

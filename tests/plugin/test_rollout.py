@@ -47,7 +47,7 @@ def plans(*seeds: int) -> Iterator[tuple[int, EpisodePlan]]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
-def test_who_asks_gets_the_same_whatever_was_foreseen(workers: int) -> None:
+def test_results_do_not_depend_on_what_was_started_ahead(workers: int) -> None:
     ahead: Any = Ahead(FakeExecutor(workers))
     got = []
     for seed in (3, 1, 4, 1, 5):
@@ -56,7 +56,7 @@ def test_who_asks_gets_the_same_whatever_was_foreseen(workers: int) -> None:
     assert got == [3, 1, 4, 1, 5]
 
 
-def test_one_at_a_time_nothing_is_begun_before_it_is_asked_for() -> None:
+def test_one_worker_starts_no_episode_ahead() -> None:
     executor = FakeExecutor(1)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 2, 3))
@@ -65,7 +65,7 @@ def test_one_at_a_time_nothing_is_begun_before_it_is_asked_for() -> None:
     assert executor.begun == [2]
 
 
-def test_as_many_are_begun_as_keep_the_workers_busy_and_each_once() -> None:
+def test_enough_episodes_are_started_ahead_to_keep_all_workers_busy() -> None:
     executor = FakeExecutor(2)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(*range(20)))
@@ -75,7 +75,7 @@ def test_as_many_are_begun_as_keep_the_workers_busy_and_each_once() -> None:
     assert executor.begun == list(range(AHEAD * 2 + 3))
 
 
-def test_what_was_begun_is_kept_for_later_and_what_nobody_asks_for_is_cancelled_at_last() -> None:
+def test_results_are_kept_until_requested_and_unrequested_runs_are_cancelled() -> None:
     executor = FakeExecutor(2)
     ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 2, 3))

@@ -30,7 +30,7 @@ def results(project: pytest.Pytester) -> dict[str, Any]:
     return {one["test"].partition("::test_")[2]: one for one in found}
 
 
-def test_new_seeds_in_the_same_world_are_no_difference(worlds: pytest.Pytester) -> None:
+def test_new_seeds_in_the_same_world_give_no_difference(worlds: pytest.Pytester) -> None:
     worlds.runpytest("--tarl-record", "--tarl-episodes=40", "--tarl-seed=1").assert_outcomes(passed=9)
     worlds.runpytest("--tarl-online", "--tarl-episodes=20", "--tarl-seed=2").assert_outcomes(passed=9)
     found = results(worlds)
@@ -39,7 +39,7 @@ def test_new_seeds_in_the_same_world_are_no_difference(worlds: pytest.Pytester) 
     assert found["there_and_back"]["atr"]["offline"] == found["there_and_back"]["atr"]["online"] == 0.0
 
 
-def test_a_cost_that_is_a_little_higher_is_still_seen(worlds: pytest.Pytester) -> None:
+def test_a_small_additional_cost_is_detected(worlds: pytest.Pytester) -> None:
     chosen = "test_rewards.py::test_constant_cost"
     worlds.runpytest("--tarl-record", "--tarl-episodes=40", chosen)
     test = worlds.path / "test_rewards.py"

@@ -33,21 +33,21 @@ def test_a_value_lies_in_the_interval_of_its_bin(value: float) -> None:
 @pytest.mark.parametrize(
     ("value", "index"), [(-1.0, 0), (-0.5, 1), (3.0, 7), (3.0001, 8), (-1.1, -1), (math.inf, 8)]
 )
-def test_edges_belong_to_the_upper_bin_but_the_last(value: float, index: int) -> None:
+def test_an_edge_belongs_to_the_bin_above_it_except_the_last_one(value: float, index: int) -> None:
     assert X.bin(value) == index
 
 
-def test_nan_tells_nothing() -> None:
+def test_nan_has_no_bin() -> None:
     assert X.bin(math.nan) is None
 
 
-def test_booleans_integers_and_categories_are_taken_as_they_are() -> None:
+def test_booleans_integers_and_categories_need_no_bins() -> None:
     assert [Sensor("terrain").bin(value) for value in (False, True, 7)] == [0, 1, 7]
     assert Sensor("mode", categories=("dry", "wet")).bin("wet") == 1
 
 
 @pytest.mark.parametrize("expr", ["speed", "self.heading", "self.state['yaw'].value", "a.b[0]"])
-def test_a_variable_that_holds_a_sensor_lets_guards_ask_for_it(expr: str) -> None:
+def test_a_guard_reads_the_variable_that_holds_the_sensor(expr: str) -> None:
     assert not Sensor("x").guardable
     assert Sensor("x", expr=expr).guardable
     assert Sensor("x", expr=expr).path == ""
@@ -80,38 +80,38 @@ def test_a_variable_that_holds_a_sensor_lets_guards_ask_for_it(expr: str) -> Non
         ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],
 )
-def test_a_wrong_declaration_says_what_to_mend(arguments: dict[str, object], words: str) -> None:
+def test_an_invalid_declaration_gives_one_sentence(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(SettingsError, match=words):
         Sensor(**arguments)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("value", [0.5, "wet"])
-def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
+def test_a_measurement_needs_bins_and_a_string_needs_categories(value: object) -> None:
     with pytest.raises(SettingsError, match=r"low, high and bins for a measurement"):
         Sensor("x").bin(value)
 
 
 @pytest.mark.parametrize("value", ["wet", None, [1.0], np.array([1.0, 2.0])])
-def test_what_is_no_number_is_told_and_not_binned(value: object) -> None:
+def test_a_value_that_is_not_a_number_is_reported(value: object) -> None:
     with pytest.raises(SettingsError, match=r"'x' got .* is not a number"):
         Sensor("x", low=0, high=1, bins=2).bin(value)
 
 
 @pytest.mark.parametrize("value", [1, True, np.float32(1.0), np.array(1.0), Fraction(1)])
-def test_numbers_of_any_kind_are_binned(value: object) -> None:
+def test_numbers_of_any_type_have_a_bin(value: object) -> None:
     assert Sensor("x", low=0, high=2, bins=2).bin(value) == 1
 
 
-def test_a_number_beyond_all_floats_lies_outside() -> None:
+def test_a_number_beyond_the_largest_float_is_outside_the_range() -> None:
     assert Sensor("x", low=0, high=1, bins=2).bin(10**400) == 2
     assert Sensor("x", low=0, high=1, bins=2).bin(-(10**400)) == -1
 
 
-def test_a_list_of_categories_is_taken() -> None:
+def test_categories_may_be_a_list() -> None:
     assert Sensor("mode", categories=["dry", "wet"]) == Sensor("mode", categories=("dry", "wet"))  # type: ignore[arg-type]
 
 
-def test_an_unknown_category_is_named() -> None:
+def test_an_unknown_category_is_reported() -> None:
     with pytest.raises(SettingsError, match=r"'icy'.*'dry', 'wet'"):
         Sensor("mode", categories=("dry", "wet")).bin("icy")
 
@@ -123,12 +123,12 @@ def test_fields_are_followed_through_attributes_items_and_indices() -> None:
     assert field_value({"a": {"b": 3}}, "a.b") == 3
 
 
-def test_bins_have_names_for_people() -> None:
+def test_bins_have_readable_names() -> None:
     assert X.label(2) == "0-0.5 m"
     assert Sensor("mode", categories=("dry", "wet")).label(1) == "wet"
 
 
-def test_a_value_below_the_upper_end_is_never_outside_for_rounding() -> None:
+def test_rounding_never_moves_a_value_outside_the_range() -> None:
     sensor = Sensor("x", low=-3.7, high=3.9, bins=5)
     below = math.nextafter(3.9, 0.0)
     assert sensor.bin(below) == sensor.bin(3.9) == 4
@@ -151,7 +151,7 @@ HEADING = Sensor("heading", topic="/pose", field="theta", bins=8, angle=True, un
 
 
 @given(st.floats(-20, 20), st.integers(-3, 3))
-def test_an_angle_has_the_same_bin_however_often_it_was_turned_round(value: float, turns: int) -> None:
+def test_an_angle_has_the_same_bin_after_any_number_of_turns(value: float, turns: int) -> None:
     index = HEADING.bin(value)
     assert index is not None
     assert 0 <= index < 8
@@ -160,20 +160,20 @@ def test_an_angle_has_the_same_bin_however_often_it_was_turned_round(value: floa
     assert (index - turned) % 8 in (0, 1, 7)  # on an edge the last digit decides
 
 
-def test_an_interval_of_an_angle_may_run_across_the_end_of_its_range() -> None:
+def test_an_interval_of_an_angle_may_cross_the_end_of_its_range() -> None:
     low, high = HEADING.interval(7, 8)
     assert (low, high) == pytest.approx((0.75 * math.pi, -0.75 * math.pi))
     assert HEADING.interval(3, 10) == (-math.inf, math.inf)
 
 
-def test_unequal_bins_hold_what_lies_between_their_edges() -> None:
+def test_unequal_bins_contain_the_values_between_their_edges() -> None:
     sensor = Sensor("x", edges=(0.0, 1.0, 5.0, 6.0))
     assert [sensor.bin(value) for value in (-1, 0, 0.5, 1, 4.9, 5, 6, 7)] == [-1, 0, 0, 1, 1, 2, 2, 3]
     assert sensor.interval(1, 1) == (1.0, 5.0)
     assert sensor.resolution == 1.0
 
 
-def test_learned_bins_hold_about_as_many_values_each_and_are_declared_without_them() -> None:
+def test_learned_bins_contain_similar_numbers_of_values() -> None:
     asked = Sensor("x", topic="/x", field="data", bins=4)
     values = (np.random.default_rng(0).normal(size=4000) ** 3).tolist()
     (found,) = with_edges((asked,), learned_edges((asked,), {"x": values}))
@@ -182,12 +182,12 @@ def test_learned_bins_hold_about_as_many_values_each_and_are_declared_without_th
     assert declared(found) == asked
 
 
-def test_bins_cannot_be_learned_from_one_value() -> None:
+def test_bins_cannot_be_learned_from_a_constant() -> None:
     with pytest.raises(RecordingError, match="'x' read 2 all the time"):
         learned_edges((Sensor("x", bins=4),), {"x": [2.0, 2.0, math.nan]})
 
 
-def test_a_function_reads_a_sensor_and_is_stored_by_its_name_and_never_in_a_guard() -> None:
+def test_a_sensor_may_be_a_function_and_is_then_never_in_a_guard() -> None:
     def nearest(scan: SimpleNamespace) -> float:
         return float(min(scan.ranges))
 
@@ -209,6 +209,6 @@ def test_a_single_edge_is_a_threshold() -> None:
 @pytest.mark.parametrize(
     "wrong", [{"edges": (0.5,), "angle": True}, {"edges": (0.5,), "tilings": 2}, {"edges": ("x",)}]
 )
-def test_what_a_single_edge_cannot_be_is_said(wrong: dict[str, Any]) -> None:
+def test_invalid_edges_give_one_sentence(wrong: dict[str, Any]) -> None:
     with pytest.raises(SettingsError, match=r"edges must be|tilings must be"):
         Sensor("x", **wrong)

@@ -83,7 +83,9 @@ def project(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_four_sensors_two_nodes_and_two_lists_are_recorded_and_compared(project: pytest.Pytester) -> None:
+def test_a_test_with_four_sensors_two_nodes_and_two_lists_is_recorded_and_compared(
+    project: pytest.Pytester,
+) -> None:
     project.runpytest("--tarl-record").assert_outcomes(passed=1)
     fixture = load(fixture_file(project))
     assert [one.name for one in fixture.lists] == ["/level → /wanted", "/wanted → /valve"]
@@ -105,7 +107,7 @@ def test_four_sensors_two_nodes_and_two_lists_are_recorded_and_compared(project:
     assert {site["path"] for site in found["sites"]} == {"planner.py", "motor.py"}
 
 
-def test_workers_see_the_same_with_sensors_of_every_kind(project: pytest.Pytester) -> None:
+def test_workers_give_the_same_result_with_sensors_of_every_kind(project: pytest.Pytester) -> None:
     project.runpytest("--tarl-record", "--tarl-episodes=6").assert_outcomes(passed=1)
     here = fixture_file(project).read_bytes()
     project.runpytest("--tarl-record", "--tarl-episodes=6", "--tarl-workers=2").assert_outcomes(passed=1)

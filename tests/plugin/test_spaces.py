@@ -28,7 +28,7 @@ seeds = st.integers(0, 2**63 - 1)
 
 
 @given(seeds)
-def test_an_episode_draws_every_direction_and_the_world_gets_those_of_its_own(seed: int) -> None:
+def test_an_episode_draws_all_directions_and_passes_on_those_of_the_world(seed: int) -> None:
     found = drawn(WORLD, "world", seed)
     assert found.keys() == {"mud", "camera"}
     assert 0.05 <= found["mud"] <= 1.0
@@ -39,7 +39,7 @@ def test_an_episode_draws_every_direction_and_the_world_gets_those_of_its_own(se
     assert sizes(WORLD, "world", seed) == {"mud": found["mud"], "odom": size}
 
 
-def test_directions_are_drawn_apart_and_options_alike() -> None:
+def test_each_direction_is_drawn_independently_and_options_are_equally_likely() -> None:
     alone = drift("t", "world", Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0)))
     assert [drawn(alone, "world", seed)["mud"] for seed in range(9)] == [
         drawn(WORLD, "world", seed)["mud"] for seed in range(9)
@@ -48,7 +48,7 @@ def test_directions_are_drawn_apart_and_options_alike() -> None:
     assert 900 < downs < 1100
 
 
-def test_without_a_scenario_and_beside_others_the_values_are_nominal() -> None:
+def test_without_this_scenario_the_values_are_nominal() -> None:
     drifts = {"world": WORLD, "dusk": drift("t", "dusk", {"light": 0.3}), "rain": drift("t", "rain", 0.2)}
     assert value(drifts, (), None, 1) == {"mud": 1.0, "camera": "up"}
     assert value(drifts, (), "dusk", 1) == {"mud": 1.0, "camera": "up", "light": 0.3}
@@ -56,7 +56,7 @@ def test_without_a_scenario_and_beside_others_the_values_are_nominal() -> None:
     assert active_faults(drifts, None, 1) == active_faults(drifts, "dusk", 1) == {}
 
 
-def test_a_point_replaces_the_draw_and_travels_to_workers() -> None:
+def test_a_fixed_point_replaces_the_draw_in_workers_too() -> None:
     point = {"mud": 0.3, "camera": 1.0, "odom": 0.0}
     assert value({"world": WORLD}, (), "world", 1, point) == {"mud": 0.3, "camera": "down"}
     assert active_faults({"world": WORLD}, "world", 1, point) == {}
@@ -88,13 +88,13 @@ def test_the_nominal_option_is_the_first_unless_stated() -> None:
         (lambda: drift("t", "world", {"a": Drift(WORLD.value)}), "inside a dictionary"),
     ],
 )
-def test_what_is_no_space_is_told(make: Any, told: str) -> None:
+def test_an_invalid_space_gives_one_sentence(make: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         make()
 
 
 @given(st.dictionaries(st.text(min_size=1), st.tuples(st.floats(0, 1), st.floats(0, 1)), min_size=1))
-def test_nominal_points_lie_in_their_space(parts: dict[str, tuple[float, float]]) -> None:
+def test_nominal_points_lie_inside_their_space(parts: dict[str, tuple[float, float]]) -> None:
     ranges = {
         name: Drift.range(0.0, high + 1.0, nominal=share * high) for name, (share, high) in parts.items()
     }
@@ -133,7 +133,7 @@ def test_a_space_is_recorded_as_nominal_and_compared_as_drawn(spaced: pytest.Pyt
     done.stdout.fnmatch_lines(["*degraded*"])
 
 
-def test_a_misspelt_topic_or_field_of_a_fault_is_told(spaced: pytest.Pytester) -> None:
+def test_a_misspelt_topic_or_field_of_a_fault_is_reported(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", 'faults.bias("/level"', 'faults.bias("/levle"')
     told = " ".join(spaced.runpytest(*RECORD).stdout.str().split())
     assert "no message was published on /levle; the topics with messages are /level, /valve" in told

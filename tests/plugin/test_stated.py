@@ -12,7 +12,7 @@ def said(tank: pytest.Pytester, *lines: str) -> None:
     tank.runpytest(*RECORD).stdout.fnmatch_lines(list(lines))
 
 
-def test_a_recording_states_bounds_and_the_fixture_keeps_them(tank: pytest.Pytester) -> None:
+def test_recording_prints_bounds_and_saves_them(tank: pytest.Pytester) -> None:
     said(
         tank,
         "  16 of 16 missions succeeded: success rate at least 82.9 % with 95 % confidence, over the "
@@ -35,20 +35,20 @@ def test_a_declared_range_makes_the_bound_of_the_mean_exact(tank: pytest.Pyteste
     assert -25 < stated.mean.low < stated.average
 
 
-def test_a_total_outside_of_the_range_is_an_error_that_names_both(tank: pytest.Pytester) -> None:
+def test_a_total_outside_the_declared_range_is_an_error(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-2, 0),")
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
     told.stdout.fnmatch_lines(["*earned -*, outside the marker's total_range=(-2.0, 0.0)*"])
 
 
-def test_where_episodes_do_not_vary_one_world_was_tested(tank: pytest.Pytester) -> None:
+def test_equal_episodes_are_reported_as_one_tested_world(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "draws.uniform(0.0, 0.2)", "0.1")
     changed(tank, "test_tank", " + float(draws.normal(0, 0.005))", "")
     said(tank, "  only one world was tested: all 16 episodes are equal*")
 
 
-def test_with_a_confidence_recording_goes_on_until_it_is_settled(tank: pytest.Pytester) -> None:
+def test_with_a_confidence_recording_continues_until_it_can_decide(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     stated = load(fixture_file(tank)).stated
@@ -58,7 +58,7 @@ def test_with_a_confidence_recording_goes_on_until_it_is_settled(tank: pytest.Py
     assert stated.success.method == "confidence sequence"
 
 
-def test_with_a_confidence_too_many_failures_settle_it_too(tank: pytest.Pytester) -> None:
+def test_with_a_confidence_too_many_failures_end_the_recording(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     changed(tank, "test_tank", "< 0.1, ", "< 0.1 and draws.random() < 0.5, ")
     told = tank.runpytest(*RECORD)
@@ -75,12 +75,14 @@ def test_with_a_confidence_too_many_failures_settle_it_too(tank: pytest.Pytester
         ("total_range=3, min_success=0.9,", "*total_range must be two finite bounds*"),
     ],
 )
-def test_what_can_never_be_shown_is_a_usage_error(tank: pytest.Pytester, marked: str, sentence: str) -> None:
+def test_a_confidence_that_can_never_be_reached_is_a_usage_error(
+    tank: pytest.Pytester, marked: str, sentence: str
+) -> None:
     changed(tank, "test_tank", "min_success=0.9,", marked)
     tank.runpytest(*RECORD).stdout.fnmatch_lines([sentence])
 
 
-def test_a_comparison_tells_what_was_stated(tank: pytest.Pytester) -> None:
+def test_a_comparison_prints_the_recorded_bounds(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(
         ["  bounds   designed: success at least 82.9 %, mean reward approximately*"]

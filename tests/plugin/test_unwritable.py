@@ -56,7 +56,7 @@ def properties(case: ElementTree.Element) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("number", ADVICE)
-def test_the_verdict_is_told_whatever_cannot_be_written(
+def test_the_verdict_is_printed_even_if_no_file_can_be_written(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, number: int
 ) -> None:
     deny(monkeypatch, number)
@@ -79,7 +79,7 @@ def test_the_verdict_is_told_whatever_cannot_be_written(
     assert ADVICE[number] in properties(same)["tarl_unwritten"]
 
 
-def test_a_patch_that_cannot_be_written_is_told_whole_and_can_be_applied(
+def test_a_patch_that_cannot_be_written_is_printed_and_can_be_applied(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as limits:
@@ -98,7 +98,7 @@ def test_a_patch_that_cannot_be_written_is_told_whole_and_can_be_applied(
     assert "applied to keeper.py" in applied.stdout.str()
 
 
-def test_recording_says_before_its_first_episode_that_nothing_can_be_written(
+def test_recording_reports_an_unwritable_path_before_the_first_episode(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     deny(monkeypatch, errno.ENOSPC)
@@ -113,7 +113,7 @@ def test_recording_says_before_its_first_episode_that_nothing_can_be_written(
     assert "ZeroDivisionError" not in told.stdout.str()
 
 
-def test_a_disk_that_fills_up_while_recording_leaves_the_old_fixture(
+def test_a_disk_that_fills_up_while_recording_keeps_the_old_recording(
     recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = fixture_file(recorded).read_bytes()
@@ -141,7 +141,7 @@ def test_a_disk_that_fills_up_while_recording_leaves_the_old_fixture(
     assert [path.name for path in fixture_file(recorded).parent.iterdir()] == [fixture_file(recorded).name]
 
 
-def test_under_a_real_limit_on_the_size_of_files(
+def test_a_limit_on_file_size_is_reported(
     recorded: pytest.Pytester, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     resource = pytest.importorskip("resource")  # not on Windows
@@ -190,7 +190,7 @@ READ_ONLY = "mount --bind . . && mount -o remount,bind,ro . && cd . || exit 99\n
 
 @pytest.mark.skipif(not mounting(), reason="this user cannot mount a file system: unshare -rm is not allowed")
 @pytest.mark.parametrize(("script", "number"), [(FULL, errno.ENOSPC), (READ_ONLY, errno.EROFS)])
-def test_on_a_real_full_disk_and_a_real_read_only_tree(
+def test_a_full_disk_and_a_read_only_tree_are_reported(
     recorded: pytest.Pytester, tmp_path_factory: pytest.TempPathFactory, script: str, number: int
 ) -> None:
     junit = tmp_path_factory.mktemp("outside") / "junit.xml"

@@ -26,7 +26,7 @@ def lines_of(path: Path) -> list[str]:
     return path.read_text().splitlines()
 
 
-def test_the_debugger_opens_at_each_episode_that_fails_and_c_goes_on(tank: pytest.Pytester) -> None:
+def test_the_debugger_opens_at_each_failed_episode_and_continues(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     asked = "p 'level is', round(level, 1)\nc\n" * 9
     told = tank.run(sys.executable, "-m", "pytest", *FEW, "--pdb", stdin=asked.encode())
@@ -35,14 +35,14 @@ def test_the_debugger_opens_at_each_episode_that_fails_and_c_goes_on(tank: pytes
     assert len(shown) == 6
 
 
-def test_a_debugger_that_is_left_ends_the_run(tank: pytest.Pytester) -> None:
+def test_quitting_the_debugger_ends_the_run(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     told = tank.run(sys.executable, "-m", "pytest", *FEW, "--pdb", stdin=b"q\n")
     assert told.ret == pytest.ExitCode.INTERRUPTED
     assert told.stdout.str().count("(Pdb)") == 1
 
 
-def test_methods_of_classes_are_episodes_with_their_set_up_each_time(tank: pytest.Pytester) -> None:
+def test_methods_of_classes_run_with_setup_in_every_episode(tank: pytest.Pytester) -> None:
     head, body = (tank.path / "test_tank.py").read_text().split(MARK, 1)
     body, ordinary = body.split("def test_ordinary", 1)
     body = body.replace("(tarl, tarl_drift)", "(self, tarl, tarl_drift)")
@@ -80,9 +80,7 @@ def test_ordinary{ordinary}"""
 
 
 @pytest.mark.parametrize("scope", ["function", "module"])
-def test_fixtures_that_are_only_asked_for_by_name_are_as_fresh_as_others(
-    tank: pytest.Pytester, scope: str
-) -> None:
+def test_fixtures_requested_by_name_are_fresh_in_every_episode(tank: pytest.Pytester, scope: str) -> None:
     before = columns_of(fixture_of(tank))
     tank.makeconftest(
         f"""
@@ -103,7 +101,7 @@ def test_fixtures_that_are_only_asked_for_by_name_are_as_fresh_as_others(
     assert lines_of(tank.path / "pumps.txt") == ["on", "off"] * (7 if scope == "function" else 1)
 
 
-def test_an_episode_that_skips_skips_the_test(tank: pytest.Pytester) -> None:
+def test_a_skip_in_an_episode_skips_the_test(tank: pytest.Pytester) -> None:
     changed(
         tank, "test_tank", HEAD, f'{HEAD}    if tarl.rng("luck").random() < 0.5: pytest.skip("no water")\n'
     )
@@ -113,14 +111,14 @@ def test_an_episode_that_skips_skips_the_test(tank: pytest.Pytester) -> None:
     assert not (tank.path / ".tarl" / "utility").exists()
 
 
-def test_an_episode_that_gives_itself_up_is_a_failed_mission(tank: pytest.Pytester) -> None:
+def test_a_call_to_xfail_is_a_failed_mission(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", HEAD, f'{HEAD}    if tarl.rng("luck").random() < 0.5: pytest.xfail("leaks")\n')
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
     told.stdout.fnmatch_lines(["*episodes failed*The first failure: leaks*"])
 
 
-def test_an_interrupt_after_some_episodes_leaves_the_old_fixture_and_nothing_else(
+def test_an_interrupt_between_episodes_keeps_the_old_recording_only(
     tank: pytest.Pytester,
 ) -> None:
     changed(tank, "test_tank", HEAD, f'{HEAD}    print("begun", flush=True)\n')

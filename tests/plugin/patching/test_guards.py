@@ -65,7 +65,9 @@ def test_each_kind_of_sensor_has_its_condition(conjunct: Conjunct, expected: str
         (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
     ],
 )
-def test_none_is_checked_only_where_the_comparison_would_raise(conjunct: Conjunct, expected: str) -> None:
+def test_the_guard_checks_for_none_only_where_the_comparison_would_raise(
+    conjunct: Conjunct, expected: str
+) -> None:
     text = told(conjunct, readings=SILENT)
     assert text == expected
     assert not eval(text, {conjunct.sensor.name: None})
@@ -128,7 +130,7 @@ def choose(text: str, expressions: tuple[str, ...], conjunct: Conjunct = STRETCH
     return held(source, source.statement(name), expressions, conjunct)
 
 
-def test_the_first_expression_that_is_safe_is_taken() -> None:
+def test_the_first_safe_expression_is_used() -> None:
     text = """
         pos = 5.0
         def cb(msg):
@@ -180,7 +182,7 @@ def test_a_variable_whose_initial_value_violates_the_guard_is_used(initial: str,
         ("def step(pos):\n    HERE = 1\ndef other():\n    pos = None", "pos", ""),
     ],
 )  # fmt: skip
-def test_none_is_checked_unless_the_surrounding_code_excludes_it(
+def test_the_guard_checks_for_none_unless_the_surrounding_code_excludes_it(
     text: str, expression: str, absent: str
 ) -> None:
     assert choose(text, (expression,)) == Reading(expression, absent)

@@ -74,7 +74,7 @@ def test_infinite_values_give_no_mutation(value: float, factor: float) -> None:
 @pytest.mark.parametrize(
     ("value", "factor", "expected"), [(0.5, 2.2, 2.2), (None, 0.4, 0.4), (0.0, 2.2, 1.2), (True, 3.0, False)]
 )
-def test_a_named_constant_takes_a_factor_or_a_step_at_its_use(
+def test_a_named_constant_is_scaled_or_moved_by_a_step_at_its_use(
     value: Any, factor: float, expected: Any
 ) -> None:
     found = mutations(constant(value, literal=False), factor)
@@ -82,7 +82,7 @@ def test_a_named_constant_takes_a_factor_or_a_step_at_its_use(
     assert found.value == expected
 
 
-def test_steps_of_zero_are_symmetric_on_a_log_scale() -> None:
+def test_steps_for_a_zero_are_symmetric_on_a_log_scale() -> None:
     up, down = mutations(constant(0.0), 4.0), mutations(constant(0.0), 0.25)
     assert up is not None
     assert down is not None
@@ -157,7 +157,7 @@ def test_without_a_guard_the_use_is_replaced(
 
 
 @pytest.mark.parametrize(("statement", "code", "value", "new", "expected"), IN_MUD)
-def test_a_guarded_change_reads_as_a_maintainer_would_write_it(
+def test_a_guarded_change_has_the_expected_text(
     statement: str, code: str, value: Any, new: Any, expected: str
 ) -> None:
     assert written(statement, code, value, new, MUD) == expected
@@ -498,7 +498,7 @@ def test_every_operand_of_the_examples_can_be_written_under_a_guard(node: str) -
         assert f"if {guard_text(MUDDY_STRETCH, analysis, [change], TOPICS)}" in text
 
 
-def test_the_repair_of_the_delivery_robot_reads_as_its_maintainer_would_write_it() -> None:
+def test_the_repair_of_the_delivery_robot_has_the_expected_text() -> None:
     analysis = analyse([EXAMPLES / "shuttle" / "traveller.py"], root=EXAMPLES)
     (gain,) = (
         operand for step in analysis.sites for operand in analysis.operands(step.site) if operand.value == 5

@@ -205,7 +205,7 @@ def test_text_that_the_encoding_cannot_represent_is_refused(tmp_path: Path) -> N
         patched(tmp_path, {node: "# coding: ascii\na = 'ü'\n"})
 
 
-def test_bytes_of_other_encodings_can_be_shown(tmp_path: Path) -> None:
+def test_bytes_of_other_encodings_can_be_printed(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_bytes("# coding: latin-1\na = 5  # ü\n".encode("latin-1"))
     diff = unified_diff({node: node.read_bytes()}, {node: "# coding: latin-1\na = 7  # ü\n"}, tmp_path, [])
@@ -223,7 +223,7 @@ def test_a_patch_is_named_after_test_drift_and_content(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_the_header_is_comment_only(tmp_path: Path) -> None:
+def test_the_header_consists_of_comments(tmp_path: Path) -> None:
     (tmp_path / "node.py").write_text("a = 5\n")
     diff = unified_diff(
         {tmp_path / "node.py": b"a = 5\n"}, {tmp_path / "node.py": "a = 7\n"}, tmp_path, HEADER

@@ -268,7 +268,7 @@ def repaired(
 
 
 @pytest.mark.parametrize("kind", NODES)
-def test_a_node_subscribes_to_the_sensor_as_its_author_would(kind: str) -> None:
+def test_a_node_subscribes_to_the_sensor_in_its_own_style(kind: str) -> None:
     text, expected, call, api = NODES[kind]
     sources = {"node.py": text}
     assert repaired(sources, subscribing(sources, "node.py", call, api))["node.py"] == expected

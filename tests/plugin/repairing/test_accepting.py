@@ -33,20 +33,20 @@ def test_any_refused_candidate_is_reported_rather_than_none() -> None:
     assert furthest(refused, NONE) is refused
 
 
-def test_a_candidate_that_held_in_the_drifted_world_came_further() -> None:
+def test_a_candidate_that_held_in_the_drifted_world_ranks_above_one_that_did_not() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
 
 
-def test_among_equals_the_highest_reward_is_reported_else_the_first() -> None:
+def test_the_best_reward_is_reported_among_equals() -> None:
     low, high = Refused(SOME, "gain too small", 3.0), Refused(ANOTHER, "gain too small", 4.0)
     assert furthest(low, high) is high
     first, second = Refused(SOME, "gain too small"), Refused(ANOTHER, "gain too small")
     assert furthest(first, second) is first
 
 
-def test_a_candidate_refused_only_by_another_test_came_furthest() -> None:
+def test_a_candidate_refused_only_by_another_test_ranks_highest() -> None:
     costly, elsewhere = (
         Refused(SOME, "nominal gets worse", 9.0),
         Refused(ANOTHER, "another test gets worse", 8.0),

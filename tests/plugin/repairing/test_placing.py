@@ -157,7 +157,7 @@ SEVERAL = 'self.declare_parameters("", [("rate", 4.0), ("gain", 2.0)])'
 
 
 @pytest.mark.parametrize("declaration", [ONE, SEVERAL])
-def test_a_default_of_rclpy_is_changed(worn: pytest.Pytester, declaration: str) -> None:
+def test_a_parameter_default_in_rclpy_code_is_changed(worn: pytest.Pytester, declaration: str) -> None:
     (worn.path / "keeper.py").write_text(DECLARED.format(declaration=declaration))
     where, _, lines = repaired(worn)
     assert where.endswith(" gain")

@@ -124,17 +124,17 @@ def seen(request) -> Seen:
     return request.getfixturevalue(request.param)
 
 
-def test_the_page_opens_without_a_word_on_the_console(seen):
+def test_the_page_prints_nothing_to_the_console(seen):
     assert seen.found["report"] == "drawn"
     assert seen.console == []
 
 
-def test_the_page_asks_nobody_for_anything(seen):
+def test_the_page_sends_no_requests(seen):
     assert seen.found["resources"] == []
     assert seen.found["violations"] == []
 
 
-def test_a_page_that_did_ask_would_be_noticed(browser, listless, tmp_path):
+def test_the_check_detects_a_page_that_sends_a_request(browser, listless, tmp_path):
     asking = (
         '<img src="http://127.0.0.1:9/pixel.png" alt=""><script>fetch("https://example.org/")</script></main>'
     )
@@ -154,16 +154,16 @@ def test_utility_is_drawn_for_both_worlds_and_their_difference_per_terrain(shutt
     assert shuttle_seen.found["plots"] == ["utility", "curves"]
 
 
-def test_code_lines_stand_beside_the_panels(shuttle_seen):
+def test_code_lines_are_next_to_the_panels(shuttle_seen):
     labels = [label.replace("\u00a0", " ").strip() for label in shuttle_seen.found["labels"]]
     assert "30  vel = 5 * delta" in labels
 
 
-def test_both_regions_are_outlined_and_the_tolerance_is_a_band(shuttle_seen):
+def test_both_regions_have_an_outline_and_the_tolerance_has_a_band(shuttle_seen):
     assert shuttle_seen.found["outlines"] == 3 + 1  # region, two of the paper's, band
 
 
-def test_all_reward_curves_are_drawn_and_named(shuttle_seen):
+def test_every_reward_curve_is_drawn_with_a_name(shuttle_seen):
     names = [
         "designed",
         "deployed (mud)",
@@ -177,27 +177,25 @@ def test_all_reward_curves_are_drawn_and_named(shuttle_seen):
     assert all(curve.count("L") >= 1 for curve in shuttle_seen.found["curves"])
 
 
-def test_hovering_tells_value_line_and_cell(shuttle_seen):
+def test_the_tooltip_shows_value_line_and_cell(shuttle_seen):
     utility, reward = shuttle_seen.found["hover"]
     assert re.fullmatch(r"designed \d\.\d\d29  err = abs\(delta\)x 5\.4-5\.8 m, terrain false", utility)
     assert re.match(r"designed \d+\.\d\depisode 5: ", reward)
 
 
-def test_every_list_has_a_tab_that_shows_its_figures(follower_seen):
+def test_every_list_has_a_tab_with_its_figures(follower_seen):
     assert follower_seen.found["tabs"] == [
         ["/reflectance → /cmd_vel", False, 9],
         ["/reflectance → /status", False, 9],
     ]
 
 
-def test_panels_stand_side_by_side_on_a_wide_screen_and_below_each_other_on_a_narrow_one(
-    shuttle_seen, follower_seen
-):
+def test_panels_are_in_a_row_on_a_wide_screen_and_stacked_on_a_narrow_one(shuttle_seen, follower_seen):
     assert shuttle_seen.found["across"] > 2
     assert follower_seen.found["across"] == 1
 
 
-def test_the_page_follows_the_readers_choice_of_light_and_dark(shuttle_seen, follower_seen):
+def test_the_colour_scheme_follows_the_setting_of_the_reader(shuttle_seen, follower_seen):
     def brightness(seen: Seen) -> int:
         return sum(int(part) for part in re.findall(r"\d+", seen.found["background"])[:3])
 
@@ -205,12 +203,12 @@ def test_the_page_follows_the_readers_choice_of_light_and_dark(shuttle_seen, fol
     assert brightness(follower_seen) < 120
 
 
-def test_a_page_without_lists_draws_its_rewards(browser, listless, tmp_path):
+def test_a_page_without_lists_shows_the_rewards(browser, listless, tmp_path):
     seen = opened(browser, render(listless), tmp_path)
     assert (seen.found["report"], seen.found["plots"], seen.console) == ("drawn", ["curves"], [])
 
 
-def test_a_browser_that_cannot_draw_says_so_in_place_of_the_figures(browser, shuttle, tmp_path):
+def test_a_browser_that_cannot_draw_shows_a_message(browser, shuttle, tmp_path):
     broken = re.sub(r'(id="tarl-library">).{100}', r"\1", render(shuttle), count=1)
     seen = opened(browser, broken, tmp_path)
     assert seen.found["report"] == "failed"

@@ -17,12 +17,12 @@ def figure(comparison, number=0):
     return utility_figure(comparison, comparison.lists[number])
 
 
-def test_every_figure_is_plain_json_without_nan(any_comparison):
+def test_every_figure_is_valid_json_without_nan(any_comparison):
     figures = [utility_figure(any_comparison, one) for one in any_comparison.lists]
     json.dumps([figures, reward_curves(any_comparison)], allow_nan=False)
 
 
-def test_terrain_splits_the_shuttles_figure_into_two_rows_over_position(shuttle):
+def test_terrain_splits_the_figure_of_the_shuttle_into_two_rows(shuttle):
     found = figure(shuttle)
     assert [row["title"] for row in found["rows"]] == ["terrain false", "terrain true"]
     assert found["axis"]["title"] == "x (m)"
@@ -30,7 +30,7 @@ def test_terrain_splits_the_shuttles_figure_into_two_rows_over_position(shuttle)
     assert found["sites"][5] == [30, "vel = 5 * delta", "traveller.py"]
 
 
-def test_values_stand_at_their_site_and_position_and_gaps_are_null(shuttle):
+def test_values_are_at_their_site_and_position_and_gaps_are_null(shuttle):
     true = figure(shuttle)["rows"][1]
     cell = shuttle.cells.index((12, 1))
     assert true["online"][5][12] == pytest.approx(shuttle.lists[0].online[cell, 5], rel=1e-4)
@@ -47,7 +47,7 @@ def test_regions_are_intervals_of_the_position_in_their_row(shuttle):
     assert len(false["paper"]) == 1
 
 
-def test_the_split_is_the_category_that_tells_most_about_the_region(two_lists):
+def test_the_rows_are_the_category_that_explains_most_of_the_region(two_lists):
     assert [two_lists.sensors[d].name for d in (plane(two_lists).position, plane(two_lists).split)] == [
         "x",
         "light",
@@ -55,7 +55,7 @@ def test_the_split_is_the_category_that_tells_most_about_the_region(two_lists):
     assert plane(two_lists).others(two_lists.sensors) == ("terrain",)
 
 
-def test_sensors_that_are_not_shown_are_averaged_over_visited_cells_only(two_lists):
+def test_other_sensors_are_averaged_over_visited_cells_only(two_lists):
     one = two_lists.lists[0]
     rows = [two_lists.cells.index((3, terrain, 0)) for terrain in (0, 1)]
     offline = one.offline.copy()
@@ -65,7 +65,7 @@ def test_sensors_that_are_not_shown_are_averaged_over_visited_cells_only(two_lis
     assert (found[2][4], found[3][4]) == (5.0, 7.0)  # bins start at -1
 
 
-def test_without_a_numeric_sensor_categories_are_the_axis(varied):
+def test_without_a_numeric_sensor_a_category_is_the_axis(varied):
     light = Sensor("light", categories=("day", "night"))
     comparison = varied(sensors=(light,), cells=((0,), (1,)), region=Region(((1,),)), paper_region=())
     one = replace(comparison.lists[0], offline=np.ones((2, 7)), online=np.zeros((2, 7)))
@@ -74,14 +74,14 @@ def test_without_a_numeric_sensor_categories_are_the_axis(varied):
     assert [row["region"] for row in found["rows"]] == [[[0.5, 1.5]]]
 
 
-def test_noise_never_gets_the_strongest_colours(unchanged, shuttle):
+def test_noise_does_not_get_the_strongest_colours(unchanged, shuttle):
     found = figure(unchanged)
     assert found["reach"] == pytest.approx(0.25 * (found["range"][1] - found["range"][0]), rel=1e-3)
     change = shuttle.lists[0].online - shuttle.lists[0].offline
     assert figure(shuttle)["reach"] == pytest.approx(np.nanmax(np.abs(change)), rel=1e-4)
 
 
-def test_the_scales_are_those_of_the_values_that_are_shown(two_lists):
+def test_scales_cover_the_values_shown(two_lists):
     found = figure(two_lists)
     shown = [
         v
@@ -94,11 +94,11 @@ def test_the_scales_are_those_of_the_values_that_are_shown(two_lists):
     assert found["range"] == [min(shown), max(shown)]
 
 
-def test_no_cell_no_figure(varied):
+def test_without_cells_there_is_no_figure(varied):
     assert figure(varied(cells=())) is None
 
 
-def test_curves_are_running_means_with_the_episodes_behind_them(varied):
+def test_curves_are_running_means_and_keep_the_number_of_episodes(varied):
     offline, online = reward_curves(
         varied(totals={"offline": (1.0, 3.0, 5.0), "online": (2.0,)}, searches=())
     )
@@ -107,13 +107,13 @@ def test_curves_are_running_means_with_the_episodes_behind_them(varied):
     assert online["name"] == "deployed (mud)"
 
 
-def test_every_search_is_a_curve_with_what_it_ran(shuttle):
+def test_every_search_has_a_curve_and_labels(shuttle):
     searches = [curve for curve in reward_curves(shuttle) if curve["kind"] == "search"]
     assert [curve["name"] for curve in searches] == ["search: epsilon-greedy", "search: sweep"]
     assert len(searches[0]["labels"]) == 60
 
 
-def test_the_site_that_differs_most_is_the_peak(shuttle):
+def test_the_peak_is_the_site_with_the_largest_difference(shuttle):
     assert [row.site.line for row in chart(shuttle.lists[0].slices).rows if row.peak] == [30]
 
 
@@ -121,7 +121,7 @@ def test_without_any_difference_there_is_no_peak(unchanged):
     assert not any(row.peak for row in chart(unchanged.lists[0].slices).rows)
 
 
-def test_unknown_slices_are_rows_without_a_place_on_the_scale(shuttle):
+def test_unknown_slices_have_a_row_without_a_value(shuttle):
     slices = list(shuttle.lists[0].slices)
     slices[2] = replace(slices[2], online=math.nan)
     found = chart(slices)
@@ -130,7 +130,7 @@ def test_unknown_slices_are_rows_without_a_place_on_the_scale(shuttle):
 
 
 @pytest.mark.parametrize("values", [[-3.0, 8.0], [1e-7], [-1e6, -2e6], [], [0.0], [math.nan, 2.0]])
-def test_scales_show_zero_and_all_values_with_few_round_ticks(values):
+def test_scales_include_zero_and_all_values_and_have_a_few_round_ticks(values):
     made = scale(values)
     for value in [0.0, *(v for v in values if math.isfinite(v))]:
         assert 0 <= made.at(value) <= 100

@@ -33,7 +33,7 @@ def test_markup_in_code_is_escaped():
     assert "<script" not in code_html("x = '</code><script>alert(1)</script>'")
 
 
-def test_lines_of_a_patch_are_numbered_as_before_and_after():
+def test_patch_lines_have_the_numbers_of_both_files():
     found = [(line.kind, line.old, line.new, text(line.html)) for line in patch_lines(DIFF)]
     assert found == [
         ("file", None, None, "--- a/node.py"),
@@ -47,7 +47,7 @@ def test_lines_of_a_patch_are_numbered_as_before_and_after():
     ]
 
 
-def test_a_second_file_starts_afresh():
+def test_numbering_restarts_with_each_file():
     diff = "--- a/x\n+++ b/x\n@@ -1 +1 @@\n-a\n+b\n--- a/y\n+++ b/y\n@@ -7 +7,2 @@\n c\n+d\n"
     kinds = [line.kind for line in patch_lines(diff)]
     assert kinds == ["file", "file", "hunk", "removed", "added", "file", "file", "hunk", "kept", "added"]

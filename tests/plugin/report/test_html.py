@@ -47,7 +47,7 @@ def page(any_comparison):
     return Page(render(any_comparison))
 
 
-def test_nothing_is_loaded_from_anywhere(page):
+def test_the_page_loads_no_other_resource(page):
     addresses = {
         attributes[name]
         for _, attributes in page.elements
@@ -79,11 +79,11 @@ def test_there_are_three_scripts_and_none_comes_from_the_data(page, any_comparis
     assert [tag for tag, _ in page.elements].count("script") == 3
 
 
-def test_the_page_stays_below_two_and_a_quarter_megabytes(any_comparison):
+def test_the_page_is_smaller_than_two_and_a_quarter_megabytes(any_comparison):
     assert len(render(any_comparison).encode()) < 2_250_000
 
 
-def test_what_matters_stands_at_the_top(shuttle):
+def test_the_most_important_results_are_at_the_top(shuttle):
     top = Page(render(shuttle)).text.partition("Where: utility")[0]
     for said in (
         "Degraded",
@@ -102,7 +102,7 @@ def test_what_matters_stands_at_the_top(shuttle):
         assert said in top
 
 
-def test_markup_in_notes_code_and_categories_is_shown_and_not_run(two_lists):
+def test_markup_in_notes_code_and_categories_is_escaped(two_lists):
     text = render(two_lists)
     assert NASTY not in text
     shown = Page(text).text
@@ -113,7 +113,7 @@ def test_markup_in_notes_code_and_categories_is_shown_and_not_run(two_lists):
     assert code in "".join(Page(text).words)
 
 
-def test_the_patch_and_the_command_that_applies_it_are_there(shuttle):
+def test_the_page_contains_the_patch_and_the_command_that_applies_it(shuttle):
     text = Page(render(shuttle)).text
     assert "vel = ( 12.0 if terrain and 4.167 <= pos <= 7.083 else 5 ) * delta" in text
     assert "git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch" in text
@@ -129,19 +129,19 @@ def test_one_list_has_no_tabs(shuttle):
     assert not any(a.get("role") == "tab" for _, a in Page(render(shuttle)).elements)
 
 
-def test_a_page_without_lists_says_why_and_what_to_do(listless):
+def test_a_page_without_lists_gives_the_reason_and_the_next_step(listless):
     text = Page(render(listless)).text
     assert "No taint list can be compared" in text
     assert "pytest tests/test_traveller.py::test_delivers --tarl-record" in text
 
 
-def test_without_a_region_there_are_no_slices_and_the_page_says_so(placeless):
+def test_a_page_without_a_region_says_so_and_has_no_slices(placeless):
     text = Page(render(placeless)).text
     assert "No single situation stands out." in text
     assert "There are no slices: no region was found." in text
 
 
-def test_no_difference_blames_nothing(unchanged):
+def test_without_a_difference_no_line_is_blamed(unchanged):
     found = Page(render(unchanged))
     assert "No difference was found" in found.text
     assert not any(a.get("class") == "peak" for _, a in found.elements)
@@ -152,11 +152,11 @@ def test_a_refused_repair_is_explained(two_lists):
     assert "None was accepted: the best change found gains too little." in Page(render(two_lists)).text
 
 
-def test_the_title_can_be_given_and_is_escaped(shuttle):
+def test_the_title_can_be_set_and_is_escaped(shuttle):
     assert "<title>Degraded: A &lt;b&gt; world (mud)</title>" in render(shuttle, title="A <b> world")
 
 
-def test_the_same_comparison_gives_the_same_file_and_leaves_nothing_beside_it(shuttle, tmp_path):
+def test_the_same_comparison_gives_the_same_file_and_no_temporary_file(shuttle, tmp_path):
     path = tmp_path / "report" / "delivers.html"
     write(shuttle, path)
     first = path.read_bytes()
@@ -165,7 +165,7 @@ def test_the_same_comparison_gives_the_same_file_and_leaves_nothing_beside_it(sh
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_a_missing_package_is_named_with_the_command_that_installs_it(shuttle, monkeypatch):
+def test_a_missing_package_is_reported_with_the_install_command(shuttle, monkeypatch):
     found = importlib.util.find_spec
     monkeypatch.setattr(html, "find_spec", lambda name: None if name == "plotly" else found(name))
     with pytest.raises(
@@ -174,14 +174,14 @@ def test_a_missing_package_is_named_with_the_command_that_installs_it(shuttle, m
         render(shuttle)
 
 
-def test_a_place_that_cannot_be_written_is_named_in_a_sentence(shuttle, tmp_path):
+def test_an_unwritable_path_gives_one_sentence(shuttle, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a directory")
     with pytest.raises(TarlError, match=r"The report .*report\.html cannot be written \("):
         write(shuttle, blocked / "report.html")
 
 
-def test_data_cannot_end_its_script_and_survives():
+def test_data_cannot_close_the_script_element_and_is_unchanged():
     data = {"code": NASTY + "\u2028 & <!--"}
     text = in_script(data)
     assert not re.search(r"[<>&\u2028]", text)
@@ -198,11 +198,11 @@ def test_data_cannot_end_its_script_and_survives():
         ("a-1", "a-1"),
     ],
 )
-def test_ranges_and_signs_are_typeset(plain, set_in_type):
+def test_ranges_and_minus_signs_are_typeset(plain, set_in_type):
     assert typeset(plain) == set_in_type
 
 
-def test_the_page_says_what_the_test_is_for_and_names_the_paper_in_a_footnote_only(shuttle):
+def test_the_page_explains_the_test_and_cites_the_paper_in_a_footnote_only(shuttle):
     page = render(replace(shuttle, purpose="Bring one parcel <from G1> to G2."))
     assert '<p class="purpose">Bring one parcel &lt;from G1&gt; to G2.</p>' in page
     body = page[page.index("<body>") : page.index('<script type="application/json"')]

@@ -22,12 +22,12 @@ def written(comparison, tmp_path: Path):
     return json.loads(path.read_text("utf-8"), parse_constant=pytest.fail)
 
 
-def test_every_comparison_fits_the_schema(any_comparison, tmp_path):
+def test_every_comparison_is_valid_by_the_schema(any_comparison, tmp_path):
     jsonschema.Draft202012Validator.check_schema(schema())
     jsonschema.validate(written(any_comparison, tmp_path), schema())
 
 
-def test_the_document_has_the_agreed_keys_in_their_order(shuttle, tmp_path):
+def test_the_document_has_its_keys_in_the_documented_order(shuttle, tmp_path):
     found = written(shuttle, tmp_path)
     assert list(found) == [
         "format",
@@ -67,11 +67,11 @@ def test_the_document_has_the_agreed_keys_in_their_order(shuttle, tmp_path):
     )
 
 
-def test_the_region_is_rectangles_in_sensor_units(shuttle, tmp_path):
+def test_the_region_is_a_list_of_rectangles_in_sensor_units(shuttle, tmp_path):
     assert written(shuttle, tmp_path)["region"] == [{"x": [4.166666667, 7.083333333], "terrain": [1, 1]}]
 
 
-def test_open_ends_are_null_and_text_categories_stay_apart(two_lists, tmp_path):
+def test_open_ends_are_null_and_string_categories_are_kept(two_lists, tmp_path):
     found = written(two_lists, tmp_path)
     assert found["novel"] == [{"x": [7.916666667, None], "terrain": [0, 1], "light": ["night", "night"]}]
     two = rectangles([(0,), (1,)], [Sensor("light", categories=("day", "night"))])
@@ -109,7 +109,7 @@ def test_numpy_numbers_are_written_as_numbers(varied, tmp_path):
     assert written(varied(verdict=verdict), tmp_path)["verdict"]["loss"] == 1.5
 
 
-def test_without_a_search_repair_is_null_and_without_acceptance_the_patch_is(varied, unrepaired, tmp_path):
+def test_without_a_search_repair_is_null_and_without_acceptance_patch_is_null(varied, unrepaired, tmp_path):
     assert written(unrepaired, tmp_path)["repair"] is None
     refused = varied(repair=Repair(False, "", (), reason="budget"))
     assert written(refused, tmp_path)["repair"] == {
@@ -121,7 +121,7 @@ def test_without_a_search_repair_is_null_and_without_acceptance_the_patch_is(var
     }
 
 
-def test_what_was_tried_is_told_with_its_reason(varied, tmp_path):
+def test_each_attempt_is_listed_with_its_reason(varied, tmp_path):
     history = (
         Attempt("5 → 9 everywhere", "nominal gets worse", 7.5, 60, fresh=True),
         Attempt("5 → 11 everywhere", "", 9.8, 80, fresh=True),
@@ -137,7 +137,7 @@ def test_what_was_tried_is_told_with_its_reason(varied, tmp_path):
     ]
 
 
-def test_missing_counts_are_zero(shuttle):
+def test_missing_counts_become_zero(shuttle):
     assert document(shuttle, {"online": 3})["episodes"] == {
         "offline": 0,
         "online": 3,
@@ -146,7 +146,7 @@ def test_missing_counts_are_zero(shuttle):
     }
 
 
-def test_the_same_comparison_gives_the_same_bytes_and_leaves_nothing_else_behind(shuttle, tmp_path):
+def test_the_same_comparison_gives_the_same_bytes_and_no_temporary_file(shuttle, tmp_path):
     path = tmp_path / "result.json"
     write(shuttle, path, EPISODES)
     first = path.read_bytes()
@@ -155,7 +155,7 @@ def test_the_same_comparison_gives_the_same_bytes_and_leaves_nothing_else_behind
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_place_that_cannot_be_written_is_named_in_a_sentence(shuttle, tmp_path):
+def test_an_unwritable_path_gives_one_sentence(shuttle, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a directory")
     with pytest.raises(TarlError, match=r"The result .*result\.json cannot be written \("):

@@ -25,24 +25,24 @@ def inside(cover):
 
 
 @given(CELLS)
-def test_boxes_cover_the_cells_and_nothing_else(cells):
+def test_boxes_cover_exactly_the_cells(cells):
     cover = boxes(cells)
     assert inside(cover) == cells
     assert sum((b - a + 1) * (d - c + 1) * (f - e + 1) for (a, b), (c, d), (e, f) in cover) == len(cells)
 
 
 @given(CELLS, CELLS)
-def test_bridges_never_take_in_a_cell_that_was_visited_and_is_not_in_the_region(cells, others):
+def test_boxes_never_include_a_visited_cell_outside_the_region(cells, others):
     joined = inside(bridged(boxes(cells), others - cells))
     assert cells <= joined
     assert not joined & (others - cells)
 
 
-def test_a_full_rectangle_is_one_box():
+def test_a_full_rectangle_gives_one_box():
     assert boxes((x, y) for x in range(3, 7) for y in range(2)) == (((3, 6), (0, 1)),)
 
 
-def test_sensors_kept_apart_are_never_merged():
+def test_sensors_kept_separate_are_never_merged():
     assert boxes([(1, 0), (1, 1)], apart=[1]) == (((1, 1), (0, 0)), ((1, 1), (1, 1)))
 
 
@@ -69,46 +69,46 @@ def test_a_region_is_named_by_its_intervals(cells, expected):
     assert words(cells) == expected
 
 
-def test_words_close_gaps_that_nobody_visited():
+def test_the_description_closes_gaps_of_unvisited_cells():
     seen = [(3, 1), (4, 1), (6, 1), (8, 1)]
     assert words([(3, 1), (4, 1), (6, 1)], seen=seen) == "x 3-7 m, terrain true"
 
 
-def test_a_gap_that_was_visited_stays():
+def test_the_description_keeps_gaps_of_visited_cells():
     seen = [(3, 1), (4, 1), (6, 1)]
     assert words([(3, 1), (6, 1)], seen=seen) == "x 3-4 or 6-7 m, terrain true"
 
 
-def test_many_places_are_capped():
+def test_a_long_list_of_boxes_is_cut():
     cells = [(2 * i, i % 2, i) for i in range(5)]
     seen = [(x, t, lane) for x in range(10) for t in (0, 1) for lane in range(5)]
     assert words(cells, (X, TERRAIN, LANE), seen).endswith("; and 2 more")
 
 
-def test_many_intervals_of_one_sensor_are_capped_after_the_unit():
+def test_a_long_list_of_intervals_is_cut_after_the_unit():
     everything = [(x, 1) for x in range(10)]
     assert words([(x, 1) for x in (0, 2, 4, 6, 8)], seen=everything) == (
         "x 0-1 or 2-3 or 4-5 m or 2 more, terrain true"
     )
 
 
-def test_integers_beyond_one_are_no_booleans():
+def test_integers_above_one_are_not_shown_as_booleans():
     assert words([(0,), (1,)], (LANE,), [(0,), (1,), (2,)]) == "lane 0 or 1"
 
 
-def test_categories_are_named():
+def test_categories_are_shown_by_name():
     assert words([(0, 1), (0, 2)], (X, LIGHT), [(0, 0), (0, 1), (0, 2)]) == "x 0-1 m, light dusk or night"
 
 
-def test_a_category_region_that_covers_all_says_everywhere():
+def test_a_region_of_all_categories_is_everywhere():
     assert words([(0,), (1,)], (TERRAIN,), [(0,), (1,)]) == "everywhere"
 
 
-def test_negative_bounds_are_not_written_with_a_dash():
+def test_ranges_with_negative_bounds_use_a_word_instead_of_a_dash():
     heading = Sensor("heading", low=-3, high=3, bins=6, unit="rad")
     assert words([(0,), (1,)], (heading,), [(i,) for i in range(6)]) == "heading -3 to -1 rad"
 
 
-def test_narrow_bins_get_the_digits_they_need():
+def test_narrow_bins_get_enough_digits():
     fine = Sensor("offset", low=0, high=0.1, bins=20)
     assert words([(3,)], (fine,), [(i,) for i in range(20)]) == "offset 0.015-0.020"

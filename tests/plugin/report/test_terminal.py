@@ -16,7 +16,7 @@ def told(comparison, width=100, page=None):
     return "\n".join(lines(comparison, width=width, root=ROOT, page=page))
 
 
-def test_the_shuttle_reads_as_one_short_section(shuttle):
+def test_the_shuttle_gives_one_short_section(shuttle):
     again = (
         "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 "
         "--tarl-repair --tarl-search epsilon-greedy --tarl-search sweep"
@@ -43,31 +43,31 @@ def test_the_shuttle_reads_as_one_short_section(shuttle):
 
 
 @pytest.mark.parametrize("width", [20, 40, 72, 100, 200])
-def test_no_line_is_wider_than_asked_except_what_must_be_copied_whole(any_comparison, width):
+def test_only_commands_and_paths_exceed_the_width(any_comparison, width):
     for line in lines(any_comparison, width=width, root=ROOT)[1:]:
         assert len(line) <= max(width, 40) or line.startswith(WHOLE) or len(line.split()) <= 2
 
 
-def test_a_refused_repair_says_why_and_shows_the_best_so_far(two_lists):
+def test_a_refused_repair_has_its_reason_and_the_best_candidate_so_far(two_lists):
     text = told(two_lists, 200)
     assert "none accepted: the best change found gains too little" in text
     assert "best so far: self.kp × 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
     assert "git apply" not in text
 
 
-def test_situations_never_seen_off_line_are_told_apart(two_lists):
+def test_unrecorded_situations_are_listed_separately(two_lists):
     assert "x 1.2-8.8 m, light dusk <&>; not in the recording: x above 7.9 m, light night" in told(
         two_lists, 200
     )
 
 
-def test_long_code_is_elided_and_keeps_its_evidence(two_lists):
+def test_long_code_is_shortened_but_its_evidence_is_kept(two_lists):
     first = next(line for line in told(two_lists, 96).splitlines() if " 1. " in line)
     assert first.endswith("…  (self.kp × 2.2: +3.40)")
     assert len(first) <= 96
 
 
-def test_code_that_has_no_room_beside_its_place_stands_below_it(two_lists):
+def test_code_that_does_not_fit_beside_its_location_is_on_the_next_line(two_lists):
     lines = told(two_lists, 80).splitlines()
     place, code = next((a, b) for a, b in pairwise(lines) if " 1. " in a)
     assert place.endswith("src/follower/node.py:63  (self.kp × 2.2: +3.40)")
@@ -75,12 +75,12 @@ def test_code_that_has_no_room_beside_its_place_stands_below_it(two_lists):
     assert len(code) <= 80
 
 
-def test_without_a_repair_the_next_step_is_to_ask_for_one(unrepaired):
+def test_without_a_repair_the_next_step_is_to_search_for_one(unrepaired):
     command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 --tarl-repair"
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 
 
-def test_no_difference_says_how_small_a_loss_would_have_shown_and_blames_no_line(unchanged):
+def test_without_a_difference_the_detectable_loss_is_stated_and_no_line_blamed(unchanged):
     text = told(unchanged, 200)
     assert "No difference was found" in text
     assert "a loss of 0.71 per episode would have been" in text
@@ -88,38 +88,38 @@ def test_no_difference_says_how_small_a_loss_would_have_shown_and_blames_no_line
     assert "  next" not in text
 
 
-def test_a_loss_without_a_place_says_so_and_leaves_out_slices_that_do_not_exist(placeless):
+def test_a_loss_without_a_region_says_so_and_has_no_slices(placeless):
     text = told(placeless)
     assert "no single situation stands out" in text
     assert "  slices" not in text
     assert "nan" not in text
 
 
-def test_lists_that_are_gone_leave_verdict_and_note(listless):
+def test_lost_lists_leave_the_verdict_and_a_note(listless):
     text = told(listless, 200)
     assert "record again to see slices" in text
     assert "degraded" in text
 
 
-def test_absolute_paths_are_shown_from_the_root(varied, shuttle):
+def test_absolute_paths_are_relative_to_the_root(varied, shuttle):
     site = SitePlace("m:f:x", str(ROOT / "src/a.py"), 3, "x = 1", "data", "assign")
     culprit = type(shuttle.culprits[0])(site, 1.0, "sweep", ())
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
 
 
-def test_the_default_seed_and_search_are_not_spelled_out(varied, shuttle):
+def test_default_seed_and_search_are_not_printed(varied, shuttle):
     text = told(varied(seed=0, searches=shuttle.searches[1:]))
     assert text.splitlines()[-2] == (
         "  again    pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-repair"
     )
 
 
-def test_a_test_id_with_spaces_is_quoted_in_the_command(two_lists):
+def test_the_command_quotes_a_test_id_with_spaces(two_lists):
     assert "pytest 'tests/test_follower.py::test_follows[a b]' --tarl-online" in told(two_lists)
 
 
 @pytest.mark.parametrize("reason", ["", "no operand helps", "gain too small", "nominal gets worse", "budget"])
-def test_every_reason_for_a_refusal_has_words_of_its_own(varied, reason):
+def test_every_reason_for_a_refusal_has_its_own_text(varied, reason):
     text = told(varied(repair=Repair(False, "", (), reason=reason)))
     assert "none accepted: " in text
     assert f"none accepted: {reason}\n" not in text

@@ -19,18 +19,18 @@ def test_amounts_have_about_three_digits(value, text):
 @pytest.mark.parametrize(
     ("value", "text"), [(2.0, "+2.00"), (-2.0, "-2.00"), (0.0, "+0.00"), (math.nan, "n/a")]
 )
-def test_differences_carry_their_sign(value, text):
+def test_differences_have_a_sign(value, text):
     assert words.signed(value) == text
 
 
 @pytest.mark.parametrize(("value", "text"), [
     (0.0004, "p < 0.001"), (0.001, "p = 0.001"), (0.0213, "p = 0.021"), (1.0, "p = 1"), (math.nan, "p unknown"),
 ])  # fmt: skip
-def test_p_values_are_equations(value, text):
+def test_p_values_are_written_as_equations(value, text):
     assert words.p_value(value) == text
 
 
-def test_a_running_mean_is_the_average_so_far():
+def test_a_running_mean_averages_the_values_so_far():
     assert words.running_mean([1.0, 3.0, -1.0]) == [1.0, 2.0, 1.0]
 
 
@@ -54,23 +54,23 @@ SENTENCES = {
 
 
 @pytest.mark.parametrize(("verdict", "said"), SENTENCES.items())
-def test_every_verdict_has_its_sentence(varied, verdict, said):
+def test_every_verdict_has_its_own_sentence(varied, verdict, said):
     assert words.verdict_sentence(varied(verdict=verdict)) == said
 
 
-def test_a_loss_that_could_not_have_been_seen_at_all_is_said(varied):
+def test_a_loss_that_could_not_have_been_detected_is_stated(varied):
     unseen = varied(verdict=Verdict("no difference", 0.5, 0.5, 0.0, math.inf, 0.5))
     assert words.verdict_sentence(unseen).endswith("; too few episodes were run to detect any loss.")
 
 
-def test_literals_are_replaced_and_named_constants_multiplied():
+def test_literals_are_replaced_and_named_constants_are_multiplied():
     assert words.edit_words(Edit("a.py", 3, "5", 12.0)) == "5 → 12"
     assert words.edit_words(Edit("a.py", 3, "self.kp", 2.2, factor=True)) == "self.kp × 2.2"
     assert words.operand_words(OperandEffect("5", 5, 12.0, 1.0)) == "5 → 12"
     assert words.operand_words(OperandEffect("KP", None, 2.2, 1.0)) == "KP × 2.2"
 
 
-def test_a_statement_over_several_lines_is_folded_and_elided():
+def test_a_statement_over_several_lines_is_joined_and_shortened():
     assert words.one_line("f(\n    a,\n    b)") == "f( a, b)"
     assert words.one_line("x" * 50, 20) == "x" * 19 + "…"
     assert words.one_line("x" * 50, 3) == "x" * 15 + "…"

@@ -61,7 +61,7 @@ def values(fault: Fault, size: float, sent: Sequence[float], seed: int = 1) -> l
     return [value for _, value in through(fault, size, sent, seed)]
 
 
-def test_faults_of_numbers_change_the_field() -> None:
+def test_each_fault_of_numbers_changes_the_field_as_defined() -> None:
     assert values(faults.bias("/in", "data", -1, 1), 0.5, [1, 2]) == [1.5, 2.5]
     assert values(faults.scale("/in", "data", 0, 2), 0.5, [1, 2]) == [0.5, 1.0]
     assert values(faults.sign("/in", "data"), 1.0, [1, -2]) == [-1, 2]
@@ -69,13 +69,13 @@ def test_faults_of_numbers_change_the_field() -> None:
     assert np.isinf(values(faults.quantisation("/in", "data", 1), 0.25, [np.inf])).all()
 
 
-def test_noise_has_the_deviation_of_its_size() -> None:
+def test_the_standard_deviation_of_noise_is_its_size() -> None:
     found = np.array(values(faults.noise("/in", "data", 1.0), 0.2, [0.0] * 400))
     assert 0.17 < found.std() < 0.23
     assert abs(found.mean()) < 0.05
 
 
-def test_lost_and_repeated_messages_have_the_share_of_their_size() -> None:
+def test_the_share_of_lost_and_repeated_messages_is_the_size() -> None:
     sent = [float(i) for i in range(400)]
     kept = values(faults.dropout("/in", 1.0), 0.3, sent)
     assert kept == sorted(kept)
@@ -86,7 +86,7 @@ def test_lost_and_repeated_messages_have_the_share_of_their_size() -> None:
     assert 480 < len(twice) < 560
 
 
-def test_reordered_messages_all_arrive_and_some_after_their_successor() -> None:
+def test_all_reordered_messages_arrive_and_some_after_their_successor() -> None:
     sent = [float(i) for i in range(100)]
     found = values(faults.reordering("/in", 1.0), 0.4, sent)
     assert sorted(found) in (sent, sent[:-1])  # the last may wait for a successor that never comes
@@ -119,7 +119,7 @@ def test_swapped_axes_exchange_two_fields() -> None:
     assert heard == [(2.0, 1.0)]
 
 
-def test_a_node_gets_and_sends_through_faults(start: Start) -> None:
+def test_faults_apply_to_messages_that_a_node_receives_and_sends(start: Start) -> None:
     ros = start(REPEATER)
     faults.bias("/in", "data", 0, 1).install(ros, "a", 1.0, generator(1, "a"))
     faults.latency("/out", 1.0).install(ros, "b", 0.15, generator(1, "b"))
@@ -133,7 +133,7 @@ def test_a_node_gets_and_sends_through_faults(start: Start) -> None:
     assert ros.bus.latest("/out").data == 102.0
 
 
-def test_a_node_that_dies_comes_back_and_has_forgotten(start: Start) -> None:
+def test_a_restarted_node_has_lost_its_state(start: Start) -> None:
     ros = start(REPEATER)
     ((process),) = ros.processes
     heard: list[tuple[float, float]] = []
@@ -155,7 +155,7 @@ def test_the_seed_determines_all_random_faults(seed: int, size: float) -> None:
     assert values(noise, size, sent, seed) == values(noise, size, sent, seed) != sent
 
 
-def test_every_number_of_a_sequence_changes_and_whole_numbers_stay_whole() -> None:
+def test_integer_sequences_stay_integer_when_every_element_changes() -> None:
     scan = LaserScan(ranges=[1.0, 2.0])
     assert list(altered(scan, "ranges", lambda x: x + 1).ranges) == [2.0, 3.0]
     assert list(altered(scan, "ranges.1", lambda x: x + 1).ranges) == [1.0, 3.0]
@@ -164,7 +164,7 @@ def test_every_number_of_a_sequence_changes_and_whole_numbers_stay_whole() -> No
 
 
 @pytest.mark.parametrize("field", ["nothing", "header.frame_id", "ranges.7"])
-def test_a_field_that_is_not_a_number_is_refused(field: str) -> None:
+def test_a_field_without_numbers_is_refused(field: str) -> None:
     ros = Ros()
     faults.bias("/scan", field, 0, 1).install(ros, "f", 1.0, generator(1, "f"))
     with pytest.raises(SettingsError, match=f"has no number '{field}'"):

@@ -57,7 +57,7 @@ def test_with_workers_the_error_names_the_line_of_the_hang(tank: pytest.Pytester
     told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at keeper.py, line 2?, in main*"])
 
 
-def test_a_worker_without_a_sign_of_life_is_ended_by_its_parent(
+def test_a_worker_that_stops_responding_is_killed_by_its_parent(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pool, "SILENCE", 2)

@@ -138,7 +138,7 @@ def test_parts_of_a_message_package_need_no_explicit_import(start: Start) -> Non
     assert (ros.namespace["found"], ros.namespace["missing"]) == ("a", False)
 
 
-def test_lazy_transport_subscribes_because_the_world_is_a_peer(start: Start) -> None:
+def test_lazy_transport_subscribes_because_the_world_is_a_subscriber(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64
@@ -200,7 +200,7 @@ def test_modules_that_the_test_puts_into_sys_modules_are_imported(
         start("from roslib import names\n", ros=ros)
 
 
-def test_parts_of_a_standin_can_be_imported_from_it(start: Start) -> None:
+def test_parts_of_a_stub_can_be_imported_from_it(start: Start) -> None:
     ros = start("from sensor_msgs_py import point_cloud2\nfrom tf import transformations\nimport rclpy\n")
     assert ros.namespace["point_cloud2"].__name__ == "sensor_msgs_py.point_cloud2"
 

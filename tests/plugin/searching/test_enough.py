@@ -46,12 +46,12 @@ def test_one_miss_is_tolerated_and_the_second_ends_the_confirmation() -> None:
     assert asked([9.0, 0.0, 9.0, 0.0, 9.0, 9.0]) == (False, [1, 2, 3])
 
 
-def test_a_total_that_is_just_near_is_not_a_miss() -> None:
+def test_a_total_exactly_at_the_limit_is_not_a_miss() -> None:
     assert asked([9.0, 4.0, 4.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0, 3.99, 3.99, 9.0, 9.0, 9.0]) == (False, [1, 2])
 
 
-def test_a_failed_mission_is_a_miss_only_where_missions_must_pass() -> None:
+def test_a_failed_mission_is_a_miss_only_if_missions_are_required_to_pass() -> None:
     goal = Goal((), 4.0, 5.0, 0.0)
     assert goal.reached(Outcome(4.0, False), 0)
     assert not Goal((), 4.0, 5.0, 0.0, passing=True).reached(Outcome(9.0, False), 0)

@@ -45,7 +45,7 @@ def test_a_hint_is_followed_before_the_next_guard_is_tried() -> None:
     assert trials.spent <= 2 * len(GAINS) + 1 + CONFIRMATIONS
 
 
-def test_what_gained_under_one_guard_is_the_first_to_be_tried_under_the_next() -> None:
+def test_constants_that_gained_under_one_guard_are_tried_first_under_the_next() -> None:
     def earned(factors: dict[int, float], guard: Guard) -> float:
         right = factors.get(6, 1.0) > 2.0
         return 10.0 if right and guard == ALWAYS else 0.9 if right else 0.01 * len(factors)
@@ -56,7 +56,7 @@ def test_what_gained_under_one_guard_is_the_first_to_be_tried_under_the_next() -
     assert trials.spent <= 2 * len(GAINS) + 8 + CONFIRMATIONS
 
 
-def test_a_part_that_changes_nothing_alone_is_added_to_two_that_gain_much() -> None:
+def test_a_constant_without_effect_alone_is_combined_with_two_that_gain_much() -> None:
     def earned(factors: dict[int, float], _: Guard) -> float:
         first, second = factors.get(3, 1.0) > 2.0, factors.get(4, 1.0) > 2.0
         third = factors.get(12, 1.0) > 4.0
@@ -68,7 +68,7 @@ def test_a_part_that_changes_nothing_alone_is_added_to_two_that_gain_much() -> N
     assert trials.spent < 80
 
 
-def test_seeds_that_others_missed_are_asked_first_when_a_candidate_is_confirmed() -> None:
+def test_seeds_that_other_candidates_missed_come_first_in_a_confirmation() -> None:
     hard = 7
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -83,7 +83,7 @@ def test_seeds_that_others_missed_are_asked_first_when_a_candidate_is_confirmed(
     assert trials.spent == before + 1
 
 
-def test_what_loses_the_missions_of_rejected_candidates_is_not_confirmed() -> None:
+def test_a_candidate_that_loses_the_missions_of_rejected_ones_is_not_confirmed() -> None:
     trials = world(lambda _, __: 10.0)
     candidate = Candidate((mutations(GAINS[0], 2.2),), ALWAYS)  # type: ignore[arg-type]
     trials.loses = lambda one: one == candidate

@@ -42,7 +42,7 @@ POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
         (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
     ],
 )
-def test_the_oddness_of_changes(mutation: Mutation, expected: Oddness) -> None:
+def test_each_change_has_the_expected_oddness(mutation: Mutation, expected: Oddness) -> None:
     assert oddness([mutation]) == expected
     assert oddness([Mutation(NAMED, 2.2), mutation]) == expected
 
@@ -86,7 +86,7 @@ def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
     assert [next(found).mutations[0].operand for _ in range(2)] == [NAMED, OFFSET]
 
 
-def test_an_offset_is_accepted_after_few_runs_if_nothing_plainer_holds() -> None:
+def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_holds() -> None:
     search = restoring({OFFSET: 2.2}, window=0.2)
     assert next(search.candidates()).mutations[0].operand == OFFSET
     assert search.trials.spent < 30
@@ -103,7 +103,7 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     assert search.trials.spent <= 60
 
 
-def test_a_named_constant_that_small_steps_do_not_show_is_tried_in_place_of_a_literal() -> None:
+def test_a_named_constant_without_effect_in_small_steps_is_tried_before_a_literal() -> None:
     early = replace(NAMED, span=replace(NAMED.span, line=2, end_line=2))
     found = restoring({early: 4.0, INNER: 2.2}, window=0.3).candidates()
     assert [next(found).mutations[0].operand for _ in range(2)] == [early, INNER]

@@ -50,7 +50,7 @@ def test_refinement_adds_arms_between_neighbours_down_to_the_finest_ratio() -> N
     assert 2.405 not in [arm.factor for arm in race.around(arms(2.4)[0])]
 
 
-def test_three_common_seeds_suffice_to_be_behind() -> None:
+def test_three_common_seeds_suffice_to_drop_an_arm() -> None:
     assert behind({0: 1.0, 1: 1.1, 2: 0.9}, {0: 5.0, 1: 5.2, 2: 4.9})
     assert not behind({0: 1.0, 1: 1.1}, {0: 5.0, 1: 5.2})
     assert not behind({0: 1.0, 1: 9.0, 2: 5.0}, {0: 5.0, 1: 5.2, 2: 4.9})

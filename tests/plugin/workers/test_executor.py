@@ -40,7 +40,7 @@ def test_comparison_and_repair_do_not_depend_on_workers(tank: pytest.Pytester) -
     assert alone["repair"]["accepted"]
 
 
-def test_the_episode_of_a_dead_worker_is_retried(tank: pytest.Pytester) -> None:
+def test_an_episode_is_retried_if_its_worker_dies(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     dies_once = (
         "import os\n    from pathlib import Path\n"
