@@ -113,6 +113,8 @@ def _values(setting: Setting, node: LaunchedNode) -> Iterator[tuple[str, Any]]:
         yield above, content
         return
     for name, value in _of_node(content, node).items():
+        if "$(" in str(value):  # known on the robot only
+            continue
         yield f"{above}/{name}" if above or not setting.name.startswith("~") else str(name), value
 
 

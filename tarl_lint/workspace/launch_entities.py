@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
+    Choice,
     Comparison,
     Configuration,
     Expression,
@@ -174,6 +175,8 @@ def _substitution(inside: str) -> Any:
         return Comparison(first, words[1], equal=name == "equals")
     if name in ("not", "and", "or"):
         return Logic(name, tuple(words))
+    if name == "if" and len(words) > 1:
+        return Choice(first, words[1], words[2] if len(words) > 2 else "")
     return OnRobot(inside)
 
 

@@ -176,6 +176,8 @@ def _substitutions() -> dict[str, Any]:
         f"{module}.AndSubstitution": lambda *values: Logic("and", values),
         f"{module}.OrSubstitution": lambda *values: Logic("or", values),
         f"{module}.IfElseSubstitution": _choice,
+        "nav2_common.launch.LaunchConfigAsBool": _as_bool,
+        "nav2_common.launch.RewrittenYaml": _rewritten,
         "launch_ros.parameter_descriptions.ParameterValue": _value,
         "launch_ros.descriptions.ParameterValue": _value,
         **{f"{home}.{name}": lambda location, **_: location for home in homes for name in sources},
@@ -184,6 +186,16 @@ def _substitutions() -> dict[str, Any]:
 
 def _configuration(variable_name: Any, *, default: Any = None, **_: Any) -> Configuration:
     return Configuration(_hashed(variable_name), _hashed(default))
+
+
+def _as_bool(name: Any) -> Choice:
+    """Return the substitution of Navigation 2 for a launch argument that is a truth value."""
+    return Choice(Configuration(_hashed(name)), "True", "False")
+
+
+def _rewritten(source_file: Any, param_rewrites: Any = None, **_: Any) -> Any:
+    """Return a parameter file of Navigation 2, which is known where no value in it is replaced."""
+    return source_file if not param_rewrites else Unknown(0, "RewrittenYaml")
 
 
 def _environment(name: Any, default_value: Any = None, **_: Any) -> OnRobot:

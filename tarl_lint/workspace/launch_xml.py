@@ -151,13 +151,16 @@ class _Reader:
         text = place.scope.text
         if element.tag == "rosparam":
             return self._yaml(element, place, above)
-        name = _parameter(above, text(element.get("name", "")))
+        stated = text(element.get("name", ""))
+        name = _parameter(
+            above, stated.lstrip("/") if above == "~" else stated
+        )  # those of a node are private
         if "command" in element.attrib:
             raise SymbolicError(f"{name} is what a command prints on the robot")
         kind = element.get("type", "auto")
         if "textfile" in element.attrib:
             return Setting(name, place.scope.file, self._read(Path(text(element.attrib["textfile"]))))
-        value = text(element.get("value", ""))
+        value = text(element.get("value", "")).strip()
         if kind == "yaml":
             return Setting(name, place.scope.file, yaml=value)
         return Setting(name, place.scope.file, scalar(value, kind))
@@ -166,12 +169,15 @@ class _Reader:
         text = place.scope.text
         if element.get("command", "load") != "load":
             return None
-        name = text(element.get("ns", "")) + "/" + text(element.get("param", ""))
+        ns, param = text(element.get("ns", "")), text(element.get("param", ""))
+        name = param if param.startswith("/") or not ns else f"{ns}/{param}"
         path = Path(text(element.attrib["file"])) if "file" in element.attrib else place.scope.file
         content = self._read(path) if "file" in element.attrib else element.text or ""
         if element.get("subst_value", "").lower() in ("true", "1"):
-            content = text(content)
-        return Setting(_parameter(above, name.strip("/")), path, yaml=content)
+            content, reasons = place.scope.symbolic(content)
+            for reason in reasons:
+                self._problem(element, place, f"<rosparam>: {reason}")
+        return Setting(_parameter(above, name.rstrip("/")), path, yaml=content)
 
     def _name(self, element: Element, key: str, place: _Place) -> str:
         """Return an attribute, with parts known only on the robot as `$(…)`."""

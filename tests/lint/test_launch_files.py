@@ -367,3 +367,45 @@ def test_unreadable_ros2_files_are_reported(tmp_path: Path, name: str, text: str
     found = launched(tmp_path, text, name)
     assert not found.nodes
     assert any(reason in one.reason for one in found.problems)
+
+
+def test_parameters_of_ros1_nodes_are_private_but_absolute_yaml_is_not(tmp_path: Path) -> None:
+    text = """
+        <launch><node pkg="arm_base" type="drive" name="drive">
+          <param name="/gui" value="  words  "/>
+          <rosparam param="/sources">[a]</rosparam>
+          <rosparam param="list" ns="deep">[b]</rosparam>
+          <rosparam subst_value="true">{known: 1, home: $(env HOME)}</rosparam>
+        </node></launch>
+    """
+    found = launched(tmp_path, text)
+    assert settings(found) == [("~gui", "words"), ("/sources", "[a]"), ("~deep/list", "[b]"),
+                               ("~", "{known: 1, home: $(env HOME)}")]  # fmt: skip
+    assert [one.reason for one in found.problems] == ["<rosparam>: $(env HOME) is known on the robot only"]
+
+
+def test_substitutions_of_navigation_2(tmp_path: Path) -> None:
+    text = """
+        from launch import LaunchDescription
+        from launch.actions import DeclareLaunchArgument
+        from launch.conditions import IfCondition
+        from launch.substitutions import PathJoinSubstitution, PythonExpression
+        from launch_ros.actions import Node
+        from launch_ros.substitutions import FindPackageShare
+        from nav2_common.launch import LaunchConfigAsBool, RewrittenYaml
+
+        def generate_launch_description():
+            composed = LaunchConfigAsBool("composed")
+            file = PathJoinSubstitution([FindPackageShare("arm_base"), "config", "ros2.yaml"])
+            plain = RewrittenYaml(source_file=file, root_key="", param_rewrites={}, convert_types=True)
+            changed = RewrittenYaml(source_file=file, param_rewrites={"kp": "3.0"})
+            return LaunchDescription([
+                DeclareLaunchArgument("composed", default_value="True"),
+                Node(package="arm_base", executable="a", condition=IfCondition(PythonExpression(["not ", composed]))),
+                Node(package="arm_base", executable="b", parameters=[plain, changed], condition=IfCondition(composed)),
+            ])
+    """
+    found = launched(tmp_path, text, "x.launch.py")
+    assert [one.executable for one in found.nodes] == ["b"]
+    assert settings(found) == [("~", "/**:\n  ros__parameters:\n    kp: 2.0\n")]
+    assert [one.reason for one in found.problems] == ["the parameter file $(RewrittenYaml) is not known here"]
