@@ -8,6 +8,7 @@ from typing import Any
 
 from pytest_tarl import seeds, spaces
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.schedules import Profile, profile
 from pytest_tarl.spaces import Choice, Fault, Point, Space, Span
 
 _FIRST = object()  # the default of Drift.choice: its first option is nominal
@@ -32,6 +33,36 @@ class Drift:
         Raise SettingsError for an invalid range.
         """
         return cls(spaces.span(f"Drift.range({low!r}, {high!r})", low, high, nominal), permanent)
+
+    @classmethod
+    def step(cls, low: float, high: float, *, nominal: float, at: float) -> Drift:
+        """Return a drift that begins at a moment, in s: the world gets a function of time.
+
+        Raise SettingsError for an invalid range or moment.
+        """
+        return cls._over_time("step", low, high, nominal, profile("step", at))
+
+    @classmethod
+    def ramp(cls, low: float, high: float, *, nominal: float, at: float, over: float) -> Drift:
+        """Return a drift that grows from a moment on, until `over` seconds later: the world gets a function of time.
+
+        Raise SettingsError for an invalid range, moment or duration.
+        """
+        return cls._over_time("ramp", low, high, nominal, profile("ramp", at, over))
+
+    @classmethod
+    def burst(cls, low: float, high: float, *, nominal: float, at: float, lasts: float) -> Drift:
+        """Return a drift that begins at a moment and ends after `lasts` seconds: the world gets a function of time.
+
+        Raise SettingsError for an invalid range, moment or duration.
+        """
+        return cls._over_time("burst", low, high, nominal, profile("burst", at, lasts))
+
+    @classmethod
+    def _over_time(cls, shape: str, low: float, high: float, nominal: float, course: Profile) -> Drift:
+        if nominal is None:
+            raise SettingsError(f"Drift.{shape}: give nominal=…, the value before and without the drift.")
+        return cls(spaces.span(f"Drift.{shape}({low!r}, {high!r})", low, high, nominal, course))
 
     @classmethod
     def choice(cls, *options: Any, nominal: Any = _FIRST, permanent: bool = False) -> Drift:
@@ -136,10 +167,8 @@ def _spans(value: Any, part: str) -> Iterator[tuple[str, Span]]:
 def _plain(value: Any, stream: str, seed: int) -> Any:
     if isinstance(value, Drift):
         return _plain(value.value, stream, seed)
-    if isinstance(value, Span):
-        return _draw(value, stream, seed)
-    if isinstance(value, Choice):
-        return spaces.value_of(value, _number(value, stream, seed))
+    if isinstance(value, Span | Choice):
+        return spaces.world_value(value, _number(value, stream, seed))
     if isinstance(value, Mapping):
         return {key: _plain(inner, _stream(stream, str(key)), seed) for key, inner in value.items()}
     return value

@@ -11,6 +11,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.schedules import Profile, Schedule
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,11 +22,15 @@ DIRECTIONS = "Drift.range(…, nominal=…), Drift.choice(…), or a fault such 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A closed range of numbers, from which each episode draws uniformly; in a space, with its nominal number."""
+    """A closed range of numbers, from which each episode draws uniformly; in a space, with its nominal number.
+
+    With a profile, the drawn number is the size of a drift over time.
+    """
 
     low: float
     high: float
     nominal: float | None = None
+    profile: Profile | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +74,7 @@ class Space:
 
     def world(self, point: Point) -> dict[str, Any]:
         """Return the values that the test's world gets at a point: the dictionary `tarl_drift`."""
-        return {name: value_of(extent, point[name]) for name, extent in self.directions.items()}
+        return {name: world_value(extent, point[name]) for name, extent in self.directions.items()}
 
     def active(self, point: Point) -> Mapping[str, tuple[Fault, float]]:
         """Return the faults that are not nominal at a point, with their sizes."""
@@ -92,7 +97,14 @@ def value_of(extent: Span | Choice, number: float) -> Any:
     return extent.options[int(number)] if isinstance(extent, Choice) else number
 
 
-def span(what: str, low: Any, high: Any, nominal: Any) -> Span:
+def world_value(extent: Span | Choice, number: float) -> Any:
+    """Return what a test's world gets for a number of a point: a Schedule for a drift over time."""
+    if isinstance(extent, Span) and extent.profile is not None:
+        return Schedule(nominal(extent), number, extent.profile)
+    return value_of(extent, number)
+
+
+def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None = None) -> Span:
     """Return a checked range; `what` names it in messages. Raise SettingsError for an invalid one."""
     if not _number(low) or not _number(high) or not low < high:
         raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
@@ -102,7 +114,7 @@ def span(what: str, low: Any, high: Any, nominal: Any) -> Span:
         raise SettingsError(
             f"{what}: the nominal value must be a number from {low:g} to {high:g}, got {nominal!r}."
         )
-    return Span(float(low), float(high), float(nominal))
+    return Span(float(low), float(high), float(nominal), profile)
 
 
 def choice(options: tuple[Any, ...], usual: Any) -> Choice:

@@ -64,12 +64,19 @@ class Guarantee:
 def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
     """Return what the recording guarantees: its bound of the success rate, at most min_success, and the loss δ."""
     sample = fixture.sample
-    passed, episodes = int(sample.passed.sum()), sample.episodes
-    shown = rate(passed, episodes, CONFIDENCE).low
+    outcomes = [
+        Outcome(bool(passed), float(total)) for passed, total in zip(sample.passed, sample.total, strict=True)
+    ]
+    return guaranteed(outcomes, tolerated(sample, designation.tolerance), designation)
+
+
+def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Designation) -> Guarantee:
+    """Return what recorded outcomes guarantee at a tolerated loss."""
+    passed, episodes = sum(one.passed for one in outcomes), len(outcomes)
     return Guarantee(
-        rate=min(designation.min_success, shown),
-        tolerance=tolerated(sample, designation.tolerance),
-        totals=tuple(sample.total.tolist()),
+        rate=min(designation.min_success, rate(passed, episodes, CONFIDENCE).low),
+        tolerance=tolerance,
+        totals=tuple(one.total for one in outcomes),
         share=passed / episodes,
         declared=Range(*designation.total_range) if designation.total_range else None,
     )

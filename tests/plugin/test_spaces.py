@@ -82,6 +82,11 @@ def test_the_nominal_option_is_the_first_unless_stated() -> None:
         (lambda: Drift.choice("up"), "at least two options, got 1"),
         (lambda: Drift.choice(), "at least two options, got 0"),
         (lambda: Drift.choice("up", "down", nominal="left"), "'left' is none of"),
+        (lambda: Drift.step(0, 1, nominal=1, at=-1), "at must be a moment"),
+        (lambda: Drift.step(0, 1, nominal=2, at=1), "nominal value must be"),
+        (lambda: Drift.step(0, 1, nominal=None, at=1), "give nominal="),  # type: ignore[arg-type]
+        (lambda: Drift.ramp(0, 1, nominal=1, at=1, over=0), "over must be a duration"),
+        (lambda: Drift.burst(0, 1, nominal=1, at=1, lasts=float("inf")), "lasts must be a duration"),
         (lambda: Drift.space(mud=0.15), "'mud' must be"),
         (lambda: Drift.space(mud=Drift.range(0, 1, nominal=1, permanent=True)), "'mud' is permanent"),
         (lambda: drift("t", "world", Drift(WORLD.value, permanent=True)), "cannot be permanent"),
@@ -91,6 +96,24 @@ def test_the_nominal_option_is_the_first_unless_stated() -> None:
 def test_an_invalid_space_gives_one_sentence(make: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         make()
+
+
+def test_a_direction_over_time_is_a_function_whose_size_is_drawn() -> None:
+    space = Drift.space(
+        step=Drift.step(0.0, 1.0, nominal=1.0, at=2.0),
+        ramp=Drift.ramp(0.0, 1.0, nominal=1.0, at=2.0, over=4.0),
+        burst=Drift.burst(0.0, 1.0, nominal=1.0, at=2.0, lasts=1.0),
+    ).value
+    world = space.world({"step": 0.2, "ramp": 0.2, "burst": 0.2})
+    times = (0.0, 1.99, 2.0, 2.5, 3.0, 4.0, 6.0, 9.0)
+    assert [world["step"](t) for t in times] == pytest.approx([1, 1, 0.2, 0.2, 0.2, 0.2, 0.2, 0.2])
+    assert [world["ramp"](t) for t in times] == pytest.approx([1, 1, 1, 0.9, 0.8, 0.6, 0.2, 0.2])
+    assert [world["burst"](t) for t in times] == pytest.approx([1, 1, 0.2, 0.2, 1, 1, 1, 1])
+    nominal = space.world(space.nominal)
+    assert {nominal[name](t) for name in nominal for t in times} == {1.0}
+    whole = drift("t", "world", Drift(space))
+    drawn_step = drawn(whole, "world", 5)["step"]
+    assert drawn_step(3.0) == pytest.approx(sizes(whole, "world", 5)["step"])
 
 
 @given(st.dictionaries(st.text(min_size=1), st.tuples(st.floats(0, 1), st.floats(0, 1)), min_size=1))

@@ -1,0 +1,57 @@
+"""Drifts over time: a size that begins, grows or passes at a moment of the episode."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import Any, Literal
+
+from pytest_tarl.errors import SettingsError
+
+Shape = Literal["step", "ramp", "burst"]
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """The course of a drift: from the moment `at`, in s. A ramp is over, and a burst ends, `lasts` seconds later."""
+
+    shape: Shape
+    at: float
+    lasts: float = 0.0
+
+    def share(self, time: float) -> float:
+        """Return the share of the drift's size at a time in s, from 0, nominal, to 1."""
+        if time < self.at:
+            return 0.0
+        if self.shape == "ramp":
+            return min((time - self.at) / self.lasts, 1.0)
+        return 0.0 if self.shape == "burst" and time >= self.at + self.lasts else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """The value of a drift over time, which a world gets: call it with the time in s, such as `tarl.now`."""
+
+    nominal: float
+    size: float
+    profile: Profile
+
+    def __call__(self, time: float) -> float:
+        """Return the value at a time in s since the episode began."""
+        return self.nominal + (self.size - self.nominal) * self.profile.share(time)
+
+
+def profile(shape: Shape, at: Any, lasts: Any = 0.0) -> Profile:
+    """Return a checked profile. Raise SettingsError for an invalid moment or duration."""
+    begin, duration = _seconds(at), _seconds(lasts)
+    if not begin >= 0.0:
+        raise SettingsError(f"Drift.{shape}: at must be a moment in seconds, 0 or later, got {at!r}.")
+    if shape != "step" and not duration > 0.0:
+        name = "over" if shape == "ramp" else "lasts"
+        raise SettingsError(f"Drift.{shape}: {name} must be a duration in seconds above 0, got {lasts!r}.")
+    return Profile(shape, begin, duration)
+
+
+def _seconds(value: Any) -> float:
+    number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    return float(value) if number else nan
