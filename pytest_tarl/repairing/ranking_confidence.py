@@ -49,7 +49,7 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     if found.by is None:
         return told
     low, high = found.by
-    by = f"{words.signed(low)} to {words.signed(high)} an episode"
+    by = f"{words.signed(low)} to {words.signed(high)} per episode"
     span = f"{by}, about {percent(CONFIDENCE)}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"

@@ -28,7 +28,7 @@ def sentences(stated: Guarantee) -> Iterator[str]:
     how = (
         "totals within the declared range" if stated.mean.exact else "approximate: no total_range is declared"
     )
-    yield f"{figure(stated.average)} reward a mission: {sure} at least {figure(stated.mean.low)} on average ({how})"
+    yield f"mean reward {figure(stated.average)} per mission: at least {figure(stated.mean.low)} {sure} ({how})"
     most = percent(1 - stated.share)
     if stated.quantile is not None:
         yield f"{most} of the missions earn at least {figure(stated.quantile)}, {sure}"

@@ -87,7 +87,7 @@ def _rewards(comparison: Comparison) -> str:
 def _loss(comparison: Comparison) -> Iterator[str]:
     sure = words.loss_words(comparison)
     if sure and comparison.verdict.result != "no difference":
-        yield f"{words.amount(comparison.verdict.loss)} an episode, {sure}"
+        yield f"{words.amount(comparison.verdict.loss)} per episode, {sure}"
 
 
 def _parts(comparison: Comparison) -> Iterator[str]:

@@ -87,7 +87,7 @@ def average(totals: Sequence[float]) -> str:
         return f"{amount(fmean(totals)) if totals else 'n/a'} per episode, {len(totals)} episodes"
     found = mean_of(totals, (1.0 + CONFIDENCE) / 2)
     interval = f"about {percent(CONFIDENCE)} confidence {amount(found.low)} to {amount(found.high)}"
-    return f"{amount(fmean(totals))} an episode, {interval}, {len(totals)} episodes"
+    return f"{amount(fmean(totals))} per episode, {interval}, {len(totals)} episodes"
 
 
 def signed(value: float | None) -> str:

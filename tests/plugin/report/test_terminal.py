@@ -25,7 +25,7 @@ def test_the_shuttle_gives_one_short_section(shuttle):
         "tests/test_traveller.py::test_delivers[mud]: degraded",
         "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
         "  reward   designed 9.78, deployed -6.83, repaired 9.42, designed world repaired 10.09",
-        "  loss     16.90 an episode, about 90 % confidence 15.40 to 18.10; 6.2 standard deviations",
+        "  loss     16.90 per episode, about 90 % confidence 15.40 to 18.10; 6.2 standard deviations",
         "  parts    progress -9.30",
         "           clearance -7.60",
         "  where    x 4.2-7.1 m, terrain true",
