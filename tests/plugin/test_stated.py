@@ -28,7 +28,7 @@ def test_recording_prints_bounds_and_saves_them(tank: pytest.Pytester) -> None:
 
 def test_a_declared_range_makes_the_bound_of_the_mean_exact(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-25, 0),")
-    said(tank, "*on average (totals within the declared range)")
+    said(tank, "*with 95 % confidence (totals within the declared range)")
     stated = load(fixture_file(tank)).stated
     assert stated is not None
     assert stated.mean.exact
