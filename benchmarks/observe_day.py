@@ -30,7 +30,7 @@ from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, unpacked
 
 RATE = 100  # cycles a second
-BEHIND = RATE  # most steps that wait for the observer's thread
+BEHIND = RATE  # maximum number of steps that wait for the observer's thread
 OBJECTS = 1000  # allowed growth of the memory blocks that Python holds
 SAMPLES = 24  # number of memory samples and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}

@@ -59,7 +59,7 @@ class Fault:
     kind: str
     was: str
     now: str
-    lines: tuple[int, ...] = ()  # lines of the statement up to its body, to find tests in the coverage data
+    lines: tuple[int, ...] = ()  # the statement without its body, as in coverage data
 
     @property
     def name(self) -> str:

@@ -26,7 +26,7 @@ from pytest_tarl.sensors import Sensor
 OFFLINE = 200  # missions of a recording
 POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), drifting
 POOLED_EXAMPLE = {True: 1000, False: 300}
-FAILING = 0.03  # share of the designed missions with the smallest totals, which count as failed
+FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals
 Rows = NDArray[np.int64]
 Generator = np.random.Generator
 

@@ -32,7 +32,7 @@ class Account:
 class Compared:
     """A finished comparison, ready to be reported as it is or corrected over all tests."""
 
-    name: str  # of the files to write
+    name: str  # base name of the files to write
     root: Path
     width: int
     comparison: Comparison

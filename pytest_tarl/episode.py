@@ -55,7 +55,7 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
-        self._faults = NO_FAULTS if replay is not None else faults  # a bag has the faults of its world
+        self._faults = NO_FAULTS if replay is not None else faults  # a bag already has its faults
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 DIGITS = 12  # hexadecimal digits of a digest
-SHOWN = 3  # most files in a message, and most definitions per file
+SHOWN = 3  # maximum number of files in a message, and of definitions per file
 REST = ""  # the key of statements outside definitions
 
 Digests = Mapping[str, Mapping[str, str]]  # file, relative to the root → definition → digest

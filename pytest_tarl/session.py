@@ -72,7 +72,7 @@ class TarlSession:
             list(drifts) if isinstance(drifts, Mapping) else []
         )  # an invalid marker is reported when the test runs
         if self.options.log is not None or self.options.bags:
-            names = []  # the world of recorded missions has no name
+            names = []  # the world of recorded missions has no drift name
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":

@@ -15,7 +15,7 @@ from pytest_tarl.model import Guarantee
 from pytest_tarl.report.guarantees import percent
 
 ENOUGH_FAILURES = 5  # failures after which a recording stops if min_success can no longer be reached
-MOST = 20_000  # most episodes for reaching a confidence
+MOST = 20_000  # maximum number of episodes for reaching a confidence
 
 
 @dataclass

@@ -6,7 +6,7 @@ from hypothesis import HealthCheck, settings
 
 pytest_plugins = ["pytester"]
 
-# The same examples in every run, and no verdict by the clock: a loaded machine is no defect.
+# Hypothesis runs the same examples every time and has no deadline, since a loaded machine is not a defect.
 settings.register_profile(
     "tarl",
     deadline=None,

@@ -17,9 +17,9 @@ FOLDER = Path(__file__).parent.parent / "benchmarks"
 SCRIPTS = sorted(
     path for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")] if "__main__" in path.read_text()
 )
-ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # the in-process ones, within a node
+ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable within a node only
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
-# What makes each script do the least that it can; {tmp} is a folder of the test.
+# Arguments with which each script does as little as possible; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],
     "editing": ["{tmp}"],
@@ -50,7 +50,7 @@ def imported(path: Path) -> Iterator[str]:
 def named(extras: set[str]) -> set[str]:
     """Return the distributions that tarl and its extras name, by normalised name, without what those need."""
     names, wanted = set[str](), {*extras}
-    for _ in range(3):  # an extra may name others
+    for _ in range(3):  # an extra may include other extras
         for line in requires("tarl") or ():
             requirement, _, marker = line.partition(";")
             extra = re.search(r"extra == ['\"](\w+)", marker)

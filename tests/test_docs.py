@@ -13,7 +13,7 @@ ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")])
 CODE = sorted(p for package in ("pytest_tarl", "tarl_lint") for p in (ROOT / package).rglob("*.py"))
 SOURCE = "\n".join(path.read_text("utf-8") for path in CODE)
-SPOKEN = re.sub(r'"\s*\n\s*f?"', "", SOURCE)  # sentences that are written over several lines
+SPOKEN = re.sub(r'"\s*\n\s*f?"', "", SOURCE)  # sentences can span several lines
 
 
 def headings(page: Path) -> list[str]:

@@ -45,7 +45,7 @@ ALLOWED = {
     *("MIT License", "BSD License", "Apache Software License", "ISC License (ISCL)", "DFSG approved"),
     *("Python Software Foundation License", "MPL-2.0", "Mozilla Public License 2.0 (MPL 2.0)"),
 }
-EXAMINED = {  # read by hand, since what they declare says too little or too much
+EXAMINED = {  # read by hand, because their declared licence is incomplete or too broad
     "apsw": "any OSI licence, so MIT",
     "docutils": "public domain; single files, which nothing here uses, are under the GPL; for twine only",
 }
@@ -70,7 +70,7 @@ def needed(extra: str) -> set[str]:
         try:
             lines = requires(one.name) or []
         except PackageNotFoundError:
-            continue  # for another system
+            continue  # not installed: it is for another system
         found.add(canonicalize_name(one.name))
         for line in lines:
             inner = Requirement(line)

@@ -27,7 +27,7 @@ BUILD = HERE.parent / "build"
 def settings(address: str, quick: bool) -> str:
     """Return the settings of zensical: those of website/zensical.toml with what is known only now."""
     text = (HERE / "zensical.toml").read_text("utf-8")
-    tomllib.loads(text)  # a mistake in it is told by its line
+    tomllib.loads(text)  # a mistake in it is reported with its line
     known = [
         'docs_dir = "pages"',
         'site_dir = "site"',
@@ -37,7 +37,7 @@ def settings(address: str, quick: bool) -> str:
         text = "".join(line for line in text.splitlines(keepends=True) if '"gallery/index.md"' not in line)
     text = text.replace("[project]\n", "[project]\n" + "\n".join(known) + "\n", 1)
     text = text.replace("[project.theme]\n", '[project.theme]\ncustom_dir = "overrides"\n', 1)
-    if address:  # published beside other versions, between which a menu leads
+    if address:  # published beside other versions, with a menu to switch between them
         text = text.replace("[project.extra]\n", '[project.extra]\nversion = { provider = "mike" }\n', 1)
     return text.replace('paths = ["."]', 'paths = [".."]', 1)
 

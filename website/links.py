@@ -38,7 +38,9 @@ class Page(HTMLParser):
 
 def broken(site: Path) -> list[str]:
     """Return a sentence for each link that leads nowhere and each thing loaded from the network, in order."""
-    reports = {*site.glob("gallery/*.html")} - {site / "gallery" / "index.html"}  # each is whole in itself
+    reports = {*site.glob("gallery/*.html")} - {
+        site / "gallery" / "index.html"
+    }  # each report is self-contained
     files = sorted({*site.rglob("*.html")} - reports)
     pages = {path: Page(path.read_text("utf-8")) for path in files}
     return [problem for path, page in pages.items() for problem in _broken(site, path, page, pages)]

@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).parent.parent
 TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "GOVERNANCE.md", "CODE_OF_CONDUCT.md")
-ONLY = Path(__file__).parent / "site_pages"  # pages that stand in the site only, below its top
+ONLY = Path(__file__).parent / "site_pages"  # pages that exist only in the site, relative to its root
 GENERATED = {f"docs/reference/{name}.md" for name in ("options", "commands", "settings", "schemas", "api")}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 

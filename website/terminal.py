@@ -18,10 +18,10 @@ from website.pages import ROOT
 from website.tutorial import TUTORIAL, Ran, run
 
 TARGET = ROOT / "docs" / "images" / "terminal.svg"
-SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # what the commands that are shown begin with
-HIDDEN = ("tarl-lint --", "pytest -q\n")  # of those, the ones that are left out
+SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefix of the commands that are shown
+HIDDEN = ("tarl-lint --", "pytest -q\n")  # commands with the prefix that are not shown
 COLUMNS, ROWS, LINE, CHARACTER, EDGE = 92, 30, 17, 7.4, 14
-TYPED, PAUSE, LONGEST = 0.045, 1.2, 2.0  # s: for a character, after a command's output, for a command
+TYPED, PAUSE, LONGEST = 0.045, 1.2, 2.0  # pauses in s: per character, after a command's output, per command
 STYLE = """text{font:12.3px ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;fill:#e6e6e6;white-space:pre;\
 opacity:0;animation:show 1ms linear forwards}
 .c{fill:#ffffff;font-weight:700}.a{fill:#7ee2a8}.r{fill:#ff9d94}.v{fill:#ffd479}

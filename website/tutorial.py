@@ -32,7 +32,7 @@ BLOCK = re.compile(
 VARIES = re.compile(r"\bin \d+\.\d+s\b|\b[0-9a-f]{7,}\b")
 LEFT_OUT = re.compile(r"^\.\.\.\n", re.MULTILINE)
 END = "__end of output__"
-LIMIT = 300  # seconds that one command may take
+LIMIT = 300  # time limit of a command in s
 
 
 class Command(NamedTuple):
@@ -127,7 +127,7 @@ def _environment(folder: Path) -> dict[str, str]:
         name: value
         for name, value in os.environ.items()
         if not name.startswith(("PYTEST", "GIT_", "GITHUB_", "COV_", "TARL_"))
-        and name not in ("CI", "BUILD_NUMBER")  # under which pytest shortens no line
+        and name not in ("CI", "BUILD_NUMBER")  # with these set, pytest does not shorten lines
     }
     who = {f"GIT_{role}_{what}": value for role in ("AUTHOR", "COMMITTER") for what, value in _WHO.items()}
     return {
@@ -141,7 +141,7 @@ def _environment(folder: Path) -> dict[str, str]:
         "COLUMNS": "80",
         "LC_ALL": "C.UTF-8",
         "NO_COLOR": "1",
-        "PYTEST_ADDOPTS": "-p no:asyncio -p no:randomly -p no:rerunfailures",  # of our development environment
+        "PYTEST_ADDOPTS": "-p no:asyncio -p no:randomly -p no:rerunfailures",  # plugins of the development extra
     }
 
 
@@ -198,7 +198,7 @@ def main() -> int:
     if arguments.write:
         arguments.page.write_text(renewed(page, ran), "utf-8")
         if other and arguments.page.resolve() == TUTORIAL:
-            from website.terminal import draw  # it needs what stands here
+            from website.terminal import draw  # website.terminal imports this module
 
             draw(ran)
     print(

@@ -22,7 +22,7 @@ UInt8 = message_type("std_msgs/UInt8")
 
 G1, G2 = 1.0, 11.0
 PATCH = (5.0, 7.0)
-PATCH_SHARE = 0.6  # of the missions meet the patch
+PATCH_SHARE = 0.6  # share of the missions that cross the patch
 WHEEL_RADIUS = 0.08
 TOP_SPEED = 55.0  # of the wheels
 TRACTION = 80.0  # N of push per m/s between wheel and ground

@@ -44,7 +44,7 @@ class FixtureDiff:
 
 
 SIGNIFICANT = 0.05
-MOST = 12  # most statements listed of a kind
+MOST = 12  # maximum number of statements listed per kind
 
 
 def compared(first: Fixture, second: Fixture) -> FixtureDiff:

@@ -13,8 +13,8 @@ from pytest_tarl.model import TaintList
 from pytest_tarl.report.guarantees import percent, sentences
 from pytest_tarl.sensors import Sensor
 
-CODE = 60  # most characters of a line of code
-FEW = 24  # most statements listed without --sites
+CODE = 60  # maximum number of characters of a line of code
+FEW = 24  # maximum number of statements listed without --sites
 
 
 def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = False) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Any
 from pytest_tarl.errors import FixtureError
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
-BARS = 8  # most statements in a chart
+BARS = 8  # maximum number of statements in a chart
 
 
 def markdown(folder: Path) -> str:

@@ -18,7 +18,7 @@ from pytest_tarl.monitoring.watch import Watch
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # most seconds between two reports while there is more to read
+TOLD = 1.0  # maximum seconds between two reports while there is more to read
 
 
 @dataclass(frozen=True)

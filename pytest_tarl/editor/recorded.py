@@ -23,7 +23,7 @@ class Figures:
     drift: str
     offline: float
     online: float
-    rank: int | None = None  # position among the culprits, from 1
+    rank: int | None = None  # rank among the culprits, from 1
 
     @property
     def difference(self) -> float:

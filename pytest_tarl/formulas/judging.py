@@ -42,7 +42,7 @@ class Judge:
         self.said = said
         self.timeline = Timeline(names)
         self.formulas = list(formulas)
-        self.steps: list[int] = []  # end of each step, ns since the episode began
+        self.steps: list[int] = []  # end time of each step, ns since the episode began
         self._courses: dict[str, Course] = {}
 
     def give(self, name: str, value: Any, time: int) -> None:

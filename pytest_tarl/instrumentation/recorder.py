@@ -66,7 +66,7 @@ class Recorder:
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[int] = []  # the current cell from each mark on
+        self._latched: list[int] = []  # the cell that is current from each mark to the next one
         self._rewards: list[int] = []  # indices of the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []

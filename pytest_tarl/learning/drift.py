@@ -23,7 +23,7 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-MATERIAL = 0.1  # least share of the largest significant difference for a cell of the region
+MATERIAL = 0.1  # minimum share of the largest significant difference for a cell of the region
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # least visits for a cell unknown to the fit to count as novel ...
+NOVEL_VISITS = 3  # visits from which a cell unknown to the fit counts as novel ...
 NOVEL_EPISODES = 2  # ... and least episodes with such a visit
 
 
@@ -30,7 +30,7 @@ class Evidence:
     novel: Floats
     move_error: Floats  # rounding error of `move` and `reward`, which are 0 if not above it
     reward_error: Floats
-    slabs: tuple[Ints, ...]  # the cells of each slab
+    slabs: tuple[Ints, ...]  # indices of the cells in each slab
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:

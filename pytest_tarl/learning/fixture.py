@@ -93,7 +93,7 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 would store any option as an array
+    np.savez_compressed(buffer, **arrays)  # no options: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

@@ -12,7 +12,7 @@ from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sa
 from pytest_tarl.sensors import Cell
 
 FEW = 0.05  # share of deployed steps in known cells up to which worlds have nothing in common
-ENOUGH = 0.5  # least share in known cells after leaving sensors out
+ENOUGH = 0.5  # minimum share in known cells after leaving sensors out
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:

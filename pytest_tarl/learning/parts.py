@@ -11,7 +11,7 @@ from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MATERIAL = 0.1  # least share of its part's largest loss for a cell to be reported
+MATERIAL = 0.1  # minimum share of its part's largest loss for a cell to be reported
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:

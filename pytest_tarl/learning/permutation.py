@@ -41,7 +41,7 @@ def permuted_loss(
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
     shuffled = labels(pooled.size, online.size, generator, permutations) @ pooled
-    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # sums in another order differ by rounding
+    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of a sum changes its rounding
     return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
 
 

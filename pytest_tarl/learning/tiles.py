@@ -17,7 +17,7 @@ from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_u
 from pytest_tarl.sensors import Cell, Sensor
 
 RIDGE = 1e-6  # times the mean number of visits, added to the diagonal because tilings do not determine all weights
-DENSE = 1500  # most weights for a direct solution
+DENSE = 1500  # maximum number of weights for a direct solution
 
 
 @dataclass(frozen=True)

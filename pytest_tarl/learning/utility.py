@@ -15,9 +15,9 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
-DENSE = 150  # most states for a direct solution
+DENSE = 150  # maximum number of states for a direct solution
 PRECISE = 1e-12  # sweeps end when utilities change by less than this share of the largest one
-STEPS = 300  # most steps of biconjugate gradients; sweeps finish the solution in any case
+STEPS = 300  # maximum number of steps of biconjugate gradients; sweeps finish the solution in any case
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:

@@ -63,9 +63,7 @@ class Assembly:
     _latest: Spot | None = None  # the last record read
     _mission: tuple[float, list[Steps]] | None = None  # start time and steps of the unfinished mission
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = (
-        b""  # the cells of the table as they stand in the log, where they were read from a mission at once
-    )
+    _text: bytes = b""  # cells of the table as they are in the log, if they were read with a whole mission
 
     @property
     def progress(self) -> Progress:

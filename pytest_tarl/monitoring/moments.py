@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-MOST = 1024  # most times kept
+MOST = 1024  # maximum number of times to keep
 
 
 @dataclass

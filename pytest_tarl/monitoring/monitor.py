@@ -24,7 +24,7 @@ from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
 PORTION = 512  # missions scored together
-MOST_NEW = 256  # most new cells counted
+MOST_NEW = 256  # maximum number of new cells counted
 DRAWS = 4096  # random numbers drawn together
 
 

@@ -23,7 +23,7 @@ from pytest_tarl.monitoring.conformal import BINS, edges
 from pytest_tarl.sensors import Cell
 
 WHOLE = ("success", "total", "residual", "unknown", "steps")  # scores of a mission, before those of its cells
-FEWEST = 2  # least episodes in each half of a recording
+FEWEST = 2  # minimum number of episodes in each half of a recording
 
 
 @dataclass(frozen=True)

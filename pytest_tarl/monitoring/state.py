@@ -63,7 +63,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     buffer = io.BytesIO()
     text = np.frombuffer(json.dumps(header).encode(), np.uint8)
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 would store any option as an array
+    np.savez_compressed(buffer, **arrays)  # no options: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

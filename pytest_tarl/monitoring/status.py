@@ -14,7 +14,7 @@ from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)  # bets of conformal.factors on one end; others bet on both
-FEWEST_NEW = 2  # least missions in a new cell for it to be named
+FEWEST_NEW = 2  # minimum number of missions in a new cell for it to be named
 
 
 @dataclass(frozen=True)

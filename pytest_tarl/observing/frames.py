@@ -27,7 +27,7 @@ MAGIC = b"tarl log 1\n"
 _HEAD = struct.Struct("<II")
 HEAD = _HEAD.size  # bytes before a record's payload
 unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
-LARGEST = 1 << 26  # most bytes of a record; a larger length is damaged
+LARGEST = 1 << 26  # maximum size in bytes of a record; a larger length is damaged
 
 Record = dict[str, Any]
 

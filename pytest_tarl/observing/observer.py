@@ -17,7 +17,7 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor, reading
 
-PERIOD = 0.02  # least seconds between two cuts; longer intervals would make each cut take longer
+PERIOD = 0.02  # minimum seconds between two cuts; longer intervals would make each cut take longer
 PATIENCE = 0.1  # seconds after which to cut even if no step was closed
 OUTCOMES = {"succeeded": True, "failed": False}
 

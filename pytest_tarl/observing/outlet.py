@@ -18,7 +18,7 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, READY
 
-MOST_WAITING = 1 << 26  # most bytes of waiting messages; while more wait, events are dropped
+MOST_WAITING = 1 << 26  # maximum size in bytes of waiting messages; while more wait, events are dropped
 _PIPE = 1 << 20  # size of the pipe's buffer in bytes, if the system allows it
 _PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
 

@@ -58,7 +58,7 @@ class Cut(NamedTuple):
 class Stream(Recorder):
     """An endless recorder: `cut` takes the events recorded so far."""
 
-    _packing = False  # from any thread, so no other may
+    _packing = False  # any thread may close a step, so closing one must not pack a buffer
 
     def __init__(self) -> None:
         super().__init__(threads=True)

@@ -77,7 +77,7 @@ class Mutants:
             try:
                 source = self.source(candidate)
             except RepairError:
-                continue  # `run` will raise the error again
+                continue  # `run` raises the error again
             yield (candidate, seed, drift), EpisodePlan(seed, drift, source)
 
 

@@ -17,9 +17,9 @@ from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.accept import PASS_RATE_LOSS, Outcome
 from pytest_tarl.searching.search import Candidate
 
-MOST = 2  # candidates to test
-EPISODES = 40  # per world, each paired with one of the unrepaired program
-SCREENED = 12  # candidates to screen ...
+MOST = 2  # number of candidates to test
+EPISODES = 40  # episodes per world, each paired with one of the unrepaired program
+SCREENED = 12  # number of candidates to screen ...
 KNOWN = 3  # ... in this number of recorded episodes of the designed world
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (

@@ -28,8 +28,8 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
-CONSTANTS = 2 / 3  # of the budget, if structural changes are to get the rest
-RESERVE = 1 / 6  # of the budget, which constants get in addition if a candidate came far
+CONSTANTS = 2 / 3  # share of the budget for constants, if structural changes get the rest
+RESERVE = 1 / 6  # share of the budget added for constants if a candidate gained much
 NAMED_FROM = 3  # episodes; candidates with more are reported if they fit a part of a range
 
 
@@ -52,9 +52,9 @@ class _Findings:
     method: str = ""
     curves: tuple[SearchTrace, ...] = ()
     interrupted: bool = False
-    late: bool = False  # the time for the search was up
+    late: bool = False  # whether the search reached its time limit
     episodes: int = 0
-    ranking: Ranking | None = None  # if all sites were ranked
+    ranking: Ranking | None = None  # set if all sites were ranked
     structure: int = 0  # episodes spent on structural changes, part of `episodes`
 
     def take(self, purse: Purse) -> None:

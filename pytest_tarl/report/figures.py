@@ -18,7 +18,7 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # most values of the splitting sensor with their own row
+MOST_ROWS = 6  # maximum number of values of the splitting sensor with their own row
 QUIET = 0.25  # share of the utility range: least end of the difference scale
 DIGITS = 5  # significant digits of numbers on the page
 

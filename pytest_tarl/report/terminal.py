@@ -11,7 +11,7 @@ from pytest_tarl.report import formulas, guarantees, sizes, words
 
 SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-LEGIBLE = 24  # least characters of code beside its place; with less room, code gets its own line
+LEGIBLE = 24  # minimum number of characters of code beside its place; with less room, code gets its own line
 NARROWEST = 40  # columns below which the terminal breaks lines
 
 

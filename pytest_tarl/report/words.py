@@ -28,7 +28,7 @@ from pytest_tarl.report.regions import Vocabulary
 SIGNIFICANT = 0.05  # p-value above which a loss is not reported
 CONFIDENCE = 0.95  # confidence of the interval around an average
 NEGLIGIBLE = 0.01  # share of the total loss below which a part's loss is not reported
-SHORTEST = 16  # least characters shown of a code line
+SHORTEST = 16  # minimum number of characters shown of a code line
 REASONS: dict[Reason, str] = {
     "": "no reason was recorded",
     "no operand helps": "no change of a single constant restores the reward",

@@ -29,7 +29,7 @@ SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-SHARE = 2 / 3  # of the risk α for the first candidate; each later one gets a third of the risk before it
+SHARE = 2 / 3  # share of the risk α for the first candidate; each later one gets a third of the previous risk
 
 
 @dataclass(frozen=True, slots=True)

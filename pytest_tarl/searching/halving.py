@@ -18,7 +18,7 @@ from tarl_lint.model import Operand
 
 ROUNDS = (1, 2, 4, 8)  # seeds per arm after each round
 REFINED = 3  # arms to refine between two rounds
-SLACK = 0.1  # least gain that counts, as a share of the loss
+SLACK = 0.1  # minimum gain that counts, as a share of the loss
 
 
 class Halving:

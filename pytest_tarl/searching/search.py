@@ -17,13 +17,13 @@ from pytest_tarl.searching.accept import Outcome, unforeseen
 from tarl_lint.model import Operand
 
 Mutate = Callable[[Operand, float], Mutation | None]
-Wanted = tuple["Candidate", int]  # an episode: a candidate and its seed
+Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold ...
 HARD = 2  # ... of which at most this many are chosen because other candidates fell short on them
 FAR = 0.6  # share of the wanted gain that releases the reserve of episodes
-PAIRED = 2  # least number of common seeds for comparing two candidates
+PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,9 @@ class Trials:
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     reserve: int = 0  # episodes beyond the budget, released once a candidate has gained `FAR` ...
     worth: Goal | None = None  # ... of the gain that this goal wants
-    loses: Callable[[Candidate], bool] = lost_nothing  # loses it missions that rejected ones lost?
+    loses: Callable[[Candidate], bool] = (
+        lost_nothing  # whether the candidate loses missions that rejected ones lost
+    )
     misses: Counter[int] = field(default_factory=Counter)  # seed → candidates that fell short on it
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)

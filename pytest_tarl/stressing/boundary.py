@@ -5,8 +5,8 @@ from __future__ import annotations
 from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import Curve
 
-COARSE, FINE = 16, 32  # most episodes at a point of the sweep, and near the boundary
-RESOLUTION = 0.01  # of the declared range, at which a bisection ends
+COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
+RESOLUTION = 0.01  # share of the declared range at which a bisection ends
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:

@@ -19,9 +19,9 @@ from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, failure
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
-INSIDE = 0.9  # share of each boundary at which directions are combined: each alone holds there
-NEARER = 0.95  # of the best distance: what the random search tries is at most so far
-TRIES = 24  # drifts in a row without a nearer failure after which the random search ends
+INSIDE = 0.9  # share of each boundary at which directions are combined; each direction alone passes there
+NEARER = 0.95  # the random search looks up to this share of the best distance
+TRIES = 24  # consecutive drifts without a nearer failure after which the random search ends
 SHRINKS = 4  # halvings of one direction while shrinking
 PART = 0.75  # probability that a direction takes part in a random drift
 SPREAD = 0.3  # standard deviation of a step around the best drift, in units of its distance

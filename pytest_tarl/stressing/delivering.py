@@ -62,7 +62,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
             path, page.render(found).encode()
         ),
     }
-    if not found.ended or found.failures:  # an incomplete run without a failure forgets nothing
+    if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
         jobs[memory] = lambda path: kept.write(found.failures, path)
     lines = [line for path, write in jobs.items() for line in _unwritten(path, write, root)]
     report = folder / "report" / f"{name}-stress.html"

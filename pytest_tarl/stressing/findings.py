@@ -78,7 +78,7 @@ class Failure:
 
     point: Point
     distance: float
-    names: tuple[str, ...]  # the directions that are not nominal
+    names: tuple[str, ...]  # directions with a value other than the nominal one
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
 LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
-SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it guarantees nothing
+SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it gives no guarantee
 
 Answer = Literal["fails", "holds", "open"]
 
@@ -50,7 +50,7 @@ class Guarantee:
     rate: float
     tolerance: float
     totals: tuple[float, ...]
-    share: float  # of the recorded episodes that passed
+    share: float  # share of the recorded episodes that passed
     declared: Range | None = None
 
     def margin(self, passed: float, loss: float) -> float:

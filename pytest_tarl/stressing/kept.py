@@ -16,7 +16,7 @@ from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome
 
 FORMAT_VERSION = 1  # 1: first version
-MOST = 5  # failing drifts that are kept
+MOST = 5  # number of failing drifts to keep
 EPISODES = 4  # of a replay
 
 

@@ -19,8 +19,8 @@ from pytest_tarl.stressing.words import (
     together,
 )
 
-WIDTH, HEIGHT, EDGE = 640, 200, 44  # of a curve, in px; EDGE is the space for the axes
-TOP, BOTTOM = 1.25, -1.25  # margins that the curve shows; beyond, they are clipped
+WIDTH, HEIGHT, EDGE = 640, 200, 44  # size of a curve in px; EDGE is the space for the axes
+TOP, BOTTOM = 1.25, -1.25  # range of margins in the curve; others are clipped
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem; color: #1c2333 }
 h1 { font-size: 1.4rem } h2 { font-size: 1.1rem; margin-top: 2rem } svg { width: 100%; height: auto }

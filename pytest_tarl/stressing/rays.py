@@ -9,7 +9,7 @@ from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 
-SWEEP = (0.25, 0.5, 0.75, 1.0)  # shares of a ray that the coarse sweep looks at
+SWEEP = (0.25, 0.5, 0.75, 1.0)  # shares of a ray at which the coarse sweep runs episodes
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Ray:
     space: Space
     names: tuple[str, ...]
     farthest: Point
-    extra: tuple[float, ...] = ()  # further places that the sweep looks at
+    extra: tuple[float, ...] = ()  # additional points of the sweep
 
     @property
     def continuous(self) -> bool:

@@ -43,7 +43,7 @@ def stress(request: Request) -> Stress:
         name: limits for name, limits in request.designation.must_hold.items() if name in space.extents
     }
     curves = [Curve(ray) for ray in rays(space, must_hold)]
-    share = request.options.alpha / (len(curves) + 2)  # of each ray, of all combinations, and of nominal
+    share = request.options.alpha / (len(curves) + 2)  # for each ray, all combinations, and nominal
     together = Together(share, curves)
     ended = ""
     try:

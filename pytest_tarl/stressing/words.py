@@ -11,7 +11,7 @@ from pytest_tarl.stressing.findings import Boundary, Curve, Failure, Stress
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # combinations
-ROUNDING = 1e-9  # of numbers on a ray
+ROUNDING = 1e-9  # tolerance for rounding errors of values on a ray
 
 ENDED = {
     "budget": "The budget of {budget} episodes was used up before the search ended: raise --tarl-stress-budget.",

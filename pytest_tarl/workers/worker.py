@@ -24,7 +24,7 @@ from pytest_tarl.workers import protocol
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
 BEAT = 1.0  # s between two heartbeats
-ENDED = 70  # exit status after the run has gone
+ENDED = 70  # exit status if the parent run has ended
 
 
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
@@ -103,7 +103,7 @@ class Server:
     def _beat(self) -> None:
         """Send heartbeats; the parent ends a worker that stops sending them."""
         pause = threading.Event()
-        with suppress(OSError, ValueError):  # the run has gone
+        with suppress(OSError, ValueError):  # the parent run has ended
             while not pause.wait(BEAT):
                 self._say(protocol.ALIVE)
 

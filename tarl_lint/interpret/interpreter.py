@@ -75,7 +75,7 @@ class Interpreter:
         ] = {}  # node that no source reached → roots that relied on that
         self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
         self.spent = 0  # work in this run of a root, in statements
-        self.saved = 0  # part of `spent` in replayed calls
+        self.saved = 0  # work in replayed calls, included in `spent`
         self.totals: dict[str, int] = {}  # work of each program in earlier runs, without replayed calls
         self.edges_of: dict[str, int] = {}  # edges made by each program
         self.nodes_of: dict[str, int] = {}  # nodes made by each program
@@ -83,7 +83,7 @@ class Interpreter:
         self.widened: set[Hashable] = set()  # calls that share a context
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.limit = MAX_STATEMENTS
-        self.idled = 0  # part of `spent` in calls into modules without ROS calls
+        self.idled = 0  # work in calls into modules without ROS calls, included in `spent`
         self.leisure: int | None = (
             None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
         )

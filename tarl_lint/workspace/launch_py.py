@@ -118,7 +118,7 @@ class _File:
                              ("composable_node_descriptions", "components")):  # fmt: skip
                 if old in given and (kind != "node" or old != "launch_arguments"):
                     given.setdefault(new, given.pop(old))
-            if kind == "group":  # copied, since a later addition to the list belongs to this action alone
+            if kind == "group":  # a copy, since later additions to the list apply to this action only
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
             return Action(kind, self.file.line, given)
 

@@ -157,7 +157,7 @@ class Interpreter(Evaluator):
             self.problem(
                 statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant"
             )
-            self._body(statement.body, names)  # rather show too much than lose a node
+            self._body(statement.body, names)  # if unknown, keep the node instead of losing it
         else:
             self._body(statement.body if test else statement.orelse, names)
 

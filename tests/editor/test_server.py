@@ -65,7 +65,7 @@ RESULT = {
 
 def workspace(folder: Path) -> Path:
     (folder / "pilot.py").write_text(NODE, "utf-8")
-    (folder / "difflib.py").write_text('open("executed", "w")\n', "utf-8")  # nothing of a workspace may run
+    (folder / "difflib.py").write_text('open("executed", "w")\n', "utf-8")  # no code of a workspace may run
     results = folder / ".tarl" / "results"
     results.mkdir(parents=True)
     (results / "pilot.json").write_text(json.dumps(RESULT), "utf-8")

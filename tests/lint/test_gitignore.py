@@ -65,7 +65,7 @@ def test_the_nearest_ignore_file_decides_for_its_own_directory():
 lines_of_patterns = st.text("ab*?/!.[]\\^", min_size=1, max_size=6).filter(
     lambda line: (
         not re.search(r"[^/]\*\*+/|/\*\*+[^/*]", line)
-    )  # git removes the literal beginning before it reads `**`
+    )  # git strips the literal prefix before it interprets `**`
 )
 
 

@@ -51,7 +51,7 @@ def test_transforms_are_sources_with_the_setting_tf2():
     looked_up = [f for f in flows(case, tf2=True) if f.source.api == "tf2.lookup_transform"]
     assert {f.kind for f in looked_up} == {"explicit"}
     assert {f.source.topics for f in looked_up} == {("/tf",)}
-    assert len(looked_up) == 2  # each reaches the publish call after it, before the next one replaces it
+    assert len(looked_up) == 2  # each value reaches the next publish call before another one replaces it
 
 
 def test_services_actions_and_transforms_are_distinguished_from_topics():

@@ -114,7 +114,7 @@ def test_reads_of_a_call_count_for_its_caller_unless_it_has_stored_there(store, 
     outer.add(inner)
     assert outer.keys == {(obj, "y")}
     outer.written.clear()
-    outer.left += 1  # leaves the path on which it stored
+    outer.left += 1  # ends the path on which the value was stored
     outer.add(inner)
     assert outer.keys == {(obj, "x"), (obj, "y")}
 

@@ -15,7 +15,7 @@ from tests.plugin.tank import NODE, TEST
 for package in (tarl_lint, pytest_tarl):
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         if module.name.startswith(("pytest_tarl.formulas.", "pytest_tarl.editor.")):
-            with suppress(ModuleNotFoundError):  # rtamt is not for every Python, pygls is of the extra `lsp`
+            with suppress(ModuleNotFoundError):  # rtamt or pygls may be missing
                 importlib.import_module(module.name)
         elif not module.name.endswith("__main__"):
             importlib.import_module(module.name)

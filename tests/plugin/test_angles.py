@@ -16,7 +16,7 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.candidates import holds
 
 HEADING = Sensor("heading", topic="/pose", field="theta", bins=12, angle=True, unit="rad")
-ACROSS = Conjunct(HEADING, *HEADING.interval(10, 13))  # the last two bins and the first two
+ACROSS = Conjunct(HEADING, *HEADING.interval(10, 13))  # the region: the last two bins and the first two
 
 
 def test_the_hull_of_cells_on_both_sides_takes_the_shorter_arc() -> None:

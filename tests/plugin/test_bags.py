@@ -144,7 +144,7 @@ def test_topics_of_the_node_are_not_replayed_but_available_to_the_monitor(
     bags = [write_bag(deployed.path / f"{n}.mcap", mission(1.0, n, valve)) for n in range(4)]
     online(deployed, *bags)
     found = result(deployed)
-    assert found["verdict"]["loss"] > 20  # the time costs
+    assert found["verdict"]["loss"] > 20  # time costs reward
     assert found["sites"][0]["online"] != 0  # the node ran
 
 

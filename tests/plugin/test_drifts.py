@@ -43,7 +43,7 @@ def test_parts_of_a_dictionary_are_drawn_independently(parts: dict[str, Any], se
     assert found.keys() == parts.keys()
     for name, part in parts.items():
         alone = drawn(drift("t", "world", {name: made[name]}), "world", seed)[name]
-        assert found[name] == alone  # whatever else there is
+        assert found[name] == alone  # independent of the other parts
         assert part[0] <= found[name] <= part[1] if isinstance(part, tuple) else found[name] is part
 
 

@@ -140,7 +140,7 @@ def test_an_interrupt_caught_by_the_node_still_ends_the_run_and_keeps_the_old_re
         "flow = GAIN * missing\n            signal.raise_signal(signal.SIGINT)",
     )
     changed(tank, "keeper", "import rospy", "import signal\nimport rospy")
-    ended = tank.runpytest_subprocess(*RECORD)  # in this process it would end this very run
+    ended = tank.runpytest_subprocess(*RECORD)  # in-process, the interrupt would end the outer pytest run
     assert ended.ret == pytest.ExitCode.INTERRUPTED
     ended.stdout.fnmatch_lines(["Interrupted in episode 1 of 16: .tarl/utility/*.npz is unchanged."])
     assert fixture_file(tank).read_bytes() == before

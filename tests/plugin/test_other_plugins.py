@@ -97,7 +97,7 @@ def test_a_coroutine_test_is_run_for_every_episode(tank: pytest.Pytester, expect
     changed(tank, "test_tank", "import pytest\n", "import asyncio\nimport pytest\n")
     flags = (*ASYNCIO, "-o", f"asyncio_mode={mode}")
     tank.runpytest(*FEW, *flags).assert_outcomes(passed=1, deselected=1)
-    found = load(fixture_file(tank))  # the text of the test is another one, what was recorded is not
+    found = load(fixture_file(tank))  # the source of the test differs, but the recorded data is equal
     before = tank.path / "before.npz"
     before.write_bytes(expected)
     assert same(found.sample, load(before).sample)

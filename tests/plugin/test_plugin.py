@@ -232,7 +232,7 @@ def test_function_scoped_fixtures_are_fresh_in_every_episode_and_module_fixtures
     )
     result = tank.runpytest(*RECORD, "-s")
     result.assert_outcomes(passed=1, deselected=1)
-    result.stdout.fnmatch_lines(["*made 1 17 17*"])  # 16 episodes, and the first one's seed again
+    result.stdout.fnmatch_lines(["*made 1 17 17*"])  # 16 episodes, and the first seed once more
 
 
 def test_a_skip_inside_the_test_skips_it(tank: pytest.Pytester) -> None:

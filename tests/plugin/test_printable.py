@@ -27,7 +27,7 @@ COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028\u2029\u202
 def test_control_sequences_are_removed_and_text_is_kept(text: str) -> None:
     shown = printable(text)
     assert not COMMANDS.search(shown)
-    assert shown.encode() is not None  # no surrogate is left
+    assert shown.encode() is not None  # fails if a surrogate remains
     assert "\n" not in printable_line(text)
     if all(unicodedata.category(one)[0] in "LNPSZM" and one not in "\u2028\u2029" for one in text):
         assert shown == text

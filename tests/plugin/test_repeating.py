@@ -44,7 +44,7 @@ def wide():
     yield
 """
     )
-    told = tank.runpytest_subprocess(*RECORD)  # in this process it would end this very run
+    told = tank.runpytest_subprocess(*RECORD)  # in-process, the interrupt would end the outer pytest run
     assert told.ret == pytest.ExitCode.INTERRUPTED
 
 

@@ -157,7 +157,7 @@ def test_an_angle_has_the_same_bin_after_any_number_of_turns(value: float, turns
     assert 0 <= index < 8
     turned = HEADING.bin(value + turns * 2 * math.pi)
     assert turned is not None
-    assert (index - turned) % 8 in (0, 1, 7)  # on an edge the last digit decides
+    assert (index - turned) % 8 in (0, 1, 7)  # on a bin edge, rounding decides
 
 
 def test_an_interval_of_an_angle_may_cross_the_end_of_its_range() -> None:

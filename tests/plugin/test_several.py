@@ -95,7 +95,7 @@ def test_a_test_with_four_sensors_two_nodes_and_two_lists_is_recorded_and_compar
     assert (heading.low, heading.high) == (-math.pi, math.pi)
     assert (strong.field, strong.guardable, weather.guardable) == ("<lambda>()", False, True)
     possible = (4 + 2) * 2 * 8 * 2
-    assert 16 < len(fixture.sample.cells) < possible  # those that were visited, not all that could be
+    assert 16 < len(fixture.sample.cells) < possible  # only visited cells are stored, not all combinations
 
     told = project.runpytest("--tarl-online", "--tarl-episodes=20")
     told.assert_outcomes(failed=1)

@@ -26,7 +26,7 @@ pool.SILENCE = 2
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process")
 @pytest.mark.parametrize("workers", [1, 2] if SLOW else [2])
 def test_a_suspended_run_writes_the_same_recording(tank: pytest.Pytester, workers: int) -> None:
-    lasts = 5.0 if SLOW else 0.2  # longer than any limit that the run has
+    lasts = 5.0 if SLOW else 0.2  # longer than any time limit of the run
     if SLOW:
         (tank.path / "conftest.py").write_text(IMPATIENT)
     moments = random.Random(workers)

@@ -65,7 +65,7 @@ def test_the_verdict_is_printed_even_if_no_file_can_be_written(
     text = told.stdout.str()
     assert "test_fills[clogged]: degraded" in text
     assert "test_fills[same]: no difference" in text
-    assert text.count(ADVICE[number]) == 2  # one sentence a test, not one a file
+    assert text.count(ADVICE[number]) == 2  # one sentence per test, not one per file
     assert "not written: .tarl/results/" in text
     assert ".tarl/online/" in text
     assert ".tarl/report/" in text

@@ -75,7 +75,7 @@ class TestTank:
 def test_ordinary{ordinary}"""
     )
     tank.runpytest(*FEW).assert_outcomes(passed=1, deselected=1)
-    episodes = 6 + 1  # the first seed is run twice
+    episodes = 6 + 1  # the first seed runs twice
     assert lines_of(tank.path / "order.txt") == ["class", *["method", "after True"] * episodes]
 
 

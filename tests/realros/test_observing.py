@@ -135,6 +135,6 @@ def observed(folder: Path, world: str, ending: signal.Signals) -> Path:
             )
             assert "over" in played.stdout, played.stderr
         finally:
-            node.send_signal(ending)  # one second after the last message, which has been written by then
+            node.send_signal(ending)  # one second after the last message, when everything has been written
             node.wait(20)
     return folder / ".tarl/missions.log"

@@ -64,7 +64,9 @@ def opened(
     body = f"const found = {{}};{WAIT}{script}\ndocument.body.dataset.found = JSON.stringify(found);"
     probe = f'<script>addEventListener("load", async () => {{{body}}})</script></body>'
     text = (site / page).read_text("utf-8")
-    file = (site / page).with_name(f"{directory.name}.htm")  # beside the page, so that its links hold
+    file = (site / page).with_name(
+        f"{directory.name}.htm"
+    )  # beside the page, so that its relative links work
     file.write_text(text.replace("</body>", probe), "utf-8")
     profile = f"--user-data-dir={directory / 'profile'}"
     local = "--allow-file-access-from-files"

@@ -17,7 +17,7 @@ yaml = pytest.importorskip("yaml")
 tomllib = pytest.importorskip("tomllib", reason="the site is built on Python 3.11 or newer")
 
 WRITTEN = [path for path in written().values() if path.suffix == ".md"]
-PAGES = [path for path in WRITTEN if path.parent.name != "rules"]  # theirs are run by the tests of the rules
+PAGES = [path for path in WRITTEN if path.parent.name != "rules"]  # the tests of the rules run those
 FENCE = re.compile(r"^( *)```(\w+)[^\n]*\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 
 
@@ -35,7 +35,7 @@ def test_every_message_has_a_page_with_its_words(staged: Path) -> None:
     for words in explained:
         page = (staged / "messages" / f"{message_pages.slug(words)}.md").read_text("utf-8")
         assert page.startswith(f"# {words}\n\n")
-        assert len(page.splitlines()) > 4  # words, explanation, way back
+        assert len(page.splitlines()) > 4  # message text, explanation, link back
     listed = re.findall(r"\]\(messages/(.+)\.md\)", (staged / "messages.md").read_text("utf-8"))
     assert sorted(listed) == sorted(path.stem for path in (staged / "messages").iterdir())
 
@@ -67,7 +67,7 @@ def test_snippets_can_be_read(page: Path) -> None:
     readers = {"python": _python, "toml": tomllib.loads, "yaml": yaml.safe_load, "json": json.loads}
     for _, language, text in FENCE.findall(page.read_text("utf-8")):
         if language in readers:
-            readers[language](textwrap.dedent(text).replace("…", "..."))  # where code is left out
+            readers[language](textwrap.dedent(text).replace("…", "..."))  # placeholder for omitted code
 
 
 def _python(snippet: str) -> None:

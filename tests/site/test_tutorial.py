@@ -14,7 +14,7 @@ from website.tutorial import TUTORIAL, blocks, renewed, run, same, shortened
 PAGES = (TUTORIAL, *sorted(ROOT.glob("docs/howto/*.md")))
 SLOW = os.environ.get("TARL_SLOW") or os.environ.get(
     "TARL_SITE"
-)  # guides run nightly and where the site is built
+)  # the guides run nightly and when the site is built
 RUN = [
     page
     for page in PAGES

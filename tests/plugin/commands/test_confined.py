@@ -26,7 +26,7 @@ NODE = (
 )
 DONE = NODE.replace("    return GAIN * x\n", "    return 2.4 * GAIN * x\n")
 OTHER = "a = 1\nb = 2\n"
-OTHER_DONE = "a = 1\nb = 3"  # without a final line feed: the line with a backslash is fuzzed as well
+OTHER_DONE = "a = 1\nb = 3"  # no final line feed, so that the line with a backslash is fuzzed, too
 VICTIM = "a = 'not yours'\n"
 
 
@@ -104,8 +104,10 @@ PLACES = st.integers(0, len(PATCH) - 1)
 
 @FUZZ
 @given(st.lists(st.tuples(PLACES, st.integers(0, 255)), min_size=1, max_size=3), st.booleans(), st.booleans())
-@example([(PATCH.index(b"missing") + 3, ord("D"))], True, False)  # `misDing = …` was applied with exit 0
-@example([(BODY, 0)], True, False)  # a file that is no longer told apart from the header
+@example(
+    [(PATCH.index(b"missing") + 3, ord("D"))], True, False
+)  # once, `misDing = …` was applied with exit code 0
+@example([(BODY, 0)], True, False)  # a file that was not distinguished from the header
 @example([(PATCH.index(b"-    return") + 1, ord("\\"))], True, False)
 def test_patches_with_changed_bytes_are_refused_or_harmless(
     changes: list[tuple[int, int]], resealed: bool, forced: bool

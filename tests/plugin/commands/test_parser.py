@@ -43,7 +43,7 @@ def test_an_invalid_command_line_shows_the_usage_of_its_command(
     assert said.startswith(usage)
     command = sentence.partition(":")[0]
     assert said.endswith(f"\n{sentence} Run {command} --help for more.\n")
-    assert ("positional arguments:" in said) == (words == [])  # the list of commands, for who names none
+    assert ("positional arguments:" in said) == (words == [])  # the list of commands, if none is given
 
 
 @pytest.mark.parametrize("parser", ["pytest_tarl.commands.cli.parser", "tarl_lint.options.parser"])

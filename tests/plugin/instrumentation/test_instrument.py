@@ -184,7 +184,7 @@ def test_the_plan_can_declare_other_calls_as_publishing(inline):
     assert events == [(3, 0.0), 5.0]
 
 
-# No observable difference
+# Behaviour that instrumentation must not change
 
 PROGRAMS = {
     "truth is asked once": """

@@ -18,7 +18,7 @@ from pytest_tarl.instrumentation.recorder import Recorder
 
 PAGE = Path(__file__).parents[3] / "docs" / "recording.md"
 BEFORE = "x = 1.5"
-SITE = "«"  # marks the beginning of the site, if it is not that of the statement
+SITE = "«"  # marks where the site begins, if the statement begins elsewhere
 CONTEXTS = {
     "module": "{}",
     "function": "def f():\n    {}\ndrive(f())",

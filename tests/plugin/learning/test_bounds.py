@@ -145,7 +145,7 @@ def test_a_quantile_has_a_bound_once_there_are_enough_episodes(
     low = quantile_low(totals, share, confidence)
     assert (low is None) == (len(totals) < episodes_for_quantile(share, confidence))
     if low is not None:
-        rank = sorted(totals).index(low)  # so many are below it
+        rank = sorted(totals).index(low)  # number of totals below it
         assert BinomialTail(rank, len(totals))(share) <= 1 - confidence + 1e-12 or totals.count(low) > 1
 
 

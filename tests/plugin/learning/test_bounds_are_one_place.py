@@ -11,7 +11,7 @@ import pytest
 import pytest_tarl
 
 PACKAGE = Path(pytest_tarl.__file__).parent
-PARTS = {"student", "shifts", "binomial"}  # of bounds.py, which no other module may use
+PARTS = {"student", "shifts", "binomial"}  # modules that only bounds.py may use
 HOME = {f"learning/{name}.py" for name in (*PARTS, "bounds")}
 QUANTILES = {
     "NormalDist",
@@ -26,7 +26,7 @@ QUANTILES = {
 LIBRARIES = {"scipy", "statsmodels", "confseq"}
 SPREADS = {"std", "stdev", "var", "variance"}
 COUNTS = {"len", "size", "sqrt"}
-NORMAL = (1.28, 1.64, 1.645, 1.96, 2.33, 2.576, 2.58)  # quantiles that people know by heart
+NORMAL = (1.28, 1.64, 1.645, 1.96, 2.33, 2.576, 2.58)  # well-known quantiles of the normal distribution
 
 
 def names(tree: ast.AST) -> set[str]:

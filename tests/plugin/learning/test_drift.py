@@ -98,7 +98,7 @@ def test_the_interval_covers_the_true_loss_even_with_unequal_variances() -> None
     for _ in range(300):
         low, high = loss_bounds(draws.normal(1.7, 0.5, 80), draws.normal(1.0, 3.0, 12), 0.05)
         held += low <= 0.7 <= high
-    assert 258 <= held <= 282  # 90 %, and a little more than twice the binomial deviation
+    assert 258 <= held <= 282  # 90 % of 300, and 2.3 binomial standard deviations on either side
 
 
 def test_constant_columns_are_never_significant() -> None:

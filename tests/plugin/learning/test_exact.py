@@ -87,8 +87,10 @@ def test_an_avoided_cell_is_significant_after_correction_for_the_missing_cells(o
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
-    ]  # cell 0: in all; cell 1 as well, …
-    chance = 1 / comb(everyone, online)  # that none of four is among the eight
+    ]  # all episodes visit cell 0, and only these the others
+    chance = 1 / comb(
+        everyone, online
+    )  # probability that none of the four deployed episodes is among the eight
     alpha = chance * (1 + others)
     for factor, answer in ((1.001, True), (0.999, False)):
         found = avoided(world(off, 2 + others), world([[0]] * online, 2 + others), alpha * factor)

@@ -35,7 +35,9 @@ from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
 LENGTH = 6
-TIMES = 200 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 25  # random worlds and reports
+TIMES = (
+    200 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 25
+)  # number of random worlds and of random reports
 
 
 def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:

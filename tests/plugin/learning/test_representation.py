@@ -119,7 +119,7 @@ def test_totals_that_cancel_out_are_exactly_zero(size: float, most: int, seed: i
 def test_columns_that_differ_only_by_rounding_are_constant(seed: int, value: float, columns: int) -> None:
     draws = np.random.default_rng(seed)
     jitter = 1.0 + draws.choice([-1e-15, 0.0, 1e-15], (20, columns))
-    jitter[:10] = 1.0  # one group has it, the other has not
+    jitter[:10] = 1.0  # one group has the rounding error, the other does not
     assert max_statistic(value * jitter, 10, generator(seed, "a")).tolist() == [1.0] * columns
 
 

@@ -97,7 +97,9 @@ def test_every_thread_has_its_own_sequence_and_rewards_still_add_up(seed: int, t
 def test_events_of_two_threads_are_never_consecutive(seed: int) -> None:
     trace = threaded(seed, 2)
     assert trace.thread is not None
-    apart = replace(trace, site=(trace.site + 4 * trace.thread).astype(np.int32))  # sites tell the thread
+    apart = replace(
+        trace, site=(trace.site + 4 * trace.thread).astype(np.int32)
+    )  # the site identifies the thread
     recorded = sample(apart, seed, True, (tuple(range(8)),)).lists[0]
     inside = (recorded.edges.state != START) & (recorded.edges.next_state != END)
     first, then = (

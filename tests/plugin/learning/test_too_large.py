@@ -74,7 +74,7 @@ def test_a_memory_limit_of_the_container_applies_at_any_level(
     limit, usage, _ = free_memory._FILES[version]
     (base / "pods" / limit).write_text("3000000")
     (base / "pods" / usage).write_text("1000000")
-    assert free_memory.available() == 2_000_000  # of the group around it
+    assert free_memory.available() == 2_000_000  # limit of the enclosing control group
     statistic = free_memory._FILES[version][2]
     (base / "pods" / "memory.stat").write_text(f"{statistic} 500000\n")
     assert free_memory.available() == 2_500_000

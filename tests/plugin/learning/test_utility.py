@@ -97,10 +97,12 @@ def sequence_of(states: list[int], rewards: list[float]) -> EventSequence:
 def test_expected_sarsa_averages_over_the_successors_seen_so_far() -> None:
     learner = ExpectedSarsa(2, gamma=0.5, alpha=0.5)
     learner.learn(sequence_of([START, 2], [0.0, 4.0]), [(0,)])  # q(2) = 2
-    learner.learn(sequence_of([START, 1], [0.0, 0.0]), [(0,)])  # the start is followed by either, q(1) = 0
+    learner.learn(
+        sequence_of([START, 1], [0.0, 0.0]), [(0,)]
+    )  # either state can follow the start, and q(1) = 0
     learner.learn(sequence_of([START, 1, 2], [0.0, 8.0, 4.0]), [(0,)])
     first, second = learner.table([(0,)], np.inf)[0]
-    assert first == pytest.approx(0.5 * (8.0 + 0.5 * (0.5 * 0.0 + 0.5 * 2.0)))  # after 1 came the end, then 2
+    assert first == pytest.approx(0.5 * (8.0 + 0.5 * (0.5 * 0.0 + 0.5 * 2.0)))  # END and 2 followed 1
     assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
 
 

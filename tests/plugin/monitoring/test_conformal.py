@@ -55,7 +55,7 @@ def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
     scores: tuple[int, ...],
 ) -> None:
     """Given an order, a rank is uniform on an interval; over all orders the boxes of three ranks fill the cube."""
-    offline, parts = 3, 60  # every interval of k/4, k/5 and k/6 is made of sixtieths
+    offline, parts = 3, 60  # 60 is a multiple of 4, 5 and 6, so bins of sixtieths cover all their intervals
     density = np.zeros((parts,) * 3)
     orders = list(permutations(scores))
     for order in orders:
@@ -90,7 +90,7 @@ def test_bins_are_ordered_and_rounding_changes_no_bin(values: list[float], unit:
     assert found.shape == (BINS - 1,)
     assert (np.diff(found[np.isfinite(found)]) > 0).all()
     for value in values:
-        # Values nearer to each other than CLOSE are one value: half of that is between it and its edges.
+        # Values closer to each other than CLOSE count as equal; the bin edges lie half of CLOSE beside the value.
         on_grid = round(value / (conformal.CLOSE * unit)) * (conformal.CLOSE * unit)
         shaken = np.searchsorted(found, [on_grid - 1e-5 * unit, on_grid + 1e-5 * unit])
         assert shaken[0] == shaken[1]

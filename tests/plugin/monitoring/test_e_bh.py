@@ -28,7 +28,7 @@ def test_the_adjuster_integrates_to_at_most_one() -> None:
     u = np.linspace(0.0, 400.0, 400_001)
     value = np.exp2(adjusted(u / np.log(2.0))) * np.exp(-u)
     integral = float(((value[1:] + value[:-1]) / 2).sum() * (u[1] - u[0]))
-    assert 0.99 < integral <= 1.0 + 1e-6  # what is beyond 400 is 1/400
+    assert 0.99 < integral <= 1.0 + 1e-6  # the remaining integral beyond 400 is 1/400
 
 
 @given(st.floats(0, 2000), st.floats(0, 2000))

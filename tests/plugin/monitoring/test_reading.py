@@ -280,7 +280,7 @@ def test_missions_of_another_recording_are_reported_and_not_counted(
     reading = Reading(path)
     assert reading.read() == 2
     assert says in reading.problems[0]
-    again = Reading(path)  # the state does not forget it
+    again = Reading(path)  # a continued watch still knows the log
     again.known.update({one.progress.log: one.progress for one in reading.readers if one.progress})
     assert again.read() == 0
     assert says in again.problems[0]

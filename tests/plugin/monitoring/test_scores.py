@@ -59,7 +59,7 @@ def test_totals_and_steps_of_the_chain_equal_those_of_a_recording(fitted: Scale,
         assert ours.total[n] == one.total[0]
         assert ours.steps[n] == one.steps[0]
         if not {*walked.cells} <= {*fitted.cells}:
-            continue  # cells that the fixture does not know are one row here
+            continue  # cells outside the recording share one row here
         mine = ours.chain.episode == n
         assert list(one.cells) == list(fitted.cells)
         for name in ("cell", "next_cell", "count", "reward"):

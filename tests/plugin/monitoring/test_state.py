@@ -98,7 +98,7 @@ def test_a_damaged_state_gives_one_sentence(world: Path, data: st.DataObject) ->
     if len(damaged) == len(whole):
         damaged[place] ^= data.draw(st.integers(1, 255))
     path.write_bytes(bytes(damaged))
-    with suppress(TarlError):  # and nothing else; a byte that means nothing may change
+    with suppress(TarlError):  # any other exception fails; bytes without a meaning may change
         begun(world, path).close()
 
 

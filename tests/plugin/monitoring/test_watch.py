@@ -56,7 +56,7 @@ def test_a_drift_raises_an_alarm_with_its_onset_and_cells(
     assert found["where"]["words"] == "x 2-3"
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
     out = capsys.readouterr().out
-    assert "360 missions" in out  # nothing counts twice
+    assert "360 missions" in out  # no mission is counted twice
     assert "where   x 2-3" in out
 
 
@@ -109,7 +109,7 @@ def test_a_recording_in_which_every_mission_failed_has_no_bound(
     monkeypatch.chdir(tmp_path)
     fixture(tmp_path / "f.npz", [Walk(one.cells, one.reward, False) for one in walks(40, 1)])
     log(tmp_path / "m.log", walks(20, 2))
-    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # that missions pass is news
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # passing differs from the recording
     out = capsys.readouterr().out
     assert "at least 0 % of missions pass (95 % confidence): nothing to test" in out
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out
@@ -267,4 +267,4 @@ def test_false_alarms_are_rarer_than_alpha_over_fresh_recordings(tmp_path: Path)
         watched.observe(watch.joined(list(reader.missions())))
         reader.close()
         alarms += bool((watched.processes.alarm >= 0).any())
-    assert alarms <= 25  # 18 at most in expectation, and two standard errors
+    assert alarms <= 25  # at most 18 expected, plus two standard errors

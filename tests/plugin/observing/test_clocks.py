@@ -78,7 +78,7 @@ def test_between_missions_nothing_is_kept(tmp_path: Path) -> None:
     observer.begin()
     observer.step(1.0)
     observer.end(passed=True)
-    for number in range(5000):  # the node runs on, and nobody begins another mission
+    for number in range(5000):  # the node continues and no other mission begins
         observer.stream.hook(0, 1.0)
         observer.step(float(number))
     observer._flush()

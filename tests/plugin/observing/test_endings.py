@@ -121,7 +121,7 @@ def test_each_change_of_signals_and_sensors_is_written_once_with_its_time(tmp_pa
         ["place", 8.0],
     ]
     assert all(0 <= change[0] < 60 for change in missions[0])
-    assert sorted(missions[1]) == [[0.0, "place", 8.0], [0.0, "speed", 2.0]]  # as before the mission
+    assert sorted(missions[1]) == [[0.0, "place", 8.0], [0.0, "speed", 2.0]]  # values from before the mission
     assert "Signal 'speed'" in observer.problem
 
 

@@ -61,7 +61,7 @@ def column(steps: list[dict[str, Any]], name: str, kind: str) -> list[Any]:
 
 def test_every_step_event_reading_and_cell_is_written_in_order(tmp_path: Path) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
-    observer.told(SENSOR, Message(9.0))  # a cell from before the mission
+    observer.told(SENSOR, Message(9.0))  # the cell that was current when the mission began
     until(lambda: not observer.stream._cells or observer.stream._told)
     mission(observer, 5000)
     observer.end(passed=False, failure="it fell")
@@ -78,7 +78,7 @@ def test_every_step_event_reading_and_cell_is_written_in_order(tmp_path: Path) -
     cells = column(steps, "step_cell", "int32")
     assert [steps[-1]["cells"][cell][0] for cell in cells] == [number % 10 // 2 for number in range(5000)]
     assert column(steps, "flow", "float64") == [float(number) for number in range(5000)]
-    assert len(steps) < 5000 / 20  # not a record a cut
+    assert len(steps) < 5000 / 20  # fewer records than cuts
 
 
 NODE = """
@@ -107,7 +107,7 @@ def test_records_sent_before_the_node_is_killed_are_written(tmp_path: Path, how:
         assert node.stdout is not None
         for _ in range(6):
             last = int(node.stdout.readline())
-        os.killpg(node.pid, signal.SIGINT)  # as Ctrl-C does: to the writer as well
+        os.killpg(node.pid, signal.SIGINT)  # Ctrl-C also sends the signal to the writer
         if how is signal.SIGKILL:
             node.send_signal(how)
         node.wait()

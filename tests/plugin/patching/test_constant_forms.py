@@ -20,7 +20,7 @@ from tarl_lint.api import Analysis, analyse
 from tests.plugin.patching.constants import DATA, FORMS, HERE, node
 from tests.plugin.patching.repairs import TinyRos
 
-WANTED = 5.0  # the gain that the world needs; the node has 2
+WANTED = 5.0  # gain that the drifted world needs; the node has 2
 NOWHERE = {
     "literal",
     "array",

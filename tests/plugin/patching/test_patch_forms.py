@@ -65,7 +65,9 @@ WRITINGS = {
     "a mark of UTF-8": Writing(encoding="utf-8-sig"),
     "latin-1": Writing(encoding="latin-1", ending="\r\n"),
     "koi8-r": Writing(encoding="koi8-r", remark="скорость", indentation="\t"),
-    "shift_jis": Writing(encoding="shift_jis", remark="速度表", final=False),  # a byte of it is a backslash
+    "shift_jis": Writing(
+        encoding="shift_jis", remark="速度表", final=False
+    ),  # one of its bytes is a backslash
 }
 
 

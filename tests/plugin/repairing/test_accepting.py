@@ -55,7 +55,7 @@ def test_a_candidate_refused_only_by_another_test_ranks_highest() -> None:
     assert furthest(elsewhere, costly) is elsewhere
 
 
-KNOWN = range(10)  # seeds of on-line episodes; fresh ones are others
+KNOWN = range(10)  # seeds of the comparison; fresh seeds differ from them
 DESIGNED, DRIFTED = 10.0, 2.0
 World = Callable[[int, bool], float]  # seed, whether the world drifted → reward
 LOT: dict[str, World] = {

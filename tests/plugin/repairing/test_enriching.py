@@ -16,7 +16,7 @@ from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 
-DESIGNED, HARD, LOST = 10.0, 9.0, -20.0  # a hard mission earns less even as designed
+DESIGNED, HARD, LOST = 10.0, 9.0, -20.0  # a hard mission earns less even in the designed world
 
 
 class Road:
@@ -80,7 +80,9 @@ def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: f
     goal = enriched(road, trials)
     assert len(goal.pairs) == ENOUGH
     assert all(road.hard(pair.seed) for pair in goal.pairs)
-    assert trials.spent == len(road.ran) <= ENOUGH  # each run finds one, or tells what one is worth
+    assert (
+        trials.spent == len(road.ran) <= ENOUGH
+    )  # each run finds a hard mission or gives its designed reward
     assert len(goal.controls) == CONTROLS
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 

@@ -44,7 +44,7 @@ def test_a_permanent_drift_is_repaired_unconditionally_and_the_old_world_is_show
     found = result(worn)
     assert found["repair"]["accepted"]
     assert found["repair"]["guard"] == ""
-    assert found["atr"]["nominal_repaired"] < found["atr"]["offline"] - 5  # flooded, and so it is
+    assert found["atr"]["nominal_repaired"] < found["atr"]["offline"] - 5  # the old world floods, as expected
     told = " ".join(done.stdout.str().split())
     assert re.search(r"old world repaired -\d", told)
     assert "pytest test_tank.py::test_fills --tarl-record --tarl-drift worn" in told
@@ -75,7 +75,9 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
             "then:  commit keeper.py and .tarl/utility together: the drift is now part of the design",
         ]
     )
-    worn.runpytest().assert_outcomes(passed=1, failed=1)  # repaired for another world than this test has yet
+    worn.runpytest().assert_outcomes(
+        passed=1, failed=1
+    )  # repaired for the new world, recorded in the old one
     done = worn.runpytest(*RECORD, *WORN)
     done.assert_outcomes(passed=1, deselected=1)
     done.stdout.fnmatch_lines(["*the design now has the drift 'worn': runs without flags get it*"])
@@ -84,7 +86,7 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     worn.runpytest(*ONLINE, *WORN).assert_outcomes(passed=1, deselected=1)
     shown = worn.run(*TARL, "show", str(fixture_file(worn)))
     shown.stdout.fnmatch_lines(["*design*with the drift worn, permanent"])
-    worn.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)  # stays the design
+    worn.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)  # the drift remains part of the design
     assert adopted(fixture_file(worn)) == ("worn",)
     other = worn.runpytest(*ONLINE, "--tarl-drift=clogged")
     told = " ".join(other.stdout.str().split())

@@ -204,7 +204,7 @@ def test_a_parameter_is_changed_in_the_file_that_this_test_gets_it_from(
 ) -> None:
     _, loading, removed = FILES[name]
     node(worn, gain=f'rospy.get_param("~gain"{default})')
-    for other, (content, *_) in FILES.items():  # all of them there, one of them read
+    for other, (content, *_) in FILES.items():  # all files exist, and the node reads one of them
         path = worn.path / other
         path.parent.mkdir(exist_ok=True)
         path.write_text(content)

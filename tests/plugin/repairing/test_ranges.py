@@ -96,7 +96,7 @@ def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -
 def test_the_first_pairs_span_the_sizes(sizes: list[float]) -> None:
     order = list(spread([(size, at) for at, size in enumerate(sizes)]))
     assert sorted(order) == list(range(len(sizes)))
-    if len(sizes) >= 7:  # the median, the quarters, the eighths
+    if len(sizes) >= 7:  # positions of the first pairs: the median, the quarters, the eighths
         ranks = sorted(
             sorted(range(len(sizes)), key=lambda at: (sizes[at], at)).index(at) for at in order[:7]
         )

@@ -77,7 +77,7 @@ def test_a_search_that_runs_out_of_time_says_how_to_repeat_it(
     assert "none accepted: the search reached its time limit" in told
     ran = re.search(r"the search ended after 5 s and (\d) episodes; a time limit is not reproducible", told)
     assert ran is not None
-    assert 1 <= int(ran[1]) <= 5  # of a clock that moves on by a second whenever it is read
+    assert 1 <= int(ran[1]) <= 5  # the clock of this test advances by 1 s whenever it is read
     assert re.search(r"best so far: .+ per episode, mean of \d", told)
     assert "--tarl-budget 5s" in told
     assert not list(tank.path.glob(".tarl/patches/*.patch"))

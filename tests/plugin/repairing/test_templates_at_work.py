@@ -57,7 +57,7 @@ if __name__ == "__main__":
     Keeper()
 """
 VALUE = "value = msg.data + msg.data\n        self.out.publish(value)"
-BODIES = {  # other ways to come to the same value
+BODIES = {  # other ways to compute the same value
     "a call": "value = self.twice(msg.data)\n        self.out.publish(value)",
     "a result": "self.out.publish(self.twice(msg.data))",
     "a message": "self.out.publish(Float64(data=msg.data + msg.data))",
@@ -69,8 +69,8 @@ COMPARED = (
     "        else:\n            self.out.publish(-value)"
 )
 PAIR = "first = Float64()\n        first.x = msg.x\n        first.y = msg.y\n        self.out.publish(first)"
-BOUNDS = {"comparison": 1.0, "hysteresis": 0.0}  # that values are compared with
-Command = Callable[[float, float], float]  # of the mended node, called with value and slope, call after call
+BOUNDS = {"comparison": 1.0, "hysteresis": 0.0}  # thresholds that the templates compare with
+Command = Callable[[float, float], float]  # command of the repaired node for a value and a slope
 
 
 def kept(step: Callable[[dict[str, float], float], float]) -> Command:
@@ -101,7 +101,7 @@ def rate_limit(state: dict[str, float], x: float) -> float:
 
 
 def prediction(state: dict[str, float], x: float) -> float:
-    value = x / 2.0  # of the input itself
+    value = x / 2.0  # this template predicts the input itself
     change = value - state["before"] if "before" in state else 0.0
     state["before"] = value
     return value + 6.0 * change

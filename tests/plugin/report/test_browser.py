@@ -25,7 +25,7 @@ QUIET = (
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 DARK = "--blink-settings=preferredColorScheme=0"
 
-# What a reader would see and do, written down by the page itself when it has drawn.
+# This script acts like a reader once the page is drawn and stores what it finds.
 PROBE = """<script>(async () => {
 const found = {violations: []}, root = document.documentElement;
 addEventListener("securitypolicyviolation", event => found.violations.push(event.blockedURI));
@@ -160,7 +160,9 @@ def test_code_lines_are_next_to_the_panels(shuttle_seen):
 
 
 def test_both_regions_have_an_outline_and_the_tolerance_has_a_band(shuttle_seen):
-    assert shuttle_seen.found["outlines"] == 3 + 1  # region, two of the paper's, band
+    assert (
+        shuttle_seen.found["outlines"] == 3 + 1
+    )  # shapes: the region, two regions of the paper, and the band
 
 
 def test_every_reward_curve_is_drawn_with_a_name(shuttle_seen):

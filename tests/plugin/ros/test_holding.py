@@ -65,7 +65,9 @@ def test_a_worker_that_stops_responding_is_killed_by_its_parent(
     before = time.monotonic()
     told = tank.runpytest(*RECORD, "--tarl-workers=2")
     told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at *keeper.py, line 2*"])
-    assert time.monotonic() - before < 100  # ten seconds of CPU time would be forty with the system's timer
+    assert (
+        time.monotonic() - before < 100
+    )  # with the system's timer, a limit of 10 s of CPU time would take 40 s
 
 
 def test_the_reported_place_is_in_user_code() -> None:

@@ -171,7 +171,7 @@ def test_a_bet_against_a_true_claim_is_rarely_won_for_any_distribution(
     least, draws = -20.0, np.random.default_rng(seed)
     worst = draws.uniform(least, -margin - 0.05)
     best = draws.uniform(-margin + 0.05, 2.0)
-    rate = (best + margin) / (best - worst)  # of the worst value: the mean is -margin
+    rate = (best + margin) / (best - worst)  # share of the worst value with which the mean is -margin
     stake = bet(margin, least, known)
     runs = np.where(draws.random((400, 200)) < rate, worst, best)
     money = np.mean([np.cumprod(1.0 + one * (runs + margin), axis=1) for one in stake.stakes], axis=0)

@@ -84,4 +84,6 @@ def test_the_history_does_not_depend_on_the_number_of_workers(search: Callable[[
     for workers in (2, 7):
         again, named, executor = history(search, workers)
         assert (again, named) == (totals, labels)
-        assert executor.most > workers  # one is looked at, as many as there are workers can run
+        assert (
+            executor.most > workers
+        )  # while one result is used, as many episodes can run as there are workers

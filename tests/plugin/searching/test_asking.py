@@ -57,7 +57,7 @@ def test_an_optimiser_gets_the_constants_and_the_gains_of_its_factors() -> None:
     assert grid.seed == 7
     assert grid.constants[-1] == Constant("node.py", 3, "2.0", 2.0)
     by_point = {tuple(point): gain for point, gain in grid.told}
-    assert by_point[1.0, 2.0, 1.0] == pytest.approx(0.0, abs=1e-12)  # the same seed, so no noise is left
+    assert by_point[1.0, 2.0, 1.0] == pytest.approx(0.0, abs=1e-12)  # same seed, so no noise
     assert by_point[1.0, 1.0, 2.0] == pytest.approx(6 * math.log(2.0))
 
 

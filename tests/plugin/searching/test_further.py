@@ -96,7 +96,9 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
 
     def run(candidate: Candidate, _: int) -> Outcome:
         value = float(candidate.mutations[0].value)
-        total = 9.2 - abs(math.log(max(value, 0.01) / 0.7)) / 10  # near, but never enough
+        total = (
+            9.2 - abs(math.log(max(value, 0.01) / 0.7)) / 10
+        )  # nearly as good as required, but never sufficient
         return Outcome(total, total > 5.0)
 
     trials = Trials(run, 300)

@@ -29,7 +29,7 @@ from pytest_tarl.seeds import generator
 from tarl_lint.model import Operand, SiteId, Span
 
 OFFLINE = 10.0
-NEEDED = 3.1  # by how much the gain has to grow in the drifted world
+NEEDED = 3.1  # factor by which the gain must grow in the drifted world
 
 
 def operand(line: int, code: str, value: float) -> Operand:
@@ -87,7 +87,7 @@ def test_every_run_is_paired_with_the_unmutated_run_of_its_seed() -> None:
             if effect.code == "40":
                 assert effect.effect == pytest.approx(
                     0.0, abs=1e-12
-                )  # same seed, no influence, no noise left
+                )  # same seed and no effect, so the difference is exactly zero
 
 
 def test_epsilon_greedy_finds_the_right_gain_with_more_episodes() -> None:
@@ -96,7 +96,9 @@ def test_epsilon_greedy_finds_the_right_gain_with_more_episodes() -> None:
     search = EpsilonGreedy(
         OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(0, "epsilon-greedy")
     )
-    goal = replace(GOAL, near=OFFLINE - 3.0, enough=OFFLINE - 3.0)  # it knows the seven factors only
+    goal = replace(
+        GOAL, near=OFFLINE - 3.0, enough=OFFLINE - 3.0
+    )  # this search tries only the seven initial factors
     search.goal = goal
     found = next(search.candidates())
     assert found.mutations[0].operand == GAIN
@@ -227,9 +229,7 @@ def test_epsilon_greedy_skips_mutations_that_cannot_be_written() -> None:
 
 def test_epsilon_greedy_measures_gains_over_all_drifted_episodes() -> None:
     trials = Trials(run, 300)
-    goal = replace(
-        GOAL, online=GOAL.online + 3.0
-    )  # most missions do not lose: the lost ones are no yardstick
+    goal = replace(GOAL, online=GOAL.online + 3.0)  # as if most missions lost nothing
     found = []
     for one in (GOAL, goal):
         search = EpsilonGreedy(OPERANDS, mutations, (ALWAYS,), trials, one, range(100), generator(1, "a"))
@@ -238,7 +238,7 @@ def test_epsilon_greedy_measures_gains_over_all_drifted_episodes() -> None:
     assert found[0] - found[1] == pytest.approx(3.0)
 
 
-NARROW = 1.2  # the right factor, of which no more than 7 % may be missing
+NARROW = 1.2  # right factor; a result up to 7 % smaller also holds
 
 
 def run_narrow(candidate: Candidate, seed: int) -> Outcome:

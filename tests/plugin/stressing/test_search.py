@@ -32,7 +32,7 @@ def test_the_boundary_of_a_lost_reward_is_found(edge: float, seed: int) -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return noisy(
             10.0 - 0.5 * (1.0 - point["mud"]) / (1.0 - edge), draws
-        )  # loses 0.5, the tolerance, at `edge`
+        )  # the loss at `edge` is 0.5, the tolerance
 
     found = stressed(world, space_of(mud=MUD), seed=seed)
     boundary = found.curves[0].boundary
@@ -111,7 +111,7 @@ def test_two_harmless_directions_that_break_it_together_are_found() -> None:
     assert all(curve.confirmed is None for curve in found.curves)
     nearest = found.failures[0]
     assert nearest.names == ("mud", "slope")
-    # the true distance is 1.2 / √2, or more where slope ends: (0.7, 0.5)
+    # the true distance is 1.2 / √2, or larger because slope ends at 0.5: (0.7, 0.5)
     assert sqrt(0.7**2 + 0.5**2) * 0.98 <= nearest.distance < sqrt(0.7**2 + 0.5**2) * 1.12
     assert "although each alone holds" in "\n".join(words.together(found))
 
@@ -124,7 +124,7 @@ def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
 
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in names})
     nearest = stressed(world, space, budget=6000).failures[0]
-    assert nearest.distance < 1.1  # √0.75 at best, √1.25 for the nearest pair
+    assert nearest.distance < 1.1  # the best distance is √0.75, that of the nearest pair √1.25
     assert nearest.point["d"] < 0.2
 
 

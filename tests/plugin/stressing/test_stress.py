@@ -57,7 +57,7 @@ def test_a_run_reports_writes_keeps_and_replays(spaced: pytest.Pytester) -> None
     pump, gauge = found["directions"]
     # the reward is about -3.6 / pump, and 5 % less than -3.6 is tolerated: 1 / 1.05 = 0.952
     assert 0.93 < pump["boundary"]["estimate"] < 0.98
-    assert 0.0 < gauge["boundary"]["estimate"] < 0.05  # 25 steps of so little each are tolerated
+    assert 0.0 < gauge["boundary"]["estimate"] < 0.05  # a loss this small in each of 25 steps is tolerated
     again = spaced.runpytest(*STRESS, "--tarl-workers=2")
     assert "still fails." in again.stdout.str()
     assert written(spaced) == first
