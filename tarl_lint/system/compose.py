@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
+from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.model import Workspace
@@ -35,7 +36,14 @@ def _instance(node: LaunchedNode, workspace: Workspace, files: Sequence[Path], r
     name = full_name(node, own)
     if isinstance(interface, Interface):
         return Instance(node, name, interface)
-    return Instance(node, name, None, interface, node.executable in _SILENT)
+    package = workspace.package(node.package) if node.kind == "node" else None
+    seen = (
+        named_topics(package, node.executable)
+        if package is not None and not isinstance(found, Program)
+        else ()
+    )
+    reason = f"a C++ program of {node.package}" if seen else interface
+    return Instance(node, name, None, reason, seen, node.executable in _SILENT)
 
 
 def hops(instances: Sequence[Instance]) -> list[Hop]:
@@ -48,6 +56,9 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
     published = _names(instances, "publishes")
     subscribed = _names(instances, "subscribes")
     for instance in instances:
+        ends = [sorted({name for name, _ in instance.named(role)}) for role in ("subscribes", "publishes")]
+        if instance.seen:
+            made += [Hop(instance.name, one, other, "not read") for one in ends[0] for other in ends[1]]
         inputs = [one for one in instance.touched if one in published]
         outputs = [one for one in instance.touched if one in subscribed and one not in published]
         made += [Hop(instance.name, one, other, "not read") for one in inputs for other in outputs]
@@ -76,4 +87,4 @@ def _ranked(findings: Iterable[Finding]) -> tuple[Kind, tuple[Finding, ...]]:
 
 
 def _names(instances: Iterable[Instance], role: Role) -> frozenset[str]:
-    return frozenset(name for one in instances for name, _ in one.ends(role))
+    return frozenset(name for one in instances for name, _ in one.named(role))

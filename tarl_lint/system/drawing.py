@@ -34,9 +34,10 @@ def drawing(system: System) -> Drawing:
         key = (hop.source, hop.node)
         kinds[key] = "explicit" if "explicit" in (hop.kind, kinds.get(key)) else hop.kind
         outputs.add((hop.node, hop.sink))
-    for name, instance, _ in system.ends("subscribes"):
-        kinds.setdefault((name, instance.name), "")
-    outputs |= {(instance.name, name) for name, instance, _ in system.ends("publishes")}
+    for instance in system.instances:
+        for name, _ in instance.named("subscribes"):
+            kinds.setdefault((name, instance.name), "")
+    outputs |= {(one.name, name) for one in system.instances for name, _ in one.named("publishes")}
     inputs = tuple(sorted((topic, node, kind) for (topic, node), kind in kinds.items()))
     drawn = {(node, topic) for topic, node, _ in inputs} | outputs
     touching = {(one.name, name) for one in system.instances for name in one.touched} - drawn

@@ -58,7 +58,7 @@ def _node(instance: Instance) -> dict[str, Any]:
         "not_read": None if interface is not None else instance.unread,
         "remaps": [{"from": old, "to": new} for old, new in node.remaps],
         "parameters": [_parameter(one) for one in node.settings],
-        **{role: [_end(name, end) for name, end in instance.ends(role)]
+        **{role: [_end(name, end) for name, end in instance.named(role)]
            for role in ("subscribes", "publishes", "serves", "calls")},
         "touches": list(instance.touched),
     }  # fmt: skip

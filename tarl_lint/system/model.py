@@ -78,6 +78,7 @@ class Instance:
     name: str
     interface: Interface | None = None
     unread: str = ""
+    seen: tuple[Endpoint, ...] = ()  # topics that the C++ source of a node names that was not read
     silent: bool = False  # known to publish nothing that other nodes subscribe to
 
     def resolve(self, name: str) -> str:
@@ -92,12 +93,20 @@ class Instance:
                 for name in one.names:
                     yield self.resolve(name), one
 
+    def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
+        """Yield the endpoints of a role, or those that the source of a node names that was not read."""
+        yield from self.ends(role)
+        for one in self.seen:
+            if one.role == role:
+                for name in one.names:
+                    yield self.resolve(name), one
+
     @cached_property
     def touched(self) -> tuple[str, ...]:
         """Return the launched topics in the remappings of a node that was not read."""
         own = self.name.rpartition("/")[2]
         names = {remapped(old, self.node.namespace, own, self.node.remaps) for old, _ in self.node.remaps}
-        return () if self.interface is not None else tuple(sorted(names))
+        return () if self.interface is not None or self.seen else tuple(sorted(names))
 
 
 @dataclass(frozen=True)

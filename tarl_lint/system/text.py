@@ -52,7 +52,7 @@ def _nothing(system: System, origin: str, target: str) -> str:
     """Yield the message that there is no chain, and the named topics that do not exist."""
     if not (origin or target):
         return "No flows across nodes."
-    known = {name for role in ("publishes", "subscribes") for name, _, _ in system.ends(role)}
+    known = {name for one in system.instances for role in _ROLES for name, _ in one.named(role)}
     known |= {name for one in system.instances for name in one.touched}
     missing = [slashed(one) for one in (origin, target) if one and slashed(one) not in known]
     if missing:
@@ -78,10 +78,11 @@ def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
     node = instance.node
     where = f"{node.package}/{node.executable}" if node.package else node.executable
     name = f"{instance.name} ({node.condition})" if node.condition else instance.name
-    if instance.interface is None:
+    if instance.interface is None and not instance.seen:
         uses = f"; remaps {', '.join(instance.touched)}" if instance.touched else ""
         return name, where, f"not read: {instance.unread}{uses}"
-    subscribed, published = ([name for name, _ in instance.ends(role)] for role in _ROLES)
+    where = f"{where} (C++, not read)" if instance.seen else where
+    subscribed, published = ([name for name, _ in instance.named(role)] for role in _ROLES)
     return name, where, _listed(subscribed, glyphs), _listed(published, glyphs)
 
 

@@ -284,3 +284,46 @@ def test_the_guide_matches_the_output(capsys, monkeypatch):
     command_line, _, expected = shown.partition("\n")
     monkeypatch.chdir(EXAMPLE)
     assert run(capsys, *command_line.split())[1] == expected + "\n"
+
+
+CPP = """\
+    // nh.advertise<std_msgs::Float64>("not_this", 1);
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "limit");
+      ros::NodeHandle nh, own("~");
+      auto out = nh.advertise<std_msgs::Float64>("out", 1);
+      auto log = own.advertise<diagnostic_msgs::DiagnosticStatus>("log", 1);
+      auto in = nh.subscribe("in", 1, callback);
+    }
+"""
+CPP2 = """\
+    Limit() : Node("limit") {
+      out_ = this->create_publisher<std_msgs::msg::Float64>("out", 10);
+      /* create_publisher<std_msgs::msg::Float64>("not_this", 10) */
+      log_ = create_publisher<diagnostic_msgs::msg::DiagnosticStatus>("~/log", 10);
+      in_ = create_subscription<std_msgs::msg::Float64>(
+        "in", rclcpp::QoS(10), std::bind(&Limit::on_in, this, _1));
+    }
+"""
+
+
+@pytest.mark.parametrize("source", [CPP, CPP2])
+def test_chains_pass_through_topics_that_a_cpp_node_names(source, workspace, capsys):
+    cmake = "project(arm)\nset(SOURCES src/limit.cpp)\nadd_executable(limit ${SOURCES} src/gone.cpp)\n"
+    write(workspace, {"arm/CMakeLists.txt": cmake, "arm/src/limit.cpp": source})
+    limit = '<node pkg="arm" type="limit" name="limit"><remap from="in" to="mid"/><remap from="out" to="safe"/></node>'
+    file = launched(workspace, relay("one", "scan", "mid") + limit + relay("two", "safe", "cmd"))
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == [
+        "/scan → /one → /mid → [/limit, not read] → /limit/log  not read",
+        "/scan → /one → /mid → [/limit, not read] → /safe → /two → /cmd  not read",
+    ]
+    assert "arm/limit (C++, not read)" in out
+    document = json.loads(run(capsys, "--launch", file, "--format", "json")[1])
+    jsonschema.validate(document, SCHEMA)
+    (node,) = (one for one in document["systems"][0]["nodes"] if one["name"] == "/limit")
+    assert (node["program"], node["not_read"]) == (None, "a C++ program of arm")
+    assert [(one["name"], one["type"], one["line"]) for one in node["publishes"]] == [
+        ("/safe", "Float64", 5 if source == CPP else 2),
+        ("/limit/log", "DiagnosticStatus", 6 if source == CPP else 4),
+    ]

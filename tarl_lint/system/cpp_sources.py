@@ -1,0 +1,96 @@
+"""Topics that the C++ source of a node names: literals in its calls, without any analysis of the code.
+
+They are drawn and composed, so that a chain does not end at a C++ node; no rule relies on them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+from tarl_lint.files import shown
+from tarl_lint.model import Span
+from tarl_lint.system.model import Endpoint, Role
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.cmake import commands
+from tarl_lint.workspace.model import Package
+
+LARGEST: Final = 1_000_000  # bytes of a file
+_EXECUTABLES: Final = (
+    "add_executable",
+    "ament_auto_add_executable",
+    "cuda_add_executable",
+    "rosbuild_add_executable",
+)
+_SUFFIXES: Final = (".cpp", ".cc", ".cxx", ".c++")
+_COMMENT: Final = re.compile(r"//[^\n]*|/\*.*?\*/|(\"(?:[^\"\\\n]|\\.)*\")", re.DOTALL)
+_CALL: Final = re.compile(
+    r"(?:(?P<who>\w+)(?:\(\))?\s*(?:\.|->)\s*)?\b(?P<call>advertise|create_publisher|subscribe|create_subscription)\s*"
+    r"(?:<\s*(?P<type>[\w:]+)[^;(]{0,200}?>)?\s*\(\s*\"(?P<name>[\w/~]+)\""
+)
+_PRIVATE: Final = re.compile(
+    r"\b(\w+)\s*[({]\s*\"~\"|\b(\w+)\s*=\s*(?:ros::)?NodeHandle\s*\(\s*\"~\""
+)  # handles
+_ROLES: Final[dict[str, Role]] = {
+    "advertise": "publishes", "create_publisher": "publishes", "subscribe": "subscribes",
+    "create_subscription": "subscribes",
+}  # fmt: skip
+
+
+def named_topics(package: Package, executable: str) -> tuple[Endpoint, ...]:
+    """Return the topics that the sources of a C++ program name, in the order of the files."""
+    return tuple(end for path in _sources(package, executable) for end in _ends(path))
+
+
+def _sources(package: Package, executable: str) -> list[Path]:
+    """Return the files of a program, as CMakeLists.txt lists them."""
+    return [path for name, path in _programs(package.folder, package.name) if name == executable]
+
+
+@cache
+def _programs(folder: Path, package: str) -> tuple[tuple[str, Path], ...]:
+    try:
+        text = read_text(folder / "CMakeLists.txt", LARGEST)
+    except UnreadableError:
+        return ()
+    found: list[tuple[str, Path]] = []
+    renamed: dict[str, str] = {}
+    for command in commands(text, folder, package):
+        if command.name in _EXECUTABLES and command.words:
+            name, *files = command.words
+            found += [(name, folder / file) for file in files if file.endswith(_SUFFIXES)]
+        elif command.name == "set_target_properties" and "OUTPUT_NAME" in command.words[:-1]:
+            renamed[command.words[0]] = command.words[command.words.index("OUTPUT_NAME") + 1]
+    inside = [(renamed.get(name, name), path) for name, path in found if path.is_relative_to(folder)]
+    return tuple(one for one in inside if one[1].is_file())
+
+
+@cache
+def _ends(path: Path) -> tuple[Endpoint, ...]:
+    try:
+        text = read_text(path, LARGEST)
+    except UnreadableError:
+        return ()
+    return tuple(_named(path, _COMMENT.sub(_blank, text)))
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return a string as it is, and a comment as spaces, so that lines stay."""
+    return found[1] or re.sub(r"[^\n]", " ", found[0])
+
+
+def _named(path: Path, text: str) -> Iterator[Endpoint]:
+    private = {one for pair in _PRIVATE.findall(text) for one in pair if one}
+    for found in _CALL.finditer(text):
+        who, name = found["who"] or "", found["name"]
+        if (who in private or "priv" in who or who in ("pnh", "pnh_", "nh_p")) and not name.startswith(
+            ("/", "~")
+        ):
+            name = f"~{name}"
+        line = text.count("\n", 0, found.start("call")) + 1
+        column = found.start("call") - text.rfind("\n", 0, found.start("call"))
+        span = Span(shown(path), line, column, line, column + len(found["call"]))
+        yield Endpoint(_ROLES[found["call"]], (name,), (found["type"] or "").rpartition("::")[2], span)
