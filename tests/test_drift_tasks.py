@@ -22,7 +22,7 @@ WRITTEN_BY_HAND = [task for task in TASKS if task.parent.name in JUDGING]
 
 
 def answer(task: Path) -> dict[str, Any]:
-    """Return what is known of a task."""
+    """Return the known facts of a task."""
     found: dict[str, Any] = json.loads((task / "answer.json").read_text())
     return found
 

@@ -54,7 +54,7 @@ __import__("helper")
 
 
 def watched(folder: Path, module: str, *arguments: str) -> tuple[subprocess.CompletedProcess[str], list[Any]]:
-    """Run a module under the hook and return what was seen."""
+    """Run a module under the audit hook and return the recorded events."""
     command = [sys.executable, "-c", WATCH, json.dumps([module, *arguments])]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     _, _, seen = done.stderr.rpartition("\nSEEN")

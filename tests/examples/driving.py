@@ -1,4 +1,4 @@
-"""Drive an example's node through its world, with the node's text changed where a test asks for it."""
+"""Drive an example's node through its world, optionally with a changed source of the node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @cache
 def world_module(example: str) -> ModuleType:
-    """Load an example's world under a name of its own, since both call it `world`."""
+    """Load an example's world under a unique module name, since every example names it `world`."""
     spec = importlib.util.spec_from_file_location(f"{example}_world", EXAMPLES / example / "world.py")
     assert spec is not None
     assert spec.loader is not None
@@ -28,12 +28,12 @@ def world_module(example: str) -> ModuleType:
 
 
 def random(seed: int) -> np.random.Generator:
-    """Return a stream of random numbers like the one that a test gets from `tarl.rng`."""
+    """Return a random generator like that of `tarl.rng`."""
     return np.random.Generator(np.random.Philox(key=seed))
 
 
 def drive(node: str, world: Any, edits: Mapping[str, str] | None = None, **parameters: Any) -> list[float]:
-    """Let a node (`shuttle/traveller.py`) drive until the world is over; return the reward of every step."""
+    """Run a node (`shuttle/traveller.py`) until the mission ends; return the reward of every step."""
     path = EXAMPLES / node
     text = path.read_text()
     for old, new in (edits or {}).items():

@@ -1,4 +1,4 @@
-"""The examples as a newcomer meets them: ordinary tests in a folder of their own."""
+"""The examples run without flags, as ordinary tests in their own folders."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The examples that are required by formulas: the drifts that they were made for violate them."""
+"""The examples with formulas: each drift of an example violates its formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the line follower's world does to its node, by day and at dusk."""
+"""The world of the line follower, by day and at dusk."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OTHERS = ("KD * change", "self.speed * (", "CAUTION * abs", "min(MAX_TURN,")
 
 
 class Wires:
-    """A bus without nodes: keeps what the world says and hands it one command."""
+    """A bus without nodes: stores the world's messages and sends it one command."""
 
     def __init__(self, speed: float = 0.0, turn: float = 0.0) -> None:
         self.said: dict[str, Any] = {}

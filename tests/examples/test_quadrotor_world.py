@@ -1,4 +1,4 @@
-"""What the quadrotor's world does to its two nodes, as designed, with a payload and in a gust."""
+"""The world of the quadrotor: as designed, with a payload, and in a gust."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SEEDS = range(3)
 
 
 def fly(seed: int, drift: dict[str, float] | None = None, edits: dict[str, str] | None = None) -> Any:
-    """Fly one mission; the world keeps the sum of each part of the reward as `parts`."""
+    """Fly one mission; `parts` of the world has the sum of each part of the reward."""
     world = QUADROTOR.World(random(seed), **(drift or {}))
     world.parts = {}
     ros = Ros()

@@ -1,4 +1,4 @@
-"""What the shuttle's world does to its node, as designed and in mud."""
+"""The world of the shuttle, as designed and in mud."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ EVERYWHERE = {VEL: "vel = 12.0 * delta"}
 
 
 class Wires:
-    """A bus without nodes: keeps what the world says and hands it one command."""
+    """A bus without nodes: stores the world's messages and sends it one command."""
 
     def __init__(self, velocity: float) -> None:
         self.said: dict[str, Any] = {}

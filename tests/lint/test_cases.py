@@ -1,8 +1,8 @@
 """Every marked file in tests/cases has the flows in its comments, and no others.
 
-`# source a` stands at a subscription (or the call that supplies its callback), `# sink a ~b` at a publish call that
-a reaches explicitly and b implicitly, `# clean` at one that nothing reaches. In files with `# step a ~b` these
-lines, and those alone, carry a's data to the sinks, and these lines of b decide.
+The comment `# source a` marks a subscription (or the call that supplies its callback), `# sink a ~b` a publish call
+that a reaches explicitly and b implicitly, and `# clean` one that nothing reaches. In files with `# step a ~b`,
+exactly the marked lines are steps: a's data passes through the line, and for b the line is a condition.
 """
 
 import re

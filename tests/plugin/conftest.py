@@ -1,4 +1,4 @@
-"""Import both packages whole: pytester forgets what a run in this process imports, and half is worse than none."""
+"""Import both packages completely: pytester unloads what an in-process run imported, so none may be half loaded."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ for package in (tarl_lint, pytest_tarl):
 
 @pytest.fixture
 def tank(pytester: pytest.Pytester) -> pytest.Pytester:
-    """A project of its own: a node, and a simulation test of it."""
+    """A temporary project with a node and its simulation test."""
     pytester.makefile(".py", keeper=NODE, test_tank=TEST)
     # What shuffles tests, warns that it is not set up, or leaves a thread with each run is asked for where it is the
     # subject.

@@ -1,4 +1,4 @@
-"""Bags of the tank: missions as a robot would have recorded them, in every format."""
+"""Bags of the tank: missions as recorded on a robot, in every format."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ NUMBER = "std_msgs/msg/Float64"
 
 
 def mission(pump: float, seed: int, also: Sequence[Message] = (), steps: int = 25) -> Iterator[Step]:
-    """Yield what the tank says ten times a second while it is filled, and `also` something every time.
+    """Yield the messages of the tank at 10 Hz while it is filled, and `also` further messages each time.
 
-    The node is told a noisy `/level`; what is true is written down as `/gauge` when the pump has run.
+    The node receives a noisy `/level`; the true level is published as `/gauge` after the pump has run.
     """
     draws = random.Random(seed)
     level = draws.uniform(0.0, 0.2)
@@ -34,7 +34,7 @@ def mission(pump: float, seed: int, also: Sequence[Message] = (), steps: int = 2
 
 
 def write_bag(path: Path, steps: Iterator[Step]) -> Path:
-    """Write a bag of ROS 1 or 2, as its name says: .bag, .mcap, .db3, or a folder."""
+    """Write a bag of ROS 1 or 2 in the format of its name: .bag, .mcap, .db3, or a folder."""
     return _write1(path, steps) if path.suffix == ".bag" else _write2(path, steps)
 
 

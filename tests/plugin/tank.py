@@ -87,19 +87,19 @@ def changed(tank: pytest.Pytester, name: str, old: str, new: str) -> None:
 
 
 def fixture_file(tank: pytest.Pytester) -> Path:
-    """Return the one utility fixture."""
+    """Return the path of the only recording."""
     (found,) = (tank.path / ".tarl" / "utility").glob("*.npz")
     return found
 
 
 def columns_of(fixture: bytes) -> dict[str, list[object]]:
-    """Return what was recorded, without the header, which also holds a digest of the test's own modules."""
+    """Return the recorded columns, without the header, which contains a digest of the test's modules."""
     with np.load(io.BytesIO(fixture), allow_pickle=False) as arrays:
         return {name: arrays[name].tolist() for name in arrays.files if name != HEADER}
 
 
 def result(tank: pytest.Pytester) -> dict[str, Any]:
-    """Return the one JSON result."""
+    """Return the only JSON result."""
     (path,) = (tank.path / ".tarl" / "results").glob("*.json")
     found: dict[str, Any] = json.loads(path.read_text())
     return found

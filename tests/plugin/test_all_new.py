@@ -1,4 +1,4 @@
-"""A sensor whose on-line value was never seen off-line makes every situation new: what is said and ranked then."""
+"""A sensor whose deployed value was never recorded makes every situation new: the report and the ranking then."""
 
 from __future__ import annotations
 

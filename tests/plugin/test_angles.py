@@ -1,4 +1,4 @@
-"""An angle that drifts across the ends of its range: one region in words, one condition in the guard."""
+"""A region that crosses the ends of an angle's range has one description and one condition."""
 
 from __future__ import annotations
 

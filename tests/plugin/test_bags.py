@@ -1,4 +1,4 @@
-"""`--tarl-bag`: recorded missions in the place of the simulated world."""
+"""`--tarl-bag`: recorded missions instead of the simulated world."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands that an account prints can be pasted where pytest was started."""
+"""Printed commands can be pasted in the folder in which pytest was started."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.plugin.tank import NODE, TEST
 
 @pytest.fixture
 def nested(pytester: pytest.Pytester) -> pytest.Pytester:
-    """A project whose root is a folder below the one that pytest is started in."""
+    """A project whose root is a folder below the current one."""
     folder = pytester.mkdir("tank")
     (folder / "pytest.ini").write_text("[pytest]\n")
     (folder / "keeper.py").write_text(NODE)

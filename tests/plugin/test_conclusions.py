@@ -1,4 +1,4 @@
-"""What a comparison tells beside its verdict: to build servers, of several drifts, of the parts of the reward."""
+"""Results besides the verdict: output for CI, several drifts, parts of the reward."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def record_once() -> dict[str, bytes]:
 
 @pytest.fixture
 def drifting(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pytester:
-    """The project with a reward in parts and two drifts, one of which does not matter."""
+    """The project with a reward in parts and two drifts, one of which has no effect."""
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", PARTS)
     changed(tank, "test_tank", '{"clogged": 0.25}', '{"clogged": 0.25, "fine": 1.0}')
     folder = tank.path / ".tarl" / "utility"

@@ -1,4 +1,4 @@
-"""Values of drift scenarios: plain ones, ranges, dictionaries, for good or not; and what the design is."""
+"""Values of drift scenarios: plain values, ranges, dictionaries, permanent drifts; and the design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a test sees as `tarl`: streams of random numbers, latched sensors, and every mistake a sentence."""
+"""The fixture `tarl` in a test: random streams, cells, and messages for mistakes."""
 
 from __future__ import annotations
 

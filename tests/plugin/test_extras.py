@@ -1,4 +1,4 @@
-"""The command that installs an extra names the place that TARL was installed from."""
+"""The command that installs an extra uses the source from which TARL was installed."""
 
 from __future__ import annotations
 

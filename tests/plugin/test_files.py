@@ -1,4 +1,4 @@
-"""Reports and fixtures are written whole or not at all; what is no file is never replaced by one."""
+"""Reports and recordings are written atomically; pipes and devices are not replaced by files."""
 
 import os
 import stat

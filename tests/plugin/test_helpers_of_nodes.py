@@ -1,4 +1,4 @@
-"""Helpers and wrappers that a node imports: recorded, run anew in each episode, or else told."""
+"""Helpers and wrappers that a node imports are recorded and re-executed in each episode, or reported."""
 
 from __future__ import annotations
 

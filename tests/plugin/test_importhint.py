@@ -1,4 +1,4 @@
-"""Test modules that import ROS where none is installed get advice beside the error."""
+"""A test module that imports ROS where it is not installed gets advice with the error."""
 
 from __future__ import annotations
 

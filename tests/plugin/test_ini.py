@@ -1,4 +1,4 @@
-"""Flags in an ini file: what the command line says wins, and a run in another mode does without the rest."""
+"""Options in an ini file: the command line overrides them, and options of other modes are ignored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`kill -9` in the middle of a recording: the fixture that was there can always be loaded."""
+"""After `kill -9` during a recording run, the old recording can still be loaded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An edited world, reward or helper of the test is told; comments, drifts and other tests are not."""
+"""Edits of the test's world, reward or helpers are reported; edits of comments, drifts and other tests are not."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def told(project: Path, name: str, old: str, new: str) -> list[str]:
-    """Return what is said to have changed by an edit."""
+    """Return the changes that are reported for an edit."""
     before = digests("test_it.py::test_it[mud]", project, [project / "node.py"])
     path = project / name
     assert old in path.read_text()

@@ -1,4 +1,4 @@
-"""What a newcomer runs into: the wrong folder, no right to write, no terminal, no marker, nothing recorded yet."""
+"""Problems of new users: wrong folder, missing permissions, no terminal, no marker, no recording yet."""
 
 from __future__ import annotations
 

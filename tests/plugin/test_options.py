@@ -1,4 +1,4 @@
-"""Markers and flags: every mistake is a sentence that says how to mend it."""
+"""Markers and flags: every mistake gives a sentence with advice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Episodes beside the plugins and options that people have: the same fixture, one report, no episode too many."""
+"""Runs with common plugins and options: the same recording, one report, no additional episode."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BROKEN = ("keeper", "GAIN = 2.0", "GAIN = 0.1")
 
 
 def needs(module: str) -> pytest.MarkDecorator:
-    """Skip where a plugin is not installed; pip install 'tarl[dev]' brings them all."""
+    """Skip if a plugin is missing; pip install 'tarl[dev]' installs all of them."""
     return pytest.mark.skipif(importlib.util.find_spec(module) is None, reason=f"{module} is not installed")
 
 
@@ -39,7 +39,7 @@ def plain() -> dict[str, bytes]:
 
 @pytest.fixture
 def expected(tank: pytest.Pytester, plain: dict[str, bytes]) -> bytes:
-    """The fixture as it is recorded without any other plugin, once for all tests."""
+    """The recording made without other plugins, once for all tests."""
     if not plain:
         tank.runpytest(*FEW).assert_outcomes(passed=1, deselected=1)
         plain["fixture"] = fixture_file(tank).read_bytes()

@@ -1,4 +1,4 @@
-"""The plugin as a user meets it: record, compare, repair, and everything that can go wrong on the way."""
+"""The plugin end to end: record, compare, repair, and user mistakes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def record_once() -> dict[str, bytes]:
 
 @pytest.fixture
 def recorded(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pytester:
-    """The project with its utility recorded, once for all tests that only compare."""
+    """The project with a recording, made once for all tests that only compare."""
     if not record_once:
         tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
         record_once[fixture_file(tank).name] = fixture_file(tank).read_bytes()

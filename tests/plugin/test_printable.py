@@ -1,4 +1,4 @@
-"""Nothing of what others wrote commands the terminal: file contents, topics, headers of patches, messages."""
+"""No control sequence from file contents, topics, patch headers or messages reaches the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Episodes and pytest's own life: marks that expect failure, interrupts, output, drifts that a test does not take."""
+"""Episodes and pytest's own features: xfail, skips, interrupts, captured output, parameters."""
 
 from __future__ import annotations
 

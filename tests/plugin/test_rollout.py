@@ -1,4 +1,4 @@
-"""Episodes that are begun ahead of being asked for: the same ones, and never more than asked for plus a few."""
+"""Episodes started ahead of their request: the results are the same, and their number is limited."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Answer:
 
 @dataclass
 class FakeExecutor:
-    """A rollout that keeps what was begun and what was cancelled."""
+    """An executor that stores which episodes were started and cancelled."""
 
     workers: int
     begun: list[int] = field(default_factory=list)

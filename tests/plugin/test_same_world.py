@@ -1,7 +1,7 @@
-"""A world against itself, through the fixture on disk and the command line: constant rewards raise no alarm.
+"""Compare a world with itself, with a recording on disk and the command line: constant rewards give no difference.
 
 The worlds are those of benchmarks/same_worlds; how often they are told from themselves is measured in
-benchmarks/same_world.py. Here seeds are given, so what is found is always the same.
+benchmarks/same_world.py. Here the seeds are fixed, so the results are always the same.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def worlds(pytester: pytest.Pytester) -> pytest.Pytester:
 
 
 def results(project: pytest.Pytester) -> dict[str, Any]:
-    """Return the JSON result of every test by what it is called."""
+    """Return the JSON results by the name of the test."""
     found = [json.loads(path.read_text()) for path in (project.path / ".tarl" / "results").glob("*.json")]
     return {one["test"].partition("::test_")[2]: one for one in found}
 

@@ -1,4 +1,4 @@
-"""Sensors: every value has a bin, every bin a name, every mistake a sentence."""
+"""Sensors: bins of values, names of bins, and messages for invalid declarations."""
 
 from __future__ import annotations
 

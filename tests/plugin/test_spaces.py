@@ -1,4 +1,4 @@
-"""Spaces of drifts: directions with nominal values, drawn from on-line, nominal otherwise."""
+"""Spaces of drifts: comparisons draw a value for each direction; other runs use the nominal values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a recording states of the next episodes, and how many it takes where a confidence is asked for."""
+"""Bounds that a recording states, and the number of episodes needed for a requested confidence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A machine that is suspended, or Ctrl-Z and `fg`, in the middle of a recording: the recording is the same."""
+"""Suspending the machine, or Ctrl-Z and `fg`, does not change the recording."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def started(tank: pytest.Pytester, workers: int) -> subprocess.Popen[bytes]:
 
 
 def children(parent: int) -> list[int]:
-    """Return the processes that a process started, where the system tells."""
+    """Return the child processes of a process, if the system lists them."""
     listed = Path(f"/proc/{parent}/task/{parent}/children")
     return [int(one) for one in listed.read_text().split()] if listed.exists() else []
 

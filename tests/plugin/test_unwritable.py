@@ -1,4 +1,4 @@
-"""A full disk and a read-only tree never hide the verdict: it is told on the terminal and in JUnit, with advice."""
+"""On a full disk or a read-only tree, the verdict still appears on the terminal and in JUnit, with advice."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def recorded(tank: pytest.Pytester) -> pytest.Pytester:
 
 
 def deny(monkeypatch: pytest.MonkeyPatch, number: int, *kept: str) -> None:
-    """Let nothing be written below `.tarl` but what is in the kept folders."""
+    """Make everything below `.tarl` read-only, except the kept folders."""
     make = tempfile.mkstemp
 
     def full(**more: Any) -> tuple[int, str]:
@@ -149,7 +149,7 @@ def test_a_limit_on_file_size_is_reported(
     junit = tmp_path_factory.mktemp("outside") / "junit.xml"
 
     def run(*options: str) -> subprocess.CompletedProcess[str]:
-        """Run pytest where no file can become larger than half a recording."""
+        """Run pytest with a limit on file size of half a recording."""
         return subprocess.run(
             [sys.executable, "-B", "-m", "pytest", "-p", "no:cacheprovider", *options],
             cwd=recorded.path,
@@ -171,7 +171,7 @@ def test_a_limit_on_file_size_is_reported(
 
 
 def mounting() -> bool:
-    """Tell whether this user may mount file systems of their own."""
+    """Return whether this user may mount file systems."""
     tool = shutil.which("unshare")
     if tool is None:
         return False

@@ -1,4 +1,4 @@
-"""What the guide says of tests that are written, stopped and looked into as people do it."""
+"""Statements of the guide on classes, fixtures, debuggers, skips and interrupts."""
 
 from __future__ import annotations
 

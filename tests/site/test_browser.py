@@ -170,7 +170,7 @@ def served(folder: Path) -> Iterator[str]:
 
 
 class Silent(SimpleHTTPRequestHandler):
-    """Serve files and say nothing."""
+    """Serve files without logging."""
 
     def log_message(self, *_: object) -> None:
-        """Drop a line of the log."""
+        """Discard a line of the log."""

@@ -1,4 +1,4 @@
-"""The pages of the site before it is built: each message has one, snippets can be read, every page is in the menu."""
+"""The sources of the site: each message has a page, snippets parse, and every page is in the menu."""
 
 from __future__ import annotations
 

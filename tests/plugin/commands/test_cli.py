@@ -1,4 +1,4 @@
-"""`tarl show` and `tarl diff`, on fixtures as they lie on disk."""
+"""`tarl show` and `tarl diff`, on recordings in files."""
 
 from __future__ import annotations
 

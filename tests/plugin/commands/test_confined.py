@@ -1,4 +1,4 @@
-"""What `tarl apply` writes is what was simulated, inside the project, all files or none; whatever the patch says."""
+"""For any patch, `tarl apply` writes only tested text, only inside the project, and all files or none."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ VICTIM = "a = 'not yours'\n"
 
 
 def made(root: Path, changes: dict[str, str]) -> bytes:
-    """Return the patch that turns files into new texts, as a repair writes it."""
+    """Return the patch that a repair would write for these new texts."""
     originals = {root / name: (root / name).read_bytes() for name in changes}
     header = [f"{TITLE}0.1.0: 5 → 12 at node.py:9", "test: test_it.py::test_it", "drift: mud"]
     header += [f"fixture: {'0' * 64} .tarl/utility/it.npz", "again: pytest test_it.py"]
@@ -40,7 +40,7 @@ def made(root: Path, changes: dict[str, str]) -> bytes:
 
 
 def sealed(content: bytes) -> bytes:
-    """Give a forged patch the digest that belongs to it: whoever edits on purpose can do that as well."""
+    """Give a forged patch a valid digest, as an attacker could."""
     line = re.compile(rb"# " + SEAL.encode() + rb": [0-9a-f]{64}\n")
     return line.sub(
         lambda _: (
@@ -52,7 +52,7 @@ def sealed(content: bytes) -> bytes:
 
 @contextmanager
 def robot() -> Iterator[tuple[Path, Path]]:
-    """Make a project of two files beside a file that is none of its business; yield it and the patch's place."""
+    """Make a project of two files beside an unrelated file; yield the project and the path of the patch."""
     before = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder).resolve() / "robot"
@@ -70,7 +70,7 @@ def robot() -> Iterator[tuple[Path, Path]]:
 
 
 def texts(folder: Path) -> dict[str, bytes]:
-    """Return the content of all files below a folder, patches left out."""
+    """Return the content of all files below a folder except patches."""
     found = (path for path in folder.rglob("*") if path.is_file() and path.suffix != ".patch")
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in found}
 
@@ -89,7 +89,7 @@ BODY = PATCH.index(b"diff --git ")
 
 
 def refused(content: bytes, *flags: str) -> None:
-    """Apply a patch: either it makes the text of the tests, or nothing is changed and a sentence says why."""
+    """Apply a patch and check that it either gives the tested text, or changes nothing and prints one sentence."""
     with robot() as (root, place):
         place.write_bytes(content)
         code = main(["apply", *flags, str(place)])

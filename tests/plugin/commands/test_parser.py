@@ -1,4 +1,4 @@
-"""Mistakes on the command line of `tarl`, and the completion that shells get from its parser."""
+"""Invalid command lines of `tarl`, and shell completion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tarl workspace`: a table of packages, the same as JSON, and what could not be read."""
+"""`tarl workspace`: the table of packages, the JSON output, and unreadable files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bounds: they agree with their definitions, hold as often as they say, and refuse what they were not made for."""
+"""Bounds agree with their definitions, have their stated coverage, and refuse invalid input."""
 
 from __future__ import annotations
 

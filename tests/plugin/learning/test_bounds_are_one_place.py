@@ -1,4 +1,4 @@
-"""Whatever bound on a mean or a rate is used anywhere comes from learning/bounds.py, which states what it assumes."""
+"""All bounds on means and rates come from learning/bounds.py, which documents their assumptions."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def names(tree: ast.AST) -> set[str]:
 
 
 def computed(source: str) -> Iterator[str]:
-    """Yield what in a module makes an interval: quantiles, libraries of them, the spread of a mean, a part of ours."""
+    """Yield signs that a module computes an interval: quantiles, statistics libraries, standard errors, our parts."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.ImportFrom):
             module = node.module or ""

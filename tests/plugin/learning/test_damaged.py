@@ -1,4 +1,4 @@
-"""Damaged and forged fixtures: one sentence or a sound recording, never a traceback; and recording replaces them."""
+"""Damaged and forged recordings give one sentence or valid data, never a traceback, and can be replaced."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ WHOLE = _whole()
 
 
 def parts(content: bytes = WHOLE) -> tuple[dict[str, Any], Arrays]:
-    """Return header and columns of a fixture."""
+    """Return header and columns of a recording."""
     with np.load(io.BytesIO(content)) as archive:
         columns = dict(archive)
     return json.loads(columns.pop("header").tobytes()), columns
 
 
 def forged(header: dict[str, Any], columns: Arrays) -> bytes:
-    """Return a file of these parts with a digest that fits."""
+    """Return a file of these parts with a valid digest."""
     header = {key: value for key, value in header.items() if key != "digest"}
     header["digest"] = fixtures._digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
@@ -62,7 +62,7 @@ def loaded(path: Path) -> fixtures.Fixture | FixtureError:
 
 
 def survived(content: bytes) -> bool:
-    """Load a fixture and use it as `tarl show` and `tarl diff` do; tell whether it was taken."""
+    """Load a recording and use it as `tarl show` and `tarl diff` do; return whether it was accepted."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "a.npz")
         path.write_bytes(content)
@@ -97,7 +97,7 @@ def test_a_truncated_or_spliced_recording_is_refused(at: int, put: bytes, skippe
 
 
 def stored(**members: bytes) -> bytes:
-    """Return the fixture with some members in place of its own."""
+    """Return the recording with some zip members replaced."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(WHOLE)) as old, zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():

@@ -1,4 +1,4 @@
-"""The comparison: quiet when nothing changed, loud and in the right place when something did."""
+"""The comparison reports nothing in equal worlds, and locates a change in different ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LENGTH = 8
 
 
 def mission(seed: int, *, slow_at: int | None = None, strange: bool = False) -> Sample:
-    """Walk from cell 0 to the last one; each step costs, a slow cell holds the robot back."""
+    """Walk from cell 0 to the last one; each step costs reward, and a slow cell takes more steps."""
     draws = np.random.default_rng(seed)
     path, place = [], 0
     while place < LENGTH:

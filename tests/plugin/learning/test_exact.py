@@ -1,4 +1,4 @@
-"""Formulas against other ways to compute them: a number in them that is off by a little is seen."""
+"""Statistical formulas, compared with independent computations precisely enough to detect a wrong constant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fixture on disk: whole, the same bytes every time, never half-used."""
+"""The recording file: complete, reproducible to the byte, and never used in part."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def example(sample: Sample | None = None) -> Fixture:
 
 
 def close(first: Sample, second: Sample) -> bool:
-    """Tell whether counts are the same, sums are within 1e-5 of themselves and sums of squares within 0.3 %."""
+    """Return whether counts are equal, sums within 1e-5 (relative) and sums of squares within 0.3 %."""
     plain = (first.cells, first.seeds, first.part_names) == (second.cells, second.seeds, second.part_names)
     return plain and all(
         np.allclose(mine, theirs, rtol=3e-3 if name.endswith("squared") else 1e-5, atol=0)

@@ -1,4 +1,4 @@
-"""Where, and which line: regions name what on-line episodes were in; rank, score and order are one thing."""
+"""Regions contain only visited cells; rank, score and order of the lines agree."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ TIMES = (
 
 
 def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:
-    """Walk through some cells with a mode that tells nothing; a cell may be harmful, another may be avoided."""
+    """Walk through some cells with an irrelevant mode; one cell may be harmful and another one avoided."""
     draws = np.random.default_rng(seed)
     path = [place for place in range(LENGTH) for _ in range(int(draws.integers(1, 3))) if place != avoid]
     cells = tuple((place, mode) for place in range(LENGTH))
@@ -61,7 +61,7 @@ def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:
 
 
 def worlds(seed: int) -> tuple[Sample, Sample]:
-    """Return two worlds that differ in any way: by what a cell costs, by a mode, by a cell that is avoided."""
+    """Return two worlds that may differ by the cost of a cell, by a mode, or by an avoided cell."""
     draws = np.random.default_rng(seed)
     harm, mode, avoid = (
         float(draws.choice([-0.1, 1.0, 5.0])),

@@ -1,4 +1,4 @@
-"""Looks: an early end where the verdict is certain, at no more false alarms than asked for."""
+"""Looks end a run early if the verdict is certain, without raising the rate of false alarms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.seeds import generator
 
 
 def found(p_drift: float, p_loss: float, loss: float = 2.0, cells: int = 1) -> Difference:
-    """Return what a look may have seen, judged at 5 %."""
+    """Return possible findings of a look, judged at 5 %."""
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, 1.0, 1.0), 0.05)
     return Difference(verdict, Region(tuple((i,) for i in range(cells))), {})
 
@@ -51,7 +51,7 @@ def test_p_values_are_corrected_for_the_number_of_looks() -> None:
 
 
 def test_several_looks_do_not_raise_the_rate_of_false_alarms() -> None:
-    """Under no difference p-values are uniform, here as dependent as those of growing samples are."""
+    """Without a difference, p-values are uniform; here they are correlated like those of growing samples."""
     draws = generator(0, "looks")
     plan = planned(40, 3)
     alarms = 0

@@ -1,4 +1,4 @@
-"""What is compared is the same, whether it was read from a file or is still in memory."""
+"""Samples from a file and from memory give the same comparison."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SIZES = st.sampled_from([1e-9, 0.1, 0.7, 3.0, 1e6])
 
 
 def rewards(kind: str, size: float, cells: np.ndarray, draws: np.random.Generator) -> np.ndarray:
-    """Return the rewards of an episode by a monitor that is constant somewhere."""
+    """Return the rewards of an episode from a monitor that is constant in some cells."""
     steps = cells.size
     if kind == "saturated":
         return np.minimum(size, size * draws.uniform(0.5, 3.0, steps))
@@ -44,7 +44,7 @@ def rewards(kind: str, size: float, cells: np.ndarray, draws: np.random.Generato
 
 
 def mission(seed: int, kind: str, size: float, cells: int, most: int, *, equal: bool = False) -> Sample:
-    """Return an episode of at most so many steps, in a world without any site."""
+    """Return an episode of at most `most` steps, in a world without sites."""
     draws = np.random.default_rng(seed)
     steps = most if equal else int(draws.integers(1, most + 1))
     at = draws.integers(0, cells, steps)
@@ -67,7 +67,7 @@ def world(first: int, count: int, *how: object, **more: object) -> Sample:
 
 
 def through_a_file(recorded: Sample) -> Sample:
-    """Return what a fixture with this sample is read as."""
+    """Return this sample after saving and loading it."""
     fixture = example()
     with TemporaryDirectory() as folder:
         path = Path(folder) / "a.npz"

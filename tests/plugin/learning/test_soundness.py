@@ -1,4 +1,4 @@
-"""Each check of a recording's columns catches what it is there for: one value is put wrong at a time."""
+"""Each check of a recording's columns detects its own kind of invalid value."""
 
 from __future__ import annotations
 

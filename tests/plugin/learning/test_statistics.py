@@ -65,7 +65,7 @@ def test_rewards_of_events_add_up_to_the_total_of_the_episode(seed: int) -> None
 
 
 def threaded(seed: int, threads: int) -> Trace:
-    """Return a trace in which several threads did what they did; its events stand by step, then by thread."""
+    """Return a trace of several threads, whose events are ordered by step and then by thread."""
     trace = random_trace(seed)
     thread = np.random.default_rng([seed, 1]).integers(0, threads, trace.site.size).astype(np.int32)
     order = np.lexsort((thread, trace.event_step))
@@ -74,7 +74,7 @@ def threaded(seed: int, threads: int) -> Trace:
 
 
 def only(trace: Trace, thread: int) -> Trace:
-    """Return what one of the threads did, as if there were no other."""
+    """Return the trace of one thread alone."""
     assert trace.thread is not None
     own = trace.thread == thread
     columns = {name: getattr(trace, name)[own] for name in ("site", "flow", "event_cell", "event_step")}

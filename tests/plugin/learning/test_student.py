@@ -1,4 +1,4 @@
-"""How large a difference is: bounds that hold as often as they say, an effect size that agrees with its definition."""
+"""The size of a difference: intervals have their stated coverage, and the effect size agrees with its definition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parametric utility: where tiles can tell cells apart it is the table, and where they cannot it generalises."""
+"""The parametric utility equals the table where tiles distinguish all cells, and generalises elsewhere."""
 
 from __future__ import annotations
 

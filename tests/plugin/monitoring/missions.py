@@ -1,4 +1,4 @@
-"""Small worlds whose missions are recorded as a fixture and logged as a robot would log them."""
+"""Small worlds whose missions are recorded by a test and logged as on a robot."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TEST = "test_walk.py::test_walk"
 
 @dataclass(frozen=True)
 class Walk:
-    """One mission: cells and rewards step by step."""
+    """One mission: its cells and rewards by step."""
 
     cells: tuple[Cell, ...]
     reward: tuple[float, ...]
@@ -36,7 +36,7 @@ class Walk:
 
 
 def walk(rng: np.random.Generator, drift: float = 0.0) -> Walk:
-    """Walk over four places; with a drift the third costs more and some missions fail there."""
+    """Walk over four places; under the drift, the third one costs more and some missions fail there."""
     cells, reward, wet = [], [], int(rng.random() < 0.5)
     passed = True
     for x in range(4):
@@ -48,13 +48,13 @@ def walk(rng: np.random.Generator, drift: float = 0.0) -> Walk:
 
 
 def walks(count: int, seed: int, drift: float = 0.0) -> list[Walk]:
-    """Draw some missions."""
+    """Draw random missions."""
     rng = np.random.default_rng(seed)
     return [walk(rng, drift) for _ in range(count)]
 
 
 def trace(one: Walk) -> Trace:
-    """Return a mission as it is recorded in a test."""
+    """Return a mission as a test records it."""
     distinct = tuple(dict.fromkeys(one.cells))
     number = {cell: n for n, cell in enumerate(distinct)}
     none = np.empty(0, np.int32)
@@ -63,7 +63,7 @@ def trace(one: Walk) -> Trace:
 
 
 def fixture(path: Path, missions: list[Walk], declared: Range | None = None, varied: bool = True) -> Fixture:
-    """Record missions as a fixture, and read it back as a watch does."""
+    """Save missions as a recording, and load it as `tarl watch` does."""
     samples = [sample(trace(one), episode_seed(0, "x", n), one.passed, ()) for n, one in enumerate(missions)]
     whole = merge(samples)
     bounds = stated(whole.passed.tolist(), whole.total.tolist(), declared=declared, varied=varied)
@@ -72,7 +72,7 @@ def fixture(path: Path, missions: list[Walk], declared: Range | None = None, var
 
 
 def start(**changes: Any) -> dict[str, Any]:
-    """Return the record with which a log begins."""
+    """Return the first record of a log."""
     about = {
         "kind": "start",
         "format": 1,
@@ -88,7 +88,7 @@ def start(**changes: Any) -> dict[str, Any]:
 
 
 def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, Any]]:
-    """Return the records of a mission, its steps in so many pieces."""
+    """Return the records of a mission, with its steps in `pieces` records."""
     distinct = list(dict.fromkeys(one.cells))
     number = {cell: n for n, cell in enumerate(distinct)}
     column = np.array([number[cell] for cell in one.cells], np.int32)
@@ -111,7 +111,7 @@ def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, 
 
 
 def log(path: Path, missions: list[Walk], first: float = 2000.0, **changes: Any) -> Path:
-    """Write a log, or append to one, as an observer that starts anew does."""
+    """Write a log, or append to one as a restarted observer does."""
     file = LogFile(path)
     file.append(start(**changes))
     for n, one in enumerate(missions):
@@ -122,5 +122,5 @@ def log(path: Path, missions: list[Walk], first: float = 2000.0, **changes: Any)
 
 
 def content(missions: list[Walk]) -> bytes:
-    """Return the records of some missions as they stand in a log, without its beginning."""
+    """Return the records of some missions as in a log, without its first record."""
     return b"".join(encoded(record) for n, one in enumerate(missions) for record in records(one, 5000.0 + n))

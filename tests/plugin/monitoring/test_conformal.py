@@ -1,4 +1,4 @@
-"""Conformal ranks: exactly uniform and independent for exchangeable scores, whatever ties there are."""
+"""Conformal ranks are exactly uniform and independent for exchangeable scores, even with ties."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.monitoring.restarts import BETS
 
 
 def one_by_one(pool: np.ndarray, bins: np.ndarray, draws: np.ndarray) -> np.ndarray:
-    """Return the ranks as they are defined, adding each score to a list."""
+    """Return the ranks by their definition, adding each score to a list."""
     found = np.full(bins.shape, 0.5)
     for score in range(bins.shape[1]):
         seen = [value for value in range(BINS) for _ in range(pool[score, value])]
@@ -54,7 +54,7 @@ def test_ranks_computed_at_once_equal_ranks_computed_one_by_one(
 def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
     scores: tuple[int, ...],
 ) -> None:
-    """Given an order, a rank is uniform on an interval; over all orders the boxes of three ranks fill the cube."""
+    """Given an order, each rank is uniform on an interval; over all orders, the boxes of three ranks fill the cube."""
     offline, parts = 3, 60  # 60 is a multiple of 4, 5 and 6, so bins of sixtieths cover all their intervals
     density = np.zeros((parts,) * 3)
     orders = list(permutations(scores))
@@ -69,7 +69,7 @@ def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
 
 
 def test_every_bet_integrates_to_one_and_is_nonnegative() -> None:
-    """Substitute p = s^8, which takes the poles away, on either half of the unit interval."""
+    """Substitute p = s^8 on both halves of the unit interval, which removes the poles."""
     nodes, weights = leggauss(80)
     top = 0.5 ** (1 / 8)
     s, w = (nodes + 1) / 2 * top, weights / 2 * top

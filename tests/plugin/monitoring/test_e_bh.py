@@ -1,4 +1,4 @@
-"""The region: e-BH as it is defined, on running maxima that were adjusted."""
+"""The region of a watch: the e-BH procedure on adjusted running maxima."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def watching(root: Path, library: str, after: list[bytes]) -> list[Any]:
-    """Run the node over a log that grows every two seconds; return the statuses that it published."""
+    """Run the node on a log that grows every two seconds; return the published statuses."""
     heard: list[Any] = []
     ros = Ros()
     order = Order((root / "m.log",), root / "f.npz", root / f"{library}.npz", ros=library, interval=1.0)

@@ -1,4 +1,4 @@
-"""Logs that grow, are rotated, cut, damaged or of another world: every mission counts once or not at all."""
+"""Logs that grow, are rotated, truncated, damaged or of another recording: each mission counts at most once."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _closed() -> Iterator[None]:
 
 
 class Reading:
-    """Readers of some logs, and how far each was counted."""
+    """Readers of some logs, and the position up to which each was counted."""
 
     def __init__(self, *paths: Path) -> None:
         self.known: dict[str, Progress] = {}
@@ -55,7 +55,7 @@ class Reading:
         OPEN.append(self)
 
     def read(self) -> int:
-        """Read what there is; return how many missions were read so far."""
+        """Read to the end of the logs; return the number of missions read so far."""
         for reader in self.readers:
             for mission in reader.missions():
                 self.take(mission)
@@ -76,7 +76,7 @@ class Reading:
 
 @contextmanager
 def blocks_of(size: int) -> Iterator[None]:
-    """Have logs read in blocks of so many bytes."""
+    """Read logs in blocks of `size` bytes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reading_module, "next_block", partial(blocks.next_block, size=size))
         yield
@@ -132,7 +132,7 @@ KINDS = (
 
 
 def written(kind: str, number: int) -> bytes:
-    """Return what an observer, or another writer, adds to a log."""
+    """Return records that an observer or another program appends to a log."""
     one, began = walks(1, number)[0], 2000.0 + number
     if kind in ("start", "foreign"):
         return encoded(start(time=began, **({"sensors": ["y"]} if kind == "foreign" else {})))
@@ -151,7 +151,7 @@ def written(kind: str, number: int) -> bytes:
 
 
 def everything(path: Path, size: int) -> tuple[list[tuple[object, ...]], object]:
-    """Return all missions of a log, read in blocks of so many bytes, and how far it was read with each."""
+    """Return all missions of a log, read in blocks of `size` bytes, and the position after each."""
     reader = LogReader(path, EXPECTED, {}, {})
     with blocks_of(size):
         found = [
@@ -168,7 +168,7 @@ def everything(path: Path, size: int) -> tuple[list[tuple[object, ...]], object]
 def test_the_result_does_not_depend_on_block_boundaries(
     tmp_path_factory: pytest.TempPathFactory, kinds: list[str], size: int, torn: int
 ) -> None:
-    """One record a block has every record read as JSON, a large block missions that were written at once by pattern."""
+    """With one record per block, each record is parsed as JSON; in a large block, short missions match a pattern."""
     path = tmp_path_factory.mktemp("blocks") / "m.log"
     whole = MAGIC + encoded(start()) + b"".join(written(kind, number) for number, kind in enumerate(kinds))
     path.write_bytes(whole[: max(len(MAGIC) + len(encoded(start())), len(whole) - torn)])

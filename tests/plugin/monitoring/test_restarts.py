@@ -1,4 +1,4 @@
-"""Mixtures over bets and restarts: equal to the sum that they stand for, e-processes, the same in any portions."""
+"""Mixtures over bets and restarts: they equal the explicit sum, are e-processes, and do not depend on portions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def watched(
 
 
 def naive(factors: np.ndarray) -> float:
-    """Return the mixture of one process as it is defined; factors have shape (missions, bets)."""
+    """Return the mixture of one process by its definition; factors have shape (missions, bets)."""
     count = len(factors)
     left = reserve(np.arange(count + 1))
     value = left[count]

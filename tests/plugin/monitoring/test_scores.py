@@ -1,4 +1,4 @@
-"""Scores: a logged mission gets those that the same mission would have as a recorded episode."""
+"""A logged mission has the same scores as the same mission in a recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The state of a watch: whatever ends it, and however often it is started again, the evidence is the same."""
+"""The state of a watch: interruptions and restarts do not change the evidence."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TIMES = 30 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 4
 
 @pytest.fixture(scope="module")
 def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a fixture and two logs, one of which drifts in its second half."""
+    """A folder with a recording and two logs, one of which drifts in its second half."""
     root = tmp_path_factory.mktemp("state")
     fixture(root / "f.npz", walks(60, 1))
     log(root / "a.log", [*walks(60, 2), *walks(40, 3, drift=1.0)])
@@ -114,7 +114,7 @@ def test_two_watches_cannot_share_a_state(tmp_path: Path) -> None:
 
 
 def test_a_killed_watch_continues_to_the_same_bytes(world: Path, tmp_path: Path) -> None:
-    """`kill -9` at any moment, while the log grows; the state is at most some missions behind and never wrong."""
+    """After `kill -9` at any time while the log grows, the state may lack the last missions but is valid."""
     path, whole = tmp_path / "m.log", (world / "a.log").read_bytes()
     command = [
         sys.executable,

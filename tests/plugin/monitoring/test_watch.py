@@ -1,4 +1,4 @@
-"""`tarl watch` as it is typed: what it says, what it exits with, what it leaves behind."""
+"""The command `tarl watch`: its output, exit codes and files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.plugin.monitoring.missions import Walk, content, fixture, log, walks
 
 @pytest.fixture
 def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working directory, with but the recording of a small world."""
+    """The working directory, which contains only the recording of a small world."""
     monkeypatch.chdir(tmp_path)
     fixture(tmp_path / "f.npz", walks(80, 1))
     return tmp_path
@@ -145,7 +145,7 @@ def started(root: Path, *arguments: str) -> subprocess.Popen[str]:
 
 
 def until(what: object, process: subprocess.Popen[str]) -> None:
-    """Wait until a call returns something true; a watch that ended by itself would never get there."""
+    """Wait until a call returns something true; fails if the watch ends early."""
     for _ in range(3000):
         if what():  # type: ignore[operator]
             return
@@ -254,7 +254,7 @@ def test_a_log_named_twice_is_refused(root: Path, capsys: pytest.CaptureFixture[
 
 
 def test_false_alarms_are_rarer_than_alpha_over_fresh_recordings(tmp_path: Path) -> None:
-    """60 short lives at α = 30 %, each with a fixture of its own."""
+    """Run 60 short watches at α = 30 %, each with its own recording."""
     alarms = 0
     rng = np.random.default_rng(0)
     for life in range(60):

@@ -1,4 +1,4 @@
-"""Clocks that jump and machines that sleep: missions keep their steps, and their order."""
+"""With jumping clocks and suspended machines, missions keep their steps and order."""
 
 from __future__ import annotations
 
@@ -91,6 +91,6 @@ def test_between_missions_nothing_is_kept(tmp_path: Path) -> None:
 
 
 def held(observer: Observer) -> int:
-    """Return the entries of steps and events that wait in the node's process."""
+    """Return the number of entries that wait in the node's process."""
     events = sum(len(buffer.entries) for buffer in observer.stream._buffers)
     return events + len(observer._times) + len(observer._readings) + len(observer._changes)

@@ -1,4 +1,4 @@
-"""How a mission ends, what the log says of it, and what signals did in it."""
+"""Ends of missions, their records in the log, and the changes of signals."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def until(true: Callable[[], object]) -> None:
 def ended(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException | None, **more: Any
 ) -> tuple[list[Record], BaseException | None]:
-    """Run a node that ends so; return the records of its missions and what came out."""
+    """Run a node that ends with `error`; return the records of its missions and the exception raised."""
 
     def run(*_: object) -> None:
         if error is not None:

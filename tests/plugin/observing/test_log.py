@@ -1,4 +1,4 @@
-"""The log: what is whole is read, whatever has happened to the rest."""
+"""The log: complete records are read, whatever happens to the rest."""
 
 from __future__ import annotations
 

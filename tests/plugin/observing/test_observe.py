@@ -1,4 +1,4 @@
-"""A node under observation, on the embedded ROS: what its log holds, and what a comparison makes of it."""
+"""Observe a node on the embedded ROS: the content of its log, and a comparison with it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _other_modules_stay() -> Iterator[None]:
 
 
 def drive(order: Order, runs: list[float], pause: float = 0.0) -> None:
-    """Fill a tank once per entry, whose valve lets so much of the flow through; `pause` is wall time a step."""
+    """Fill a tank once per entry, the share of the flow that its valve passes; `pause` is wall time per step in s."""
     ros = Ros()
     with ros.installed():
         ros.start(lambda: observe(order) and None, name="observe")

@@ -1,4 +1,4 @@
-"""A recorder that is emptied now and then loses nothing and mixes nothing."""
+"""Draining a recorder while it records loses no event and keeps their order."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.sensors import Cell
 
 
 class Emptied(Stream):
-    """A stream with the other end of its pipe."""
+    """A stream whose chunks the test receives."""
 
     def __init__(self) -> None:
         super().__init__()

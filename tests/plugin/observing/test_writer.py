@@ -1,4 +1,4 @@
-"""The writer's process: what was told is in the log, whatever ends first, and the node never waits for it."""
+"""The writer process: sent records reach the log whichever process ends first, and the node never waits."""
 
 from __future__ import annotations
 

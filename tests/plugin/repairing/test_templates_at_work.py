@@ -1,6 +1,6 @@
 """Each template from search to running source: it repairs a node that needs exactly this structural change.
 
-A world tells the node values and wants the commands of a node in which the change has been made by hand.
+The world sends values to the node and expects the commands of a node with the change made by hand.
 """
 
 from __future__ import annotations

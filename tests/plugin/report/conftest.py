@@ -1,4 +1,4 @@
-"""Comparisons made by hand, realistic enough to be looked at."""
+"""Hand-made comparisons with realistic values."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def sites(path: str, written: tuple[tuple[int, str, str, str], ...]) -> tuple[Si
 
 
 def compared(name: tuple[str, str], places: tuple[SitePlace, ...], cells, bad, peak: int) -> ListComparison:
-    """Utilities that rise towards the goal, and fall in the bad cells most at the site `peak`."""
+    """Return utilities that rise towards the goal and fall in the bad cells, most of all at the site `peak`."""
     noise = np.random.default_rng(len(places))
     progress = np.array([cell[0] / 24 for cell in cells])[:, None]
     weight = 1.0 + np.exp(-0.5 * (np.arange(len(places)) - peak) ** 2)
@@ -99,7 +99,7 @@ def compared(name: tuple[str, str], places: tuple[SitePlace, ...], cells, bad, p
 
 
 def replace_slices(one: ListComparison, value: float) -> ListComparison:
-    """Return the list with one value as every slice, as an empty region has it."""
+    """Return the list with the same value for every slice, as for an empty region."""
     slices = tuple(replace(one_slice, offline=value, online=value) for one_slice in one.slices)
     return replace(one, slices=slices)
 
@@ -240,7 +240,7 @@ def two_lists(shuttle: Comparison) -> Comparison:
 
 @pytest.fixture(scope="session")
 def unrepaired(shuttle: Comparison) -> Comparison:
-    """Degraded, and nobody asked for a repair."""
+    """A degraded comparison without a search for a repair."""
     totals = {world: shuttle.totals[world] for world in ("offline", "online")}
     slices_only = tuple(replace(culprit, method="slices", operands=()) for culprit in shuttle.culprits)
     return replace(shuttle, repair=None, searches=(), totals=totals, culprits=slices_only, parts={})
@@ -248,7 +248,7 @@ def unrepaired(shuttle: Comparison) -> Comparison:
 
 @pytest.fixture(scope="session")
 def unchanged(unrepaired: Comparison) -> Comparison:
-    """The off-line world again."""
+    """A comparison of two equal worlds."""
     flat = [replace_slices(one, 0.0) for one in unrepaired.lists]
     noise = np.random.default_rng(5).normal(0, 0.05, unrepaired.lists[0].offline.shape)
     same = tuple(replace(one, online=one.offline + noise) for one in flat)
@@ -267,14 +267,14 @@ def unchanged(unrepaired: Comparison) -> Comparison:
 
 @pytest.fixture(scope="session")
 def placeless(unrepaired: Comparison) -> Comparison:
-    """A loss without any situation that stands out: nothing to sum slices over."""
+    """A loss without a region, so there are no slices."""
     empty = tuple(replace_slices(one, 0.0) for one in unrepaired.lists)
     return replace(unrepaired, region=Region(), paper_region=(), lists=empty)
 
 
 @pytest.fixture(scope="session")
 def listless(unrepaired: Comparison) -> Comparison:
-    """Every site was edited since the recording: a verdict, and no list to show it on."""
+    """A verdict without lists, because every site was edited since the recording."""
     note = "All sites of /odom → /velocity changed since the recording: record again to see slices."
     return replace(unrepaired, lists=(), culprits=(), notes=(note,))
 

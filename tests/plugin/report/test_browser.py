@@ -1,4 +1,4 @@
-"""The page in a real browser: it opens, complains about nothing, asks nobody, and shows what it says it shows."""
+"""The report page in a real browser: no console output, no requests, and the expected content."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ document.body.dataset.found = JSON.stringify({
 
 @dataclass(frozen=True)
 class Seen:
-    """What the browser showed: the probe's findings and the lines of its console."""
+    """The results of the script in the page, and the lines of the browser's console."""
 
     found: dict[str, Any]
     console: list[str]
@@ -115,7 +115,7 @@ def shuttle_seen(browser, shuttle, tmp_path_factory) -> Seen:
 
 @pytest.fixture(scope="session")
 def follower_seen(browser, two_lists, tmp_path_factory) -> Seen:
-    """The page of two lists, in the dark, on a screen too narrow for three panels."""
+    """The page of two lists in dark mode, on a screen too narrow for three panels."""
     return opened(browser, render(two_lists), tmp_path_factory.mktemp("follower"), 500, DARK)
 
 

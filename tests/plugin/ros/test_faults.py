@@ -44,7 +44,7 @@ REPEATER = """
 
 
 def through(fault: Fault, size: float, values: Sequence[float], seed: int = 1) -> list[tuple[float, float]]:
-    """Return when a listener hears which values, if one is published every 0.1 s."""
+    """Return times and values that a subscriber receives if a value is published every 0.1 s."""
     ros = Ros()
     heard: list[tuple[float, float]] = []
     ros.on_delivery(lambda _, message: heard.append((round(ros.now, 6), message.data)))

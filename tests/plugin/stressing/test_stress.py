@@ -1,4 +1,4 @@
-"""`pytest --tarl-stress` as users see it: report, files, promises, mistakes."""
+"""`pytest --tarl-stress` for users: report, files, guarantees, mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Worlds as functions of a drift and a seed: what stress runs find in them is known."""
+"""Worlds as functions of a drift and a seed, with known results of stress runs."""
 
 from __future__ import annotations
 
