@@ -24,7 +24,7 @@ SMALLEST = {
     "bags": ["--seconds", "1"],
     "editing": ["{tmp}"],
     "episodes": ["--episodes", "2"],
-    "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "corridor", "--sizes", "0"],
+    "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "track", "--sizes", "0"],
     "limits": ["--share", "0.001"],
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
     "observe": ["--cycles", "20", "--blocks", "2"],
@@ -77,9 +77,11 @@ def test_what_the_benchmarks_import_is_declared() -> None:
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_every_script_starts(script: Path) -> None:
+def test_every_script_starts_and_knows_the_arguments_of_its_smallest_run(script: Path) -> None:
+    arguments = SMALLEST.get(script.stem, [])
+    arguments = arguments[: arguments.index("--")] if "--" in arguments else arguments
     done = subprocess.run(
-        [sys.executable, script, "--help"], capture_output=True, text=True, cwd=FOLDER.parent
+        [sys.executable, script, *arguments, "--help"], capture_output=True, text=True, cwd=FOLDER.parent
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("usage: ")

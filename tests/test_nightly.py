@@ -17,7 +17,7 @@ from tests.test_benchmarks import named
 ROOT = Path(__file__).parent.parent
 NIGHTLY = (ROOT / ".github" / "workflows" / "nightly.yml").read_text()
 INSTALLED = re.compile(r'pip install .*-e "?\.\[([\w,]+)\]"?(.*)$', re.MULTILINE)
-TESTED = re.compile(r"-m pytest -q ((?:tests\S* ?)+)$", re.MULTILINE)
+TESTED = re.compile(r"-m pytest -q (--noconftest )?((?:tests\S* ?)+)$", re.MULTILINE)
 OWN = {"pytest_tarl", "tarl_lint", "tests"}
 JOBS = {
     name: body
@@ -48,9 +48,8 @@ def test_a_job_installs_what_its_tests_import(job: str) -> None:
     extras, more = INSTALLED.findall(JOBS[job])[0]
     allowed = named({*extras.split(",")}) | {re.sub(r"[-_.]+", "-", one).lower() for one in more.split()}
     known = packages_distributions()
-    paths = [ROOT / path for listed in TESTED.findall(JOBS[job]) for path in listed.split()]
-    assert paths
-    files = {file for path in paths for file in ([path] if path.is_file() else path.rglob("test_*.py"))}
+    files = {file for bare, listed in TESTED.findall(JOBS[job]) for file in run(listed.split(), not bare)}
+    assert files
     missing = {
         (file.relative_to(ROOT).as_posix(), name)
         for file in files
@@ -60,6 +59,16 @@ def test_a_job_installs_what_its_tests_import(job: str) -> None:
         and not guarded(file, name)
     }
     assert not missing
+
+
+def run(paths: list[str], configured: bool) -> Iterator[Path]:
+    """Yield the test modules at some paths and, where they count, the conftest.py of every folder around."""
+    for path in (ROOT / path for path in paths):
+        yield from [path] if path.is_file() else path.rglob("test_*.py")
+        if configured:
+            around = [folder for folder in path.parents if folder.is_relative_to(ROOT)]
+            yield from path.rglob("conftest.py")
+            yield from (found for folder in around if (found := folder / "conftest.py").exists())
 
 
 def guarded(file: Path, name: str) -> bool:

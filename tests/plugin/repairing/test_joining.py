@@ -33,6 +33,10 @@ def test_patches_without_conflict_are_merged_with_the_evidence_of_both(robot: Pa
     combined = read(robot / command.split()[-1])
     assert combined.told("drift") == ["mud", "wind"]
     assert combined.told("again") == [AGAIN, AGAIN]
+    header = combined.path.read_text().partition("\ndiff --git")[0]
+    words = ["part " + first.name, "drift: mud", "part " + second.name, "drift: wind"]
+    found_at = [header.index(word) for word in words]  # whose evidence is whose
+    assert found_at == sorted(found_at)
 
 
 def test_a_conflict_is_reported_with_its_line_and_both_patches_stay(robot: Path) -> None:

@@ -45,7 +45,7 @@ def test_covariances_arrive_bitwise_equal_after_any_earlier_message(sent: list[l
 
 
 def test_errors_name_unknown_types_and_invalid_names() -> None:
-    with pytest.raises(UnsupportedApiError, match="nav_msgs/Odometri is not known here"):
+    with pytest.raises(UnsupportedApiError, match="nav_msgs/Odometri is unknown"):
         message_type("nav_msgs/Odometri")
     with pytest.raises(UnsupportedApiError, match="is not the name of a message type"):
         message_type("Odometry")
