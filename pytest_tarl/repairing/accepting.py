@@ -29,6 +29,7 @@ WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed wit
 OLD_WORLD = 8  # episodes that show the reward of a permanent repair in the old world
 MOST = 5  # candidates to test per search ...
 SHARE = 2  # ... and how many of them may have the same operands while others wait
+WORSE: Reason = "nominal gets worse"
 SCREENED = 20  # candidates to run on fresh seeds per search
 
 
@@ -121,9 +122,21 @@ class Examiner:
             except StopIteration:
                 return None
             examined = self._examined(candidate, trials)
+            if not isinstance(examined, Accepted) and examined.fresh and examined.reason == WORSE:
+                examined = self._conditionally(examined, trials)
             if isinstance(examined, Accepted) or self._exhausted():
                 return examined if isinstance(examined, Accepted) else None
             told = examined
+
+    def _conditionally(self, examined: Tried, trials: Trials) -> Accepted | Tried:
+        """Examine a value that holds in the drifted world and not in the designed one under every condition."""
+        candidate, found = examined.candidate, examined
+        for guard in self.guards if not candidate.guard.conjuncts else ():
+            with_guard = self._examined(replace(candidate, guard=guard, mutations=candidate.changes), trials)
+            if isinstance(with_guard, Accepted) or self._exhausted():
+                return with_guard
+            found = with_guard
+        return found
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""

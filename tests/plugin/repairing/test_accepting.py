@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.model import Guard
+from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.ledger import Refused, furthest
@@ -20,6 +20,7 @@ from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
 
@@ -257,6 +258,32 @@ def test_a_value_whose_missions_succeed_and_earn_too_little_is_moved_back(low: f
     field: Any = Costly(low, 1.6)
     field.order.goal = replace(field.order.goal, passing=True)
     assert low <= accepted_factor(field, (2.6,)) < 1.9
+
+
+def test_a_value_that_was_moved_back_gets_a_condition_if_the_designed_world_needs_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wet = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes",
+        lambda guard, sample, _: () if guard.conjuncts else sample.seeds,
+    )
+
+    class Conditional(Costly):
+        def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+            spoilt = drift is None and candidate != ORIGINAL and seed not in range(100, 140)
+            return Outcome(4.0, passed=True) if spoilt else super().run(candidate, seed, drift)
+
+    field: Any = Conditional(1.3, 1.6)
+    field.order.goal = replace(field.order.goal, passing=True)
+    (first,) = field.candidates
+    tried = replace(first, mutations=(field.mutate(first.mutations[0].operand, 2.6),))
+    examiner = Examiner(field, (ALWAYS, wet))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    accepted = examiner.first(iter([tried]), trials)
+    assert accepted is not None
+    assert accepted.candidate.guard == wet
+    assert float(accepted.candidate.mutations[0].value) < 2.6 * float(first.mutations[0].operand.value or 1)
 
 
 class Narrow(Window):
