@@ -88,7 +88,7 @@ def start(**changes: Any) -> dict[str, Any]:
 
 
 def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, Any]]:
-    """Return the records of a mission, with its steps in `pieces` records."""
+    """Return the records of a mission, with its steps in `pieces` records and its fields in the writer's order."""
     distinct = list(dict.fromkeys(one.cells))
     number = {cell: n for n, cell in enumerate(distinct)}
     column = np.array([number[cell] for cell in one.cells], np.int32)
@@ -97,8 +97,9 @@ def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, 
         {
             "kind": "steps",
             "cells": [list(cell) for cell in distinct],
-            **dict.fromkeys(("site", "cell", "step", "thread"), none),
+            "site": none,
             "flow": packed(np.empty(0)),
+            **dict.fromkeys(("cell", "step", "thread"), none),
             "step_cell": packed(part),
             "reward": packed(amounts),
             "readings": [],

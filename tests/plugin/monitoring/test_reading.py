@@ -20,7 +20,8 @@ from pytest_tarl.monitoring import reading as reading_module
 from pytest_tarl.monitoring.assembling import Expected
 from pytest_tarl.monitoring.mission import Mission, Progress, columns
 from pytest_tarl.monitoring.reading import LogReader
-from pytest_tarl.observing.frames import MAGIC, encoded
+from pytest_tarl.observing.frames import MAGIC, Record, encoded
+from pytest_tarl.observing.observer import Observer
 from pytest_tarl.sensors import binning_digest
 from tests.plugin.monitoring.missions import SENSORS, TEST, content, log, records, start, walks
 
@@ -173,6 +174,41 @@ def test_the_result_does_not_depend_on_block_boundaries(
     whole = MAGIC + encoded(start()) + b"".join(written(kind, number) for number, kind in enumerate(kinds))
     path.write_bytes(whole[: max(len(MAGIC) + len(encoded(start())), len(whole) - torn)])
     assert everything(path, size) == everything(path, 1)
+
+
+@pytest.mark.parametrize("at_start", [True, False])
+def test_short_missions_are_taken_without_decoding_their_records(tmp_path: Path, at_start: bool) -> None:
+    path = log(tmp_path / "m.log", walks(5, 3))
+    with path.open("rb") as file:
+        block = blocks.next_block(file, len(MAGIC))
+        assert block.record()["kind"] == "start"
+        if at_start:  # of a block
+            block = blocks.next_block(file, blocks.end_of(block.spot()))
+        assert [one[4] for one in block.at_once()] == [
+            b"true" if one.passed else b"false" for one in walks(5, 3)
+        ]
+    assert not block.left()
+
+
+def test_the_records_of_these_tests_are_those_of_the_writer(tmp_path: Path) -> None:
+    (walk,) = walks(1, 3)
+    observer = Observer(SENSORS, tmp_path / "m.log", {"sites": [], "sensors": [one.name for one in SENSORS]})
+    observer.begin()
+    for cell, reward in zip(walk.cells, walk.reward, strict=True):
+        observer.stream.latch(cell)
+        observer.step(reward)
+    observer.end(passed=walk.passed)
+    observer.close()
+    with (tmp_path / "m.log").open("rb") as file:
+        block = blocks.next_block(file, len(MAGIC))
+    kept, made = list(records_of(block)), records(walk)
+    assert [[*one] for one in kept[1:]] == [[*one] for one in made]
+    assert all(kept[2][name] == made[1][name] for name in ("cells", "step_cell", "reward", "site"))
+
+
+def records_of(block: blocks.Block) -> Iterator[Record]:
+    while block.left():
+        yield block.record()
 
 
 def test_missions_read_but_not_processed_are_read_again(tmp_path: Path) -> None:
