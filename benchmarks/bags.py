@@ -5,7 +5,7 @@
 A mission of the shuttle is written to bags of each kind, then replayed through the shuttle's node with all sites
 recorded. The bag has odometry, terrain and leg ten times a second, and a picture of 640 × 480 once a second that the
 node does not receive.
-Times are CPU times of the process, the least of three runs.
+Times are CPU times of the process, the minimum of three runs.
 """
 
 from __future__ import annotations

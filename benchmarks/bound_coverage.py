@@ -93,20 +93,20 @@ class World:
         return totals
 
     def mean(self, draws: Generator, n: int, how: Range | None, anytime: bool = False) -> Held:
-        """Tell whether the bounds on the mean hold."""
+        """Return whether the bounds on the mean hold."""
         return holds(mean_of(self.drawn(draws, n), CONFIDENCE, how, anytime=anytime), self.truth[0])
 
     def quantile(self, draws: Generator, n: int) -> Held:
-        """Tell whether the bound on the quantile holds; True if the sample is too small for one."""
+        """Return whether the bound on the quantile holds; True if the sample is too small for one."""
         low = quantile_low(self.drawn(draws, n), QUANTILE, CONFIDENCE)
         return low is None or low <= self.truth[1], True
 
     def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
-        """Tell whether the bounds on a loss hold if there is no loss."""
+        """Return whether the bounds on a loss hold if there is no loss."""
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Tell whether an acceptance's bets stay below the limit for n episodes whose mean loses exactly the margin."""
+        """Return whether bets of an acceptance stay below the limit for n episodes that lose exactly the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin
@@ -116,23 +116,23 @@ class World:
         return all(stakes.wealth(seen[:end]) < log(1 / (1 - CONFIDENCE)) for end in ends), True
 
     def welch(self, draws: Generator, n: int) -> Held:
-        """Tell whether Welch's bounds hold."""
+        """Return whether Welch's bounds hold."""
         low, high = difference_bounds(self.drawn(draws, OFFLINE), self.drawn(draws, n), 1 - CONFIDENCE)
         return low <= 0.0, high >= 0.0
 
 
 def holds(bound: Bound, truth: float) -> Held:
-    """Tell whether the lower and the upper bound hold."""
+    """Return whether the lower and the upper bound hold."""
     return bound.low <= truth, truth <= bound.high
 
 
 def rate_holds(p: float, draws: Generator, n: int) -> Held:
-    """Tell whether the bounds on a rate hold."""
+    """Return whether the bounds on a rate hold."""
     return holds(rate(int((draws.random(n) < p).sum()), n, CONFIDENCE), p)
 
 
 def sequence_holds(p: float, draws: Generator, n: int) -> Held:
-    """Tell whether the bounds on a rate hold after every one of n episodes."""
+    """Return whether the bounds on a rate hold after every one of n episodes."""
     passed = np.cumsum(draws.random(n) < p)
     barred = log(1 / (1 - CONFIDENCE))
     ends = range(1, n + 1, max(1, n // 50))

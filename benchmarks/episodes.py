@@ -2,7 +2,7 @@
 
     python benchmarks/episodes.py [--episodes 200]
 
-Times are CPU times of the process, the least of several rounds. The empty test has no world, no node and one sensor.
+Times are CPU times of the process, the minimum of several rounds. The empty test has no world, no node and one sensor.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def _fill(message: Any, step: int, depth: int) -> None:
 
 
 def fields_of(value: Any) -> bool:
-    """Tell whether a value is a message with fields to fill; times are not."""
+    """Return whether a value is a message with fields to fill; times are not."""
     kind = type(value).__name__
     return (
         kind not in ("Time", "Duration")

@@ -111,7 +111,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def _runs(statement: ast.stmt) -> bool:
-    """Tell whether a top-level statement may start a node: the guard of a script, or a call."""
+    """Return whether a top-level statement may start a node: the guard of a script, or a call."""
     if isinstance(statement, ast.If):
         return re.search(r"__name_", ast.unparse(statement.test)) is not None
     text = "" if isinstance(statement, ast.FunctionDef | ast.ClassDef) else ast.unparse(statement)

@@ -1,12 +1,12 @@
-"""Compare what TARL reads of launch files, without executing anything, with what roslaunch and launch make of them.
+"""Compare launch files as TARL reads them, without executing anything, with the results of roslaunch and launch.
 
     python benchmarks/launch_files.py FOLDER... --ros1 PYTHON[:PATH] --ros2 PYTHON[:PATH...] [--show N]
 
-Each FOLDER holds checkouts, one folder a repository. `--ros1` is an interpreter with Debian's python3-roslaunch,
-`--ros2` one with the sources of launch, launch_xml, launch_yaml and launch_ros; both in a throw-away environment, since
-they do execute launch files. Arguments without a default get the value `true`. Counted are nodes (package, program,
-namespace, name), remappings and parameters: those on which both agree, of all that either names. What a command prints
-and files that are not in the checkout are counted apart, as are launch files that the original refuses.
+Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch,
+`--ros2` one with the sources of launch, launch_xml, launch_yaml and launch_ros; use both in a disposable
+environment, since they execute launch files. Arguments without a default get the value `true`. The figures count
+nodes (package, program, namespace, name), remappings and parameters: the share on which both agree. Outputs of
+commands, files outside the checkout, and launch files that the original refuses are counted separately.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # what the original cannot
 
 
 def main() -> None:
-    """Print a table, and where the two differ."""
+    """Print a table, and the differences."""
     parser = argparse.ArgumentParser()
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--ros1")
@@ -108,7 +108,7 @@ def _compared(workspace: Workspace, files: Sequence[Path], python: str, name: st
 
 
 def _required(file: Path) -> dict[str, str]:
-    """Return a value for each argument that has none."""
+    """Return a value for each argument without a default."""
     if file.suffix in (".py", ".yaml", ".yml"):
         return {}
     try:

@@ -179,7 +179,7 @@ def _bare(machine: Linker) -> set[Pair]:
 
 
 def _argument_of(pos: Pos, call: Pos) -> bool:
-    """Tell whether an expression is the last argument of a call, or the last part of it."""
+    """Return whether an expression is the last argument of a call, or the last part of it."""
     return pos != call and (pos[0], pos[2], pos[3] + 1) == (call[0], call[2], call[3])
 
 

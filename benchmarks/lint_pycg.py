@@ -90,7 +90,7 @@ class Calls(Linker):
 
 
 def _own(frame: Frame) -> bool:
-    """Tell whether a frame is a function or module of the files, not one of the interpreter."""
+    """Return whether a frame is a function or module of the files, not one of the interpreter."""
     return not (isinstance(frame.key, tuple) and frame.key[0] == "root")
 
 

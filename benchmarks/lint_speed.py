@@ -5,7 +5,7 @@
 For every tree: lines, CPU seconds of `ast.parse` over all .py files, of tarl-lint without a cache, with a warm
 one, and of Semgrep with a taint rule from subscriber callbacks to publish; the ratios, and the peak memory of
 tarl-lint, including children. The last tree is copied under other package names and linted once, twice
-and four times as large. CPU time includes all processes; each figure is the least of the repetitions. Suitable
+and four times as large. CPU time includes all processes; each figure is the minimum of the repetitions. Suitable
 public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from
 PyPI, the standard library. Python writes bytecode, as for an installed package.
 """
@@ -90,7 +90,7 @@ def cost(command: Sequence[str], *, given: str = "", directory: Path | None = No
 def least(
     command: Sequence[str], repetitions: int, *, given: str = "", directory: Path | None = None
 ) -> Cost:
-    """Return the least cost of several runs of a command."""
+    """Return the minimum cost of several runs of a command."""
     costs = [cost(command, given=given, directory=directory) for _ in range(repetitions)]
     return Cost(min(c.cpu for c in costs), max(c.memory for c in costs))
 

@@ -203,7 +203,7 @@ def tried(fault: Fault, copy: Path, tests: Iterable[str], seconds: Mapping[str, 
 
 
 def fails(copy: Path, tests: Sequence[str], limit: float) -> bool:
-    """Tell whether one of the tests fails. Raises TimeoutExpired if they exceed the limit in seconds."""
+    """Return whether one of the tests fails. Raises TimeoutExpired if they exceed the limit in seconds."""
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", *tests]
     with subprocess.Popen(
         command,

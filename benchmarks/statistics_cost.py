@@ -4,7 +4,7 @@
     python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
 
 Not called statistics.py, because that would shadow the standard module for scripts in this folder.
-Times are CPU times of this process, the least of several; the speed-up by workers is wall time.
+Times are CPU times of this process, the minimum of several; the speed-up by workers is wall time.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ def recorded_example(example: str, test: str, episodes: int, workers: int) -> tu
 
 
 def least(work: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the least CPU time of several runs, in seconds."""
+    """Return the minimum CPU time of several runs, in seconds."""
     times = []
     for _ in range(repeats):
         before = time.process_time()

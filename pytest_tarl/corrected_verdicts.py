@@ -39,7 +39,7 @@ def _with_verdict(comparison: Comparison, verdict: Verdict, tests: int, alpha: f
 
 
 def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]:
-    """Return a warning if no difference, however large, could be significant among so many comparisons."""
+    """Return a warning if no difference could be significant after correction, however large it is."""
     offline, online = (len(comparison.totals[world]) for world in ("offline", "online"))
     least = least_p_value(offline, online, permutations_for(alpha, tests))
     if tests * least >= alpha:

@@ -49,7 +49,8 @@ FLAGS = (
     Flag("--tarl-repair", "with --tarl-online: search for a repair and write a patch", asks=True),
     Flag(
         "--tarl-drift",
-        "with --tarl-online: compare only this scenario; with --tarl-record: make this permanent drift the design",
+        "with --tarl-online: compare only this scenario; with --tarl-record: record under this permanent drift, "
+        "which becomes part of the design",
         asks=True,
         metavar="NAME",
     ),

@@ -83,7 +83,7 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Where the deployed world differs: cells that its episodes visited, and those of them never seen in the recording.
+    """The region of a difference: cells that deployed episodes visited, and which of them the recording lacks.
 
     `left` are recorded cells that deployed episodes avoid. If all deployed cells are new, `without` are the indices
     of the sensors left out so that cells can be compared.

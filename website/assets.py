@@ -118,5 +118,5 @@ def unpack(package: Package, tarball: bytes) -> None:
 
 
 def available(package: Package) -> bool:
-    """Tell whether a package is there without the network."""
+    """Return whether a package is there without the network."""
     return package.stamp.exists()

@@ -67,7 +67,7 @@ def blocks(page: str) -> list[Block]:
 
 
 def same(shown: str, printed: str) -> bool:
-    """Tell whether the output that a page shows is what was printed, apart from what varies and what is left out."""
+    """Return whether the output that a page shows is what was printed, apart from what varies and what is left out."""
     parts = [re.escape(VARIES.sub("~", part)) for part in LEFT_OUT.split(shown)]
     return re.fullmatch("(?:.*\n)*?".join(parts), VARIES.sub("~", printed)) is not None
 

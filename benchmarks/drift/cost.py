@@ -53,7 +53,7 @@ def counted(folder: Path) -> int:
 
 
 def one(task: str, size: int, seed: int) -> dict[str, Any]:
-    """Repair a task with about so many operands."""
+    """Repair a task with about this number of operands."""
     with tempfile.TemporaryDirectory() as parent:
         folder = Path(parent).resolve() / task
         shutil.copytree(HERE / task, folder, ignore=shutil.ignore_patterns("__pycache__"))

@@ -43,7 +43,7 @@ COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # for the pairs of all operands
 EPISODES = 24
 RESTORED = 0.95
 SCREENED = 3  # episodes of which a candidate may lose none ...
-MOST_LOST = 2  # ... and of all of them not more than so many
+MOST_LOST = 2  # ... and of all of them at most this many
 
 Change = tuple[Mutation, ...]
 

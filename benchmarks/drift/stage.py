@@ -57,7 +57,7 @@ class Stage:
 
     @property
     def permanent(self) -> bool:
-        """Tell whether the drift is a change for good, so that the designed world is asked no longer."""
+        """Return whether the drift is a change for good, so that the designed world is asked no longer."""
         return self.marked.drifts[self.drift].permanent
 
     @cached_property

@@ -158,7 +158,7 @@ def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
 
 
 def both(result: Result) -> bool:
-    """Tell whether a repair was accepted and holds in both worlds; after a change for good the old one is not asked."""
+    """Return whether a repair was accepted and holds in both worlds; for a permanent drift the old one is ignored."""
     nominal = result["nominal restored"] or result.get("permanent", False)
     return bool(result["accepted"] and result["drifted restored"] and nominal)
 

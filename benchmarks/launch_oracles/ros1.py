@@ -1,4 +1,4 @@
-"""What roslaunch makes of launch files: `python3 ros1.py < request > answer`, with Debian's python3-roslaunch.
+"""The result of roslaunch for launch files: `python3 ros1.py < request > answer`, with Debian's python3-roslaunch.
 
 Nothing is started. Commands of `<param command>` are not run, and files and packages that are not there are skipped, as
 in a workspace with stub packages; environment variables have `ENV_` and their name as value.
@@ -18,7 +18,7 @@ COMMAND = "<what a command prints>"
 
 
 def patch(packages):
-    """Have packages of the workspace found, and what is missing skipped."""
+    """Make roslaunch find packages of the workspace and skip missing ones."""
     rospkg.RosPack.get_path = lambda self, name: packages.get(name, f"/absent/{name}")
     substitution._eval_env = lambda name: f"ENV_{name}"
     substitution._eval_anon = lambda id, anons: id

@@ -1,4 +1,4 @@
-"""What `launch` and `launch_ros` make of launch files: `python ros2.py < request > answer`, with their sources.
+"""The result of `launch` and `launch_ros` for launch files: `python ros2.py < request > answer`, with their sources.
 
 The description is visited as the launch service does, but no process is started. Packages of the workspace are found in
 their source folders, other packages and files that are not there are skipped.
@@ -29,7 +29,7 @@ NODES = []
 
 
 def patch(packages):
-    """Have packages of the workspace found; record nodes instead of starting them."""
+    """Make launch find packages of the workspace, and record nodes instead of starting them."""
     home = os.path.dirname(os.path.dirname(launch.__file__))
     packages = {"launch": f"{home}/share/launch", **packages}
     absent = lambda name: packages.get(name, f"/absent/{name}")
@@ -67,7 +67,7 @@ def _location(action):
 
 
 def _parameters(arguments):
-    """Return the parameters of a node from the files and rules that it gets, flat, by name."""
+    """Return the parameters of a node from its files and rules, as a flat mapping by name."""
     found = {}
     for text, is_file in arguments or ():
         if is_file and os.path.isfile(text):
@@ -89,7 +89,7 @@ def _flat(values, above=""):
 
 
 def visit(entity, context):
-    """Visit an entity and what it leads to, but timers and event handlers."""
+    """Visit an entity and the entities it creates, except timers and event handlers."""
     for one in entity.visit(context) or ():
         if isinstance(one, launch.launch_description_entity.LaunchDescriptionEntity):
             visit(one, context)

@@ -38,7 +38,7 @@ class Way:
 
     @property
     def arrived(self) -> bool:
-        """Tell whether the goal is reached."""
+        """Return whether the goal is reached."""
         return self.place > 4.8
 
     def step(self) -> None:

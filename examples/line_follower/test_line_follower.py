@@ -1,4 +1,4 @@
-"""What the line follower is for, as a simulation test that TARL can learn from."""
+"""The task of the line follower, as a simulation test for TARL."""
 
 import pytest
 from world import LENGTH, World

@@ -1,4 +1,4 @@
-"""What the quadrotor is for, as a simulation test that TARL can learn from."""
+"""The task of the quadrotor, as a simulation test for TARL."""
 
 import pytest
 from world import World

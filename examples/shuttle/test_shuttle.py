@@ -1,4 +1,4 @@
-"""What the delivery robot is for, as simulation tests that TARL can learn from."""
+"""The task of the delivery robot, as simulation tests for TARL."""
 
 import pytest
 from world import G1, G2, World
@@ -32,7 +32,7 @@ def test_delivers(tarl: Tarl, tarl_drift: float | None) -> None:
 
 @pytest.mark.tarl(nodes=["traveller.py"], sensors=[X, TERRAIN, LEG], drifts=MUD, min_success=0.98)
 def test_shuttles(tarl: Tarl, tarl_drift: float | None) -> None:
-    """Bring one parcel there and another one back; position alone does not tell which way the robot goes."""
+    """Deliver one parcel at the goal and one at the start; the position does not show the direction of travel."""
     world = World(tarl.rng("world"), mud=tarl_drift or 1.0, goals=(G2, G1))
     drive(tarl, "traveller.py", world)
     assert world.delivered, world.failure

@@ -79,7 +79,7 @@ class Bag:
 
 
 def opened(path: Path) -> Bag:
-    """Open a bag. Raise LogError, with the reason, if nothing of it can be read."""
+    """Open a bag. Raise LogError, with the reason, if no message can be read."""
     if not path.exists():
         raise LogError(f"{path}: no such bag.")
     if not path.is_dir() and not path.name.endswith(ENDINGS):

@@ -17,7 +17,7 @@ from pytest_tarl.patching.reading import Patch, read
 
 
 def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial: bool = False) -> list[str]:
-    """Apply patches and return what to tell. Raise RefusedError and change nothing if a check fails."""
+    """Apply patches and return the lines to print. Raise RefusedError and change nothing if a check fails."""
     patches = [read(path) for path in paths]
     if not partial:
         whole(patches)
@@ -37,7 +37,7 @@ def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial
 
 
 def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
-    """Undo patches and return what to tell. Raise RefusedError if one is not applied or its lines were edited."""
+    """Undo patches and return the lines to print. Raise RefusedError if one is not applied or its lines were edited."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
     if any(target.done for target in targets):  # not reached by an interrupted `tarl apply`

@@ -1,7 +1,7 @@
 """The log: a line that names the format, then records, each with its length and a checksum, appended one by one.
 
-A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. However the
-writer ends, all complete records can be read; the next writer truncates an incomplete one.
+A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. All
+complete records can be read even if the writer was killed; the next writer removes an incomplete one.
 
 FORMAT history:
 1  Records start, mission, steps, end. Where there are formulas, steps and end also hold `changes` of signals, steps

@@ -190,7 +190,7 @@ class Observer:
             self._outlet.put("cells", cut.cells)
 
     def _taken(self) -> list[list[Any]]:
-        """Return the changes of signals that are not written yet."""
+        """Return the changes of signals that have not been written yet."""
         taken = []
         while self._changes:
             taken.append(self._changes.popleft())

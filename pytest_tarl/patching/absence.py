@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Tell whether the code at or around a place cannot complete anyway while `code` is None."""
+    """Return whether the code at or around a place cannot complete anyway while `code` is None."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place
@@ -30,7 +30,7 @@ def is_checked(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
-    """Tell whether an earlier statement of the same block raises, leaves the block or waits while `code` is None."""
+    """Return whether an earlier statement of the same block raises, leaves the block or waits while `code` is None."""
     if not isinstance(statement, ast.stmt):
         return False
     block = source.block(statement)
@@ -47,7 +47,7 @@ def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
 
 
 def _relies_on(statement: ast.stmt, code: str) -> bool:
-    """Tell whether a statement always evaluates an operation on `code` that raises for None."""
+    """Return whether a statement always evaluates an operation on `code` that raises for None."""
     if hasattr(statement, "body"):
         return False
     waiting: list[ast.AST] = [statement]
@@ -84,7 +84,7 @@ def _breaks(loop: ast.While) -> bool:
 
 
 def _implies(test: ast.expr, code: str, present: bool) -> bool:
-    """Tell whether `code` is not None if the test is true (`present=True`) or false (`present=False`)."""
+    """Return whether `code` is not None if the test is true (`present=True`) or false (`present=False`)."""
     if isinstance(test, ast.BoolOp):
         decisive = ast.And if present else ast.Or
         return isinstance(test.op, decisive) and any(_implies(each, code, present) for each in test.values)

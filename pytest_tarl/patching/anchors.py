@@ -43,7 +43,7 @@ class Anchor:
 
     @property
     def annotated(self) -> bool:
-        """Tell whether the surrounding function has a return annotation."""
+        """Return whether the surrounding function has a return annotation."""
         function = self.source.function(self.statement)
         return function is not None and function.returns is not None
 
@@ -88,7 +88,7 @@ def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
 
 
 def is_ros2(source: Document, api: str = "") -> bool:
-    """Tell whether code uses rclpy rather than rospy."""
+    """Return whether code uses rclpy rather than rospy."""
     if api.startswith(("rclpy", "rospy")):
         return api.startswith("rclpy")
     modules = {

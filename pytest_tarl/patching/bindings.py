@@ -63,7 +63,7 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
-    """Tell whether evaluating `a.b.c` at a place cannot raise unless the surrounding code raises as well."""
+    """Return whether evaluating `a.b.c` at a place cannot raise unless the surrounding code raises as well."""
     chain = prefixes(code)
     read = {ast.unparse(node) for node in _read_at(place)}
     if code in read:
@@ -100,14 +100,14 @@ def _read_at(place: ast.AST) -> Iterator[ast.expr]:
 
 
 def _has_name(source: Document, place: ast.AST, name: str) -> bool:
-    """Tell whether a name is local at a place, or assigned when the module is imported."""
+    """Return whether a name is local at a place, or assigned when the module is imported."""
     if scope(source, place, name) is not None:
         return True
     return any(each.target == name and source.function(each.node) is None for each in bindings(source))
 
 
 def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
-    """Tell whether an attribute of `self` exists from the start; attributes of other objects are assumed to exist."""
+    """Return whether an attribute of `self` exists from the start; attributes of other objects are assumed to exist."""
     method = source.method(place)
     if method is None or len(chain) < 2 or chain[0] != method[2]:
         return True

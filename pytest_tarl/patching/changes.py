@@ -97,7 +97,7 @@ class FilePatch:
 
 
 def identical(content: bytes, name: str) -> bool:
-    """Tell whether `name` is git's blob id of the content."""
+    """Return whether `name` is git's blob id of the content."""
     return blob_id(content) == name
 
 

@@ -102,12 +102,12 @@ class Document:
         return (match and match.group(1)) or ""
 
     def alone(self, node: ast.stmt) -> bool:
-        """Tell whether no other statement shares the lines of this one."""
+        """Return whether no other statement shares the lines of this one."""
         after = self.text[self.end(node) : self.line_end(node)].strip(" \t\f")
         return self.leads(node) and after[:1] in ("", "#")
 
     def leads(self, node: ast.stmt) -> bool:
-        """Tell whether a statement is the first on its line."""
+        """Return whether a statement is the first on its line."""
         return not self.text[self.line_starts[node.lineno - 1] : self.start(node)].strip(" \t\f")
 
     def at(self, span: Span) -> ast.expr | None:

@@ -126,7 +126,7 @@ def choice(condition: str, then: str, otherwise: str) -> str:
 
 
 def counting(source: Document, node: ast.expr) -> bool:
-    """Tell whether a place needs an integer: an index, a length, or a code that is compared for equality."""
+    """Return whether a place needs an integer: an index, a length, or a code that is compared for equality."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Div | ast.Pow | ast.Mod):
@@ -139,7 +139,7 @@ def counting(source: Document, node: ast.expr) -> bool:
 
 
 def _repeats(operation: ast.BinOp) -> bool:
-    """Tell whether a product repeats a sequence."""
+    """Return whether a product repeats a sequence."""
     sides = (operation.left, operation.right)
     texts = any(isinstance(side, ast.Constant) and isinstance(side.value, str | bytes) for side in sides)
     return isinstance(operation.op, ast.Mult) and (
@@ -158,7 +158,7 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
 
 
 def _is_integer_vector(node: ast.AST) -> bool:
-    """Tell whether a node is a literal list of at least two integers: a colour, a pixel, a shape."""
+    """Return whether a node is a literal list of at least two integers: a colour, a pixel, a shape."""
     elements = node.elts if isinstance(node, ast.List | ast.Tuple) else []
     numbers = [each.operand if isinstance(each, ast.UnaryOp) else each for each in elements]
     return len(numbers) > 1 and all(

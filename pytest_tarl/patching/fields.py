@@ -15,7 +15,7 @@ _SHAPING = ast.BinOp | ast.UnaryOp | ast.IfExp | ast.List | ast.Tuple
 
 
 def in_integer_field(source: Document, node: ast.expr) -> bool:
-    """Tell whether an expression becomes (part of) the value of an integer field of a message."""
+    """Return whether an expression becomes (part of) the value of an integer field of a message."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.keyword) and parent.arg is not None:
@@ -33,14 +33,14 @@ def in_integer_field(source: Document, node: ast.expr) -> bool:
 
 
 def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bool:
-    """Tell whether a positional argument of a message constructor is an integer field."""
+    """Return whether a positional argument of a message constructor is an integer field."""
     name = _type_name(source, call.func)
     at = next(at for at, each in enumerate(call.args) if each is argument)
     return _INTEGER.match([*_fields(name).values(), *[""] * (at + 1)][at]) is not None
 
 
 def _takes_integer(source: Document, target: ast.expr) -> bool:
-    """Tell whether a target such as `self.out.status.code` is an integer field of a message created in this file."""
+    """Return whether a target such as `self.out.status.code` is an integer field of a message created in this file."""
     fields: list[str] = []
     while isinstance(target, ast.Attribute | ast.Subscript):
         if isinstance(target, ast.Attribute):
@@ -64,7 +64,7 @@ def _constructors(source: Document) -> dict[str, ast.expr]:
 
 
 def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bool:
-    """Tell whether a field of a message type, named as in this file, holds integers."""
+    """Return whether a field of a message type, named as in this file, holds integers."""
     found = _type_name(source, kind)
     for field in fields:
         found = _fields(found).get(field, "")

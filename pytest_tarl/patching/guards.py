@@ -38,12 +38,12 @@ def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str
 
 
 def always(conjunct: Conjunct) -> bool:
-    """Tell whether a condition holds for every value."""
+    """Return whether a condition holds for every value."""
     return conjunct.low == -math.inf and conjunct.high == math.inf
 
 
 def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
-    """Tell whether a sensor is boolean."""
+    """Return whether a sensor is boolean."""
     plain = not sensor.numeric and not sensor.categories
     return (
         plain and sensor.field == "data" and topics.get(sensor.topic or "", "").rpartition("/")[2] == "Bool"
@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Tell whether a condition can hold before the first message; the fields of new messages are zero."""
+    """Return whether a condition can hold before the first message; the fields of new messages are zero."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)
@@ -122,7 +122,7 @@ def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
 
 
 def _is_top(sensor: Sensor, value: float) -> bool:
-    """Tell whether a bound is the upper end of a sensor's range, up to rounding."""
+    """Return whether a bound is the upper end of a sensor's range, up to rounding."""
     return sensor.numeric and math.isclose(value, sensor.high or 0.0, rel_tol=1e-9, abs_tol=1e-9)
 
 
@@ -139,6 +139,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Tell whether a test is False for None instead of raising."""
+    """Return whether a test is False for None instead of raising."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

@@ -94,7 +94,7 @@ def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> s
 
 
 def same_change(first: Patch, second: Patch) -> bool:
-    """Tell whether two patches make the same changes."""
+    """Return whether two patches make the same changes."""
     return first.files == second.files
 
 
@@ -119,7 +119,7 @@ def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
 
 
 def _clash(one: Replacement, other: Replacement) -> bool:
-    """Tell whether two replacements overlap; pure insertions overlap nothing."""
+    """Return whether two replacements overlap; pure insertions overlap nothing."""
     if one == other or agreed(one, other) is not None:
         return False
     return one.start < other.end and other.start < one.end

@@ -68,7 +68,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Tell whether the operand's place needs an integer: an index, a length, a compared code or an integer field."""
+    """Return whether the operand's place needs an integer: an index, a length, a compared code or an integer field."""
     source = _document(analysis, operand.span.path)
     return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
@@ -280,7 +280,7 @@ def _change(source: Document, mutation: Mutation) -> Change:
 
 
 def _whole(source: Document, node: ast.expr) -> bool:
-    """Tell whether a place needs an integer."""
+    """Return whether a place needs an integer."""
     return counting(source, node) or in_integer_field(source, node)
 
 

@@ -39,7 +39,7 @@ class Patch:
 
     @property
     def sealed(self) -> bool:
-        """Tell whether the patch contains its digest; `read` has checked it."""
+        """Return whether the patch contains its digest; `read` has checked it."""
         return bool(self.told(SEAL))
 
     @property
@@ -91,7 +91,7 @@ def read(path: Path) -> Patch:
 
 
 def _whole(content: bytes, seals: Sequence[str]) -> bool:
-    """Tell whether the digest matches; True for a patch without one."""
+    """Return whether the digest matches; True for a patch without one."""
     if not seals:
         return True
     line = f"# {SEAL}: {seals[0]}\n".encode("utf-8", "surrogateescape")
@@ -99,7 +99,7 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 
 
 def _inside(name: str) -> bool:
-    """Tell whether a relative name stays below its base folder and outside `.git`."""
+    """Return whether a relative name stays below its base folder and outside `.git`."""
     parts = name.split("/")
     odd = PurePosixPath(name).is_absolute() or "\\" in name or not name.isprintable()
     return not odd and not {"", ".", ".."} & set(parts) and ".git" not in map(str.lower, parts)

@@ -58,7 +58,7 @@ def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
 
 
 def _added(before: Imports, after: Imports) -> bool:
-    """Tell whether all earlier imports remain."""
+    """Return whether all earlier imports remain."""
     return all(names.keys() <= after.get(where, {}).keys() for where, names in before.items())
 
 

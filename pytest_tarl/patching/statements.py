@@ -58,7 +58,7 @@ def lazy(source: Document, node: ast.expr) -> ast.expr | None:
 
 
 def doubled(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Tell whether a statement may be written twice, once for each case."""
+    """Return whether a statement may be written twice, once for each case."""
     short = (statement.end_lineno or 0) - statement.lineno < LONGEST_COPY
     late = any(lazy(source, change.node) for change in changes)
     plain = isinstance(statement, _SIMPLE) and source.alone(statement)
@@ -101,7 +101,7 @@ def named(source: Document, statement: ast.stmt, name: str, condition: str) -> E
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Tell whether a condition computed just before a statement still applies when its expressions are evaluated."""
+    """Return whether a condition computed just before a statement still applies when its expressions are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -147,7 +147,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Tell whether a statement runs code that may change the value of a condition; arithmetic does not."""
+    """Return whether a statement runs code that may change the value of a condition; arithmetic does not."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True
@@ -161,14 +161,14 @@ def _is_elif(source: Document, statement: ast.stmt) -> bool:
 
 
 def _consumed(source: Document, generator: ast.GeneratorExp) -> bool:
-    """Tell whether a generator is an argument of a builtin that consumes it at once."""
+    """Return whether a generator is an argument of a builtin that consumes it at once."""
     call = source.parents[generator]
     eager = {"sum", "min", "max", "any", "all", "list", "tuple", "set", "sorted", "dict"}
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in eager
 
 
 def _has_long_text(statement: ast.stmt) -> bool:
-    """Tell whether a string spans several lines, so that indenting the statement would change it."""
+    """Return whether a string spans several lines, so that indenting the statement would change it."""
     texts = (node for node in ast.walk(statement) if isinstance(node, ast.Constant | ast.JoinedStr))
     return any(node.end_lineno != node.lineno for node in texts)
 

@@ -144,7 +144,7 @@ def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _always_evaluated(source: Document, statement: ast.stmt, node: ast.expr) -> bool:
-    """Tell whether a statement evaluates an expression exactly once each time it runs."""
+    """Return whether a statement evaluates an expression exactly once each time it runs."""
     inner: ast.AST = node
     for around in source.ancestors(node):
         if around is statement:

@@ -178,7 +178,7 @@ class Examiner:
         return self._on_fresh_seeds(candidate)
 
     def _goes_further(self, candidate: Candidate) -> bool:
-        """Tell whether a smaller step of the same operands under the same guard broke the designed world."""
+        """Return whether a smaller step of the same operands under the same guard broke the designed world."""
         return any(
             one.reason == "nominal gets worse"
             and one.candidate.guard == candidate.guard
@@ -308,5 +308,5 @@ class Examiner:
 
 
 def _narrower(guard: Guard, known: Guard) -> bool:
-    """Tell whether a guard is stricter than a known one because it adds conditions to it."""
+    """Return whether a guard is stricter than a known one because it adds conditions to it."""
     return bool(known.conjuncts) and set(known.conjuncts) < set(guard.conjuncts)

@@ -90,7 +90,7 @@ def stronger(
 
 
 def further(candidate: Candidate, other: Candidate) -> bool:
-    """Tell whether a candidate moves the same operands as another one in the same direction, at least as far."""
+    """Return whether a candidate moves the same operands as another one in the same direction, at least as far."""
     mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
     if mine.keys() != its.keys():
         return False

@@ -67,7 +67,7 @@ def operands(candidate: Candidate) -> frozenset[Operand]:
 
 
 def alike(one: Candidate, other: Candidate) -> bool:
-    """Tell whether two candidates have the same operands and guard, and values within 5 %."""
+    """Return whether two candidates have the same operands and guard, and values within 5 %."""
     if one.guard != other.guard or operands(one) != operands(other):
         return False
     values = {mutation.operand: mutation for mutation in other.mutations}

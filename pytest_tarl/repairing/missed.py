@@ -38,7 +38,7 @@ class Missed:
             self.poor.add(candidate)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Tell whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
+        """Return whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
             lost += _loses(candidate, trials, goal, seed, near)
@@ -47,7 +47,7 @@ class Missed:
         return False
 
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Tell whether a candidate loses none of the few missions that a refused one lost. Raises BudgetSpentError."""
+        """Return whether a candidate loses none of the missions that a refused one lost. Raises BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
 
 

@@ -69,7 +69,7 @@ class Others:
                     break
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Tell whether close values on both sides lost few missions, which indicates a narrow window between them."""
+        """Return whether close values on both sides lost few missions, which indicates a narrow window between them."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)

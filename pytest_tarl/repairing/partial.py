@@ -74,7 +74,7 @@ def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | Non
 
 
 def _mild(mutants: Mutants, candidate: Candidate) -> bool:
-    """Tell whether a candidate loses at most the margin in a few recorded episodes of the designed world."""
+    """Return whether a candidate loses at most the margin in a few recorded episodes of the designed world."""
     if mutants.order.permanent:
         return True
     sample, margin = mutants.order.fixture.sample, mutants.order.reference.margin

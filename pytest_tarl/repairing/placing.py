@@ -115,7 +115,7 @@ class Placing:
     def _moves(
         self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
     ) -> bool:
-        """Tell whether a change at one of these places alters the reward of an episode."""
+        """Return whether a change at one of these places alters the reward of an episode."""
         pair = self.order.goal.pairs[0]
         for place in places:
             alone = Candidate((replace(mutation, place=place),), candidate.guard)

@@ -76,7 +76,7 @@ def _stratum(order: Order, seed: int) -> int:
 
 
 def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
-    """Tell whether a candidate loses at most the margin on average in a part of the range."""
+    """Return whether a candidate loses at most the margin on average in a part of the range."""
     lost = [
         designed - outcome.total
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=True)

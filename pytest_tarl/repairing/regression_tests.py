@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Tell whether a test's nodes are among the changed files, or a node or the test mentions one of them."""
+    """Return whether a test's nodes are among the changed files, or a node or the test mentions one of them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]

@@ -66,7 +66,7 @@ class Order:
 
     @property
     def permanent(self) -> bool:
-        """Tell whether the world has changed permanently; the designed world is then history and is not tested."""
+        """Return whether the world has changed permanently; the designed world is then history and is not tested."""
         return self.comparison.permanent
 
     @cached_property

@@ -72,7 +72,7 @@ def _mean_where(order: Order, conjunct: Conjunct) -> float | None:
 
 
 def _rests_at_zero(order: Order, sensor: Sensor) -> bool:
-    """Tell whether a sensor is about zero in nearly all recorded steps."""
+    """Return whether a sensor is about zero in nearly all recorded steps."""
     bins = list(_bins(order, order.fixture.sample, sensor))
     near = sum(count for low, high, count in bins if low <= 0.0 < high)
     return near >= REST * sum(count for _, _, count in bins) > 0.0

@@ -211,7 +211,7 @@ def _passed(call: ast.Call) -> Iterator[ast.expr]:
 
 
 def _computes(node: ast.expr) -> bool:
-    """Tell whether an expression may yield a number: a function call or a conditional expression."""
+    """Return whether an expression may yield a number: a function call or a conditional expression."""
     return isinstance(node, ast.IfExp) or (isinstance(node, ast.Call) and not _makes_an_object(node))
 
 
@@ -220,7 +220,7 @@ def _makes_an_object(call: ast.Call) -> bool:
 
 
 def _is_numeric(node: ast.expr) -> bool:
-    """Tell whether an expression computes a number."""
+    """Return whether an expression computes a number."""
     if isinstance(node, ast.BinOp):
         return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
     if isinstance(node, ast.UnaryOp):

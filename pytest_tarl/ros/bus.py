@@ -159,7 +159,7 @@ class Bus:
         return list(self._topics.values())
 
     def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
-        """Publish a copy of a node's message: to the world at once, to other nodes when this one waits."""
+        """Publish a copy of a node's message: to the world at once, and to other nodes when this one waits."""
         message = snapshot(message)
         self.published[place.name] += 1
         place.carried = True
@@ -171,7 +171,7 @@ class Bus:
             self._run(lambda: None)
 
     def _emit(self, publication: Publication, place: Topic, message: Any, keep: int) -> None:
-        """Let the world hear a node's message, and other nodes when the running one waits."""
+        """Deliver a node's message to the world, and to other nodes when the running one waits."""
         place.latest = message
         if keep:
             place.kept[publication] = message
@@ -185,7 +185,7 @@ class Bus:
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
-        """Call `arrive` with what comes out of a topic's channels: now, or when its delay is over."""
+        """Call `arrive` with the messages that a topic's channels give: now, or after their delay."""
         now = self._scheduler.time
         arrivals: list[tuple[float, Any]] = [(0.0, message)]
         for channel in place.channels:

@@ -213,7 +213,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Tell whether a look shows both that missions succeed and that they lose no more than the margin."""
+        """Return whether a look shows both that missions succeed and that they lose no more than the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:

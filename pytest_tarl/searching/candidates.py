@@ -115,7 +115,7 @@ def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> t
 
 
 def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
-    """Tell whether the guard holds in a cell; guard bounds coincide with bin bounds."""
+    """Return whether the guard holds in a cell; guard bounds coincide with bin bounds."""
     bins = dict(zip((sensor.name for sensor in sensors), cell, strict=True))
     return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
 
@@ -187,7 +187,7 @@ def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[
 
 
 def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
-    """Tell whether the bins contain every bin ever seen."""
+    """Return whether the bins contain every bin ever seen."""
     turn = sensor.bins if sensor.angle and sensor.bins else 0
     return all(bins[0] <= index <= bins[1] or bins[0] <= index + turn <= bins[1] for index in seen)
 

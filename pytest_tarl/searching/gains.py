@@ -44,11 +44,11 @@ class Gains:
         return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
 
     def anything(self) -> bool:
-        """Tell whether any gain is large enough to build upon."""
+        """Return whether any gain is large enough to build upon."""
         return any(max(gains.values()) > self.slack for gains in self._by_key.values())
 
     def moves(self, unit: Unit) -> bool:
-        """Tell whether a unit ever changed a reward."""
+        """Return whether a unit ever changed a reward."""
         return any(any(gains.values()) for (tried, _), gains in self._by_key.items() if tried == unit)
 
     def moving(self, among: Sequence[Unit]) -> list[Unit]:

@@ -89,7 +89,7 @@ class Race:
 
 
 def behind(gains: Gains, leader: Gains) -> bool:
-    """Tell whether one arm gains significantly less than the leader on their common seeds."""
+    """Return whether one arm gains significantly less than the leader on their common seeds."""
     differences = paired(leader, gains)
     return len(differences) >= LEAST and ahead_by(differences)[0] > 0.0
 

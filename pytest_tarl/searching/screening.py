@@ -65,7 +65,7 @@ def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
 
 
 def worth_screening(units: Sequence[Unit]) -> bool:
-    """Tell whether screening first is shorter than a sweep over all units."""
+    """Return whether screening first is shorter than a sweep over all units."""
     return len(units) > MANY
 
 

@@ -75,11 +75,11 @@ class Goal:
         return max(self.enough - self.online, 0.0)
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
-        """Tell whether an episode earns about as much as the same seed in the designed world."""
+        """Return whether an episode earns about as much as the same seed in the designed world."""
         return outcome.total >= self.near - self.harder.get(seed, 0.0) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
-        """Tell whether an episode failed its mission although missions succeed in the designed world."""
+        """Return whether an episode failed its mission although missions succeed in the designed world."""
         return self.passing and not outcome.passed
 
     def enough_on(self, seeds: Sequence[int]) -> float:
@@ -149,7 +149,7 @@ class Trials:
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Tell whether a candidate will probably earn too little, judged by earlier candidates that did.
+        """Return whether a candidate will probably earn too little, judged by earlier candidates that did.
 
         The estimate uses an earlier candidate as a control variate: its mean total plus the mean difference between the
         two on their common seeds, of which there must be at least `PAIRED`.
@@ -179,7 +179,7 @@ class Trials:
             raise BudgetSpentError
 
     def _come_far(self, goal: Goal) -> bool:
-        """Tell whether a candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
+        """Return whether a candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
         before = {pair.seed: pair.total for pair in goal.pairs}
         gains: dict[Candidate, list[float]] = {}
         for (candidate, seed), outcome in self._known.items() if self.reserve else ():
@@ -199,7 +199,7 @@ def label(candidate: Candidate) -> str:
 
 
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-    """Tell whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
+    """Return whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
 
     The first seeds are those on which other candidates fell short. Stop early at the first failed mission if missions
     succeed in the designed world (unless they vary in size), at the second seed that falls short, as soon as the

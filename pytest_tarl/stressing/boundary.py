@@ -10,7 +10,7 @@ RESOLUTION = 0.01  # share of the declared range at which a bisection ends
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
-    """Measure the coarse places of a ray, the farthest first."""
+    """Run the points of the coarse sweep along a ray, the farthest first."""
     for t in curve.ray.places:
         if t not in curve.evidence:
             curve.evidence[t] = evaluator.examine(curve.ray.point(t), COARSE)
@@ -31,7 +31,7 @@ def bisect(curve: Curve, evaluator: Evaluator) -> None:
 def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
     """Test failing points on fresh seeds, the k-th at risk / k(k + 1), until one is confirmed.
 
-    All rays share these seeds, which choose none of their points.
+    All rays share these seeds, since no point was chosen with them.
     """
     for k, t in enumerate(_candidates(curve), 1):
         if evaluator.confirm(curve.ray.point(t), "rays", risk / (k * (k + 1))):
@@ -41,9 +41,9 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 
 
 def _candidates(curve: Curve) -> list[float]:
-    """Return the nearest failing point, the nearest with half of the lowest margin, and the nearest with the lowest.
+    """Return three nearest points: the failing one, one with half of the lowest margin, and one with the lowest margin.
 
-    At the boundary itself, hardly any number of episodes shows a failure.
+    Exactly at the boundary, even very many episodes rarely show a failure.
     """
     decided = sorted(t for t, one in curve.evidence.items() if one.result == "fails")
     margins = [curve.evidence[t].margin for t in decided]
@@ -56,7 +56,7 @@ def _candidates(curve: Curve) -> list[float]:
 
 
 def _settle(curve: Curve, evaluator: Evaluator) -> None:
-    """Spend all episodes on an undecided nearest failing point, which noise may have made."""
+    """Run all episodes at the nearest failing point if it is undecided, since it may be due to noise."""
     while curve.failing:
         nearest = curve.evidence[curve.failing[0]]
         if nearest.result != "open" or nearest.episodes >= FINE:

@@ -1,7 +1,7 @@
 """Find directions that break the guarantee together although each alone does not: pairs, then a random search.
 
 The random search tries only drifts that are nearer than the best known one, half of them around it: a (1+1) evolution
-strategy with restarts. What it finds is shrunk towards nominal, one direction at a time, on common seeds.
+strategy with restarts. Each failure is shrunk towards nominal, one direction at a time, on common seeds.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def _nearer(space: Space, target: Point, limit: float) -> Point | None:
 
 
 def _weighted(space: Space, name: str, number: float, weight: float) -> float:
-    """Return the number that lies at a share of the way from nominal; an option is on or off."""
+    """Return the number at a share of the distance from nominal; an option is either reached or nominal."""
     usual = space.nominal[name]
     if isinstance(space.extents[name], Choice):
         return number if weight > 0.0 else usual
@@ -173,7 +173,7 @@ def _weighted(space: Space, name: str, number: float, weight: float) -> float:
 
 
 def _shrunk(point: Point, evaluator: Evaluator) -> Point:
-    """Return a failing point that no halving of one direction's way brings nearer; nominal is tried first."""
+    """Return a failing point that halving any single direction does not bring nearer; nominal is tried first."""
     space, now = evaluator.space, dict(point)
     for name in sorted(now, key=lambda one: -distance(space, {**space.nominal, one: now[one]})):
         usual, step = space.nominal[name], 1.0

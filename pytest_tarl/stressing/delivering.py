@@ -79,7 +79,7 @@ def _unwritten(path: Path, write: Callable[[Path], None], root: Path) -> list[st
 
 
 def _problem(found: Stress) -> str:
-    """Return why the test fails: broken promises, or a nominal world that is not the recorded one; else empty."""
+    """Return why the test fails: a broken `must_hold`, or a nominal world other than the recorded one; else empty."""
     if found.ended == "nominal":
         return words.nominal_words()
     return " ".join(words.broken_promises(found))

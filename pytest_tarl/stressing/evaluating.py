@@ -36,7 +36,7 @@ class Evaluator:
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
 
     def examine(self, point: Point, most: int) -> Evidence:
-        """Return the evidence at a point after at most so many episodes; end early once it is decided.
+        """Return the evidence at a point after at most `most` episodes; end early once it is decided.
 
         Raise BudgetSpentError before an episode that the budget does not cover.
         """

@@ -1,4 +1,4 @@
-"""What a stress run found: margins along rays, boundaries, failing combinations."""
+"""The results of a stress run: margins along rays, boundaries, failing combinations."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """Where a guarantee begins to fail along a ray: the estimate `at`, held up to `near`, shown to fail at `far`."""
+    """The boundary along a ray: the guarantee held up to `near`, fails at `far`, and `at` is the estimate."""
 
     at: float
     near: float

@@ -1,4 +1,4 @@
-"""What a recording guarantees, and what the episodes of a drift say of it."""
+"""The guarantee of a recording, and the evidence on it from episodes under a drift."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What episodes at a drift say. `margin` is 1 as designed, and 0 where the guarantee is just met."""
+    """The evidence from episodes under a drift.
+
+    `margin` is 1 for the designed performance, and 0 if the guarantee is just met.
+    """
 
     result: Answer
     margin: float
@@ -39,7 +42,7 @@ class Evidence:
 
     @property
     def failing(self) -> bool:
-        """Return whether the guarantee fails here as far as is known."""
+        """Return whether the guarantee fails here according to the evidence so far."""
         return self.result == "fails" or (self.result == "open" and self.margin < 0.0)
 
 
@@ -54,7 +57,7 @@ class Guarantee:
     declared: Range | None = None
 
     def margin(self, passed: float, loss: float) -> float:
-        """Return how far a share of passed episodes and a loss are from breaking the guarantee, in designed units."""
+        """Return the margin of a pass rate and a loss to the guarantee, as a share of the designed margin."""
         room = max(self.share - self.rate, 1e-9)
         of_rate = (passed - self.rate) / room
         of_loss = 1.0 - loss / self.tolerance if self.tolerance > 0 else (1.0 if loss <= 0.0 else -1.0)
@@ -62,7 +65,7 @@ class Guarantee:
 
 
 def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
-    """Return what the recording guarantees: its bound of the success rate, at most min_success, and the loss δ."""
+    """Return the guarantee of a recording: its bound of the success rate, at most min_success, and the loss δ."""
     sample = fixture.sample
     outcomes = [
         Outcome(bool(passed), float(total)) for passed, total in zip(sample.passed, sample.total, strict=True)
@@ -71,7 +74,7 @@ def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
 
 
 def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Designation) -> Guarantee:
-    """Return what recorded outcomes guarantee at a tolerated loss."""
+    """Return the guarantee of recorded outcomes for a tolerated loss."""
     passed, episodes = sum(one.passed for one in outcomes), len(outcomes)
     return Guarantee(
         rate=min(designation.min_success, rate(passed, episodes, CONFIDENCE).low),
@@ -83,7 +86,7 @@ def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Desig
 
 
 def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> Evidence:
-    """Return what outcomes say, paired by seed with those of the nominal drift; approximate, to guide the search."""
+    """Return the approximate evidence of outcomes, paired by seed with nominal ones, to guide the search."""
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
     loss = fmean(losses)

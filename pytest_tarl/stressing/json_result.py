@@ -47,7 +47,7 @@ def document(stress: Stress) -> dict[str, Any]:
 
 
 def _direction(stress: Stress, curve: Curve) -> dict[str, Any]:
-    """Return one way from nominal along one direction."""
+    """Return the result along one ray."""
     name = curve.ray.names[0]
     extent = stress.space.extents[name]
 

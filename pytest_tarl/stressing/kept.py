@@ -1,4 +1,4 @@
-"""Failing drifts of earlier runs, below `.tarl/stress`: replayed first, without an effect on the search."""
+"""Failing drifts of earlier runs, stored below `.tarl/stress`; they are replayed first and do not affect the search."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def write(failures: Sequence[Failure], path: Path) -> None:
 
 
 def read(path: Path, space: Space) -> list[Point]:
-    """Return the kept drifts that lie in the space; none of a damaged file or another space."""
+    """Return the kept drifts that lie in the space; none if the file is damaged or belongs to another space."""
     try:
         found = json.loads(path.read_text("utf-8"))
         points = found["failing"] if found["format"] == FORMAT_VERSION else []

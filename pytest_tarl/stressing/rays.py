@@ -23,7 +23,7 @@ class Ray:
 
     @property
     def continuous(self) -> bool:
-        """Return whether every t is a point; a ray along an option has only its end."""
+        """Return whether every t gives a point of its own; a ray along an option has only its end."""
         return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
 
     @property
@@ -51,7 +51,7 @@ class Ray:
 
 
 def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
-    """Return the rays along each single direction: both ways for a range, one per option of a choice."""
+    """Return the rays along each single direction: up and down for a range, and one per option of a choice."""
     found = []
     for name, extent in space.extents.items():
         usual = nominal(extent)
@@ -65,7 +65,7 @@ def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
 
 
 def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
-    """Return the ray to the point that has each ray's place in its direction."""
+    """Return the ray to the point that combines a point of each ray."""
     space = parts[0][0].space
     farthest = dict(space.nominal)
     for ray, t in parts:

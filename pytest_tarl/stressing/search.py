@@ -21,7 +21,7 @@ from pytest_tarl.stressing.rays import rays
 
 @dataclass(frozen=True)
 class Request:
-    """What is stressed, and how."""
+    """The test and space to stress, and the settings."""
 
     rollout: Rollout
     fixture: Fixture
@@ -82,7 +82,7 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
 
 
 def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
-    """Return whether the guarantee fails in the nominal world, which then is not the recorded one."""
+    """Return whether the guarantee fails in the nominal world, which then differs from the recorded one."""
     outcomes = evaluator.common(evaluator.space.nominal, COARSE)
     return unlike_recorded(evaluator.guarantee, outcomes, risk)
 

@@ -36,7 +36,7 @@ def lines(stress: Stress) -> Iterator[str]:
 
 
 def guarantee_words(stress: Stress) -> str:
-    """Return what must hold."""
+    """Return the sentence on the guarantee."""
     given = stress.guarantee
     return (
         f"At least {100 * given.rate:.4g} % of the episodes pass, and the mean reward is at most "
@@ -45,7 +45,7 @@ def guarantee_words(stress: Stress) -> str:
 
 
 def nominal_words() -> str:
-    """Return what to do if the guarantee fails without any drift."""
+    """Return the advice for a guarantee that fails without any drift."""
     return (
         "The guarantee fails at the nominal values already, so the nominal world is not the recorded one: correct the "
         "nominal values, or record again with `pytest --tarl-record`."
@@ -113,7 +113,7 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
 
 
 def _side(name: str, curve: Curve) -> str:
-    """Return the sentence of one way from nominal along a range."""
+    """Return the sentence on one ray along a range."""
     ray, boundary = curve.ray, curve.boundary
     sign = "≤" if ray.value(1.0) > nominal(ray.space.extents[name]) else "≥"
     if boundary is not None:

@@ -15,7 +15,7 @@ from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
-MAX_TURNS = 4  # a loop over at most so many known elements is unrolled
+MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
 MAX_PASSES = 12  # over a loop's body; a safety limit, since the value domain is finite
 
 

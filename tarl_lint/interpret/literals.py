@@ -12,7 +12,7 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
-MAX_EACH = 4  # a comprehension over at most so many known elements is unrolled
+MAX_EACH = 4  # a comprehension over at most this many known elements is unrolled
 
 READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 

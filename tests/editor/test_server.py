@@ -95,7 +95,7 @@ def uri(folder: Path) -> str:
 
 
 async def diagnostics(client: LanguageClient, where: str, count: int) -> list[lsp.Diagnostic]:
-    """Wait until a file has so many diagnostics."""
+    """Wait until a file has this number of diagnostics."""
     async with asyncio.timeout(60) if sys.version_info >= (3, 11) else _patient():
         while len(client.diagnostics.get(where, [])) != count:
             await client.wait_for_notification(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)

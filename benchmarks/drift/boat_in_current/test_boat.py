@@ -30,7 +30,7 @@ class Fairway:
 
     @property
     def through(self):
-        """Tell whether the boat is past the strait."""
+        """Return whether the boat is past the strait."""
         return self.east >= LENGTH
 
     def publish(self, bus):

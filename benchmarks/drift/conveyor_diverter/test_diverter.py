@@ -31,7 +31,7 @@ class Belt:
 
     @property
     def over(self):
-        """Tell whether every parcel is off the belt."""
+        """Return whether every parcel is off the belt."""
         return all(done or lost for done, lost in zip(self.sorted, self.missed, strict=True))
 
     def publish(self, bus):

@@ -34,7 +34,7 @@ class Road:
 
     @property
     def wet(self):
-        """Tell whether the follower's road is wet."""
+        """Return whether the follower's road is wet."""
         return self.grip < 9.0 and WET[0] <= self.x <= WET[1]
 
     def publish(self, bus):

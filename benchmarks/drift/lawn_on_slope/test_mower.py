@@ -33,7 +33,7 @@ class Lawn:
 
     @property
     def done(self):
-        """Tell whether the strip is mown."""
+        """Return whether the strip is mown."""
         return self.x >= LENGTH
 
     @property

@@ -30,7 +30,7 @@ class Shaft:
 
     @property
     def arrived(self):
-        """Tell whether the doors were open for a second."""
+        """Return whether the doors were open for a second."""
         return self.level >= 20
 
     def publish(self, bus):

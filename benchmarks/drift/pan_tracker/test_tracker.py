@@ -40,7 +40,7 @@ class Scene:
 
     @property
     def done(self):
-        """Tell whether the scene is over."""
+        """Return whether the scene is over."""
         return self.time >= DURATION
 
     def publish(self, bus):

@@ -29,7 +29,7 @@ class Pipe:
 
     @property
     def narrow(self):
-        """Tell whether the crawler is in the narrowing."""
+        """Return whether the crawler is in the narrowing."""
         return self.drag > 8.0 and NARROW[0] <= self.x <= NARROW[1]
 
     def publish(self, bus):

@@ -30,7 +30,7 @@ class Carton:
 
     @property
     def lifted(self):
-        """Tell whether the carton is where it should be."""
+        """Return whether the carton is where it should be."""
         return self.height >= 0.55
 
     def publish(self, bus):

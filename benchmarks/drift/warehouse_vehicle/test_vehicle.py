@@ -30,7 +30,7 @@ class Aisle:
 
     @property
     def docked(self):
-        """Tell whether the vehicle stood in its bay for half a second."""
+        """Return whether the vehicle stood in its bay for half a second."""
         return self.standing >= 5
 
     def publish(self, bus):

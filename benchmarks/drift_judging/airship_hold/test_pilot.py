@@ -33,7 +33,7 @@ class Sky:
 
     @property
     def moored(self):
-        """Tell whether the mast can catch the ship."""
+        """Return whether the mast can catch the ship."""
         return self.away < 0.8
 
     def publish(self, bus):

@@ -32,7 +32,7 @@ class Water:
 
     @property
     def done(self):
-        """Tell whether the dive is over."""
+        """Return whether the dive is over."""
         return self.time >= TIME
 
     def publish(self, bus):

@@ -30,7 +30,7 @@ class Belt:
 
     @property
     def done(self):
-        """Tell whether all loaves are cut."""
+        """Return whether all loaves are cut."""
         return self.cuts == LOAVES
 
     def on_cut(self, _):

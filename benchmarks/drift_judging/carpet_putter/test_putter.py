@@ -28,7 +28,7 @@ class Floor:
 
     @property
     def still(self):
-        """Tell whether the puck has been pushed and lies."""
+        """Return whether the puck has been pushed and lies."""
         return self.pushed and self.speed == 0.0
 
     def publish(self, bus):

@@ -32,7 +32,7 @@ class Corridor:
 
     @property
     def through(self):
-        """Tell whether the robot is at the end."""
+        """Return whether the robot is at the end."""
         return self.x >= LENGTH
 
     @property

@@ -32,7 +32,7 @@ class Road:
 
     @property
     def through(self):
-        """Tell whether the shuttle is at its stop."""
+        """Return whether the shuttle is at its stop."""
         return self.x >= LENGTH
 
     @property

@@ -30,7 +30,7 @@ class Yard:
 
     @property
     def done(self):
-        """Tell whether the mission is over."""
+        """Return whether the mission is over."""
         return self.time >= TIME
 
     def publish(self, bus):

@@ -32,7 +32,7 @@ class Booth:
 
     @property
     def done(self):
-        """Tell whether the whole board is painted and measured."""
+        """Return whether the whole board is painted and measured."""
         return self.judged == self.strips
 
     def publish(self, bus):

@@ -16,7 +16,7 @@ class EnergyModel:
         return self.per_metre * metres
 
     def must_return(self, charge: float, home: float) -> bool:
-        """Tell whether the charge is just enough for the way home."""
+        """Return whether the charge is just enough for the way home."""
         return charge - self.needed(home) < self.reserve
 
 

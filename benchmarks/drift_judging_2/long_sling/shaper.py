@@ -26,5 +26,5 @@ class ZeroVibration:
         return 0.5 * command + 0.5 * old
 
     def settled(self, command):
-        """Tell whether the line holds nothing but the command."""
+        """Return whether the line holds nothing but the command."""
         return all(abs(value - command) < 1e-6 for value in self.line)

@@ -33,7 +33,7 @@ class Belt:
 
     @property
     def done(self):
-        """Tell whether all fruits are sorted."""
+        """Return whether all fruits are sorted."""
         return self.sorted == FRUITS
 
     def fruit(self, behind):

@@ -37,7 +37,7 @@ class House:
 
     @property
     def through(self):
-        """Tell whether the round is done."""
+        """Return whether the round is done."""
         return self.x >= LENGTH or (self.detour and self.locked)
 
     @property

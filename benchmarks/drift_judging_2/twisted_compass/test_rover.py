@@ -31,7 +31,7 @@ class Orchard:
 
     @property
     def through(self):
-        """Tell whether the rover is at the end of the row."""
+        """Return whether the rover is at the end of the row."""
         return self.x >= LENGTH
 
     def publish(self, bus):

@@ -31,7 +31,7 @@ class Tray:
 
     @property
     def done(self):
-        """Tell whether the tray is empty, or an egg broken."""
+        """Return whether the tray is empty, or an egg broken."""
         return self.egg == EGGS or bool(self.failure)
 
     def publish(self, bus):

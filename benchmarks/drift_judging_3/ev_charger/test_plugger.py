@@ -67,7 +67,7 @@ class Bay:
 
     @property
     def done(self):
-        """Tell whether the job has come to an end."""
+        """Return whether the job has come to an end."""
         return self.latched or self.called or bool(self.failure)
 
     def judge(self):

@@ -29,7 +29,7 @@ class Counter:
 
     @property
     def done(self):
-        """Tell whether all tubs are away."""
+        """Return whether all tubs are away."""
         return self.at == TUBS or bool(self.failure)
 
     def publish(self, bus):

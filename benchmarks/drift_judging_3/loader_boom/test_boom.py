@@ -34,7 +34,7 @@ class Loader:
 
     @property
     def done(self):
-        """Tell whether both angles have had their time."""
+        """Return whether both angles have had their time."""
         return self.step >= EACH * len(self.goals)
 
     @property

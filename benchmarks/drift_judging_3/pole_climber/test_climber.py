@@ -35,7 +35,7 @@ class Pole:
 
     @property
     def done(self):
-        """Tell whether the inspection can begin, or never will."""
+        """Return whether the inspection can begin, or never will."""
         return self.held >= HELD or bool(self.failure)
 
     def publish(self, bus):

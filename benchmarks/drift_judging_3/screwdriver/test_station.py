@@ -38,7 +38,7 @@ class Flange:
 
     @property
     def done(self):
-        """Tell whether the part is away."""
+        """Return whether the part is away."""
         return self.finished or bool(self.failure)
 
     def torque(self):

@@ -35,7 +35,7 @@ class Floor:
 
     @property
     def there(self):
-        """Tell whether the node says that it has arrived."""
+        """Return whether the node says that it has arrived."""
         return self.asked > 3
 
     def publish(self, bus):

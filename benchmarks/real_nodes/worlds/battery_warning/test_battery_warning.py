@@ -33,7 +33,7 @@ class Shift:
 
     @property
     def home(self):
-        """Tell whether the robot is at its dock."""
+        """Return whether the robot is at its dock."""
         return self.mailed and self.way <= 0.0
 
     def publish(self, bus):

@@ -36,7 +36,7 @@ class Yard:
 
     @property
     def there(self):
-        """Tell whether the car is at the ball."""
+        """Return whether the car is at the ball."""
         return self.away < 0.6
 
     def publish(self, bus):

@@ -33,7 +33,7 @@ class Path:
 
     @property
     def past(self):
-        """Tell whether the car is far enough."""
+        """Return whether the car is far enough."""
         return self.x >= GOAL
 
     @property

@@ -57,7 +57,7 @@ class Yard:
 
     @property
     def round(self):
-        """Tell whether the robot has been at every corner."""
+        """Return whether the robot has been at every corner."""
         return self.corners >= TURNS
 
     def judge(self):
