@@ -113,14 +113,24 @@ def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
     content = _parsed(setting.yaml)
     if above:
         yield above
+    elif isinstance(content, dict) and "ros__parameters" not in setting.yaml:
+        yield from map(str, content)
     elif isinstance(content, dict):
-        named = {instance.name.rpartition("/")[2] for instance in instances} | {instances[0].name}
+        named = {instance.name.rpartition("/")[2] for instance in instances}
         for key, value in content.items():
             inside = value.get("ros__parameters") if isinstance(value, dict) else None
-            if not isinstance(inside, dict):
-                yield str(key)
-            elif str(key) in named:
-                yield from map(str, inside)
+            if isinstance(inside, dict) and str(key).rpartition("/")[2] in named:
+                yield from _dotted(inside)
+
+
+def _dotted(values: dict[Any, Any], above: str = "") -> Iterator[str]:
+    """Yield nested parameters of ROS 2 by names with dots."""
+    for key, value in values.items():
+        name = f"{above}{key}"
+        if isinstance(value, dict):
+            yield from _dotted(value, f"{name}.")
+        else:
+            yield name
 
 
 def _parsed(text: str) -> Any:

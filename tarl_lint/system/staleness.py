@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Final
 
@@ -39,15 +39,21 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
     texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
     if any(_TIMES.search(text) for text in texts.values()):
         return ()
-    return tuple(one for one in findings if one.flow is not None and _repeated(one.flow, texts))
+    callbacks = {
+        name.strip()
+        for one in findings
+        if one.flow is not None
+        for name in one.flow.source.callback.split(",")
+    }
+    return tuple(one for one in findings if one.flow is not None and _repeated(one.flow, texts, callbacks))
 
 
-def _repeated(flow: Flow, texts: Mapping[str, str]) -> bool:
-    """Return whether the publish call of a flow runs without its callback."""
+def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
+    """Return whether the publish call of a flow runs without its callback, and without that of another message."""
     if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
         return False
     callbacks = {name.strip() for name in flow.source.callback.split(",")}
-    if flow.sink.qualname in callbacks or not callbacks - {""}:
+    if flow.sink.qualname in every or not callbacks - {""}:
         return False
     stored = [step for step in flow.steps if step.site.qualname in callbacks and step.role == "assign"]
     attributes = {found[1] for step in stored if (found := re.match(r"self\.(\w+)\b[^=]*=", step.code))}

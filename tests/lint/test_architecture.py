@@ -100,3 +100,54 @@ def test_accepted_hazards_stay_accepted_and_runs_without_launch_files_keep_them(
     main([".", "--write-baseline"])
     assert "TARL301" in (tmp_path / "tarl-flows.json").read_text()
     assert main(["--launch", file]) == 0
+
+
+TWO_CALLBACKS = """
+    --- launch/robot.launch
+    <launch><node pkg="robot" type="lane.py" name="lane"/></launch>
+    --- scripts/lane.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from std_msgs.msg import Float64
+
+    class Lane:
+        def __init__(self):
+            self.fastest = 0.1
+            self.pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("fastest", Float64, self.on_fastest)
+            rospy.Subscriber("center", Float64, self.on_center)
+
+        def on_fastest(self, msg):
+            self.fastest = msg.data
+
+        def on_center(self, msg):
+            cmd = Twist()
+            cmd.linear.x = self.fastest
+            cmd.angular.z = -msg.data
+            self.pub.publish(cmd)
+
+    rospy.init_node("lane")
+    Lane()
+    rospy.spin()
+"""
+NESTED = """
+    --- launch/robot.launch
+    <launch><node pkg="robot" type="lane.py" name="lane"><rosparam file="$(dirname)/lane.yaml"/></node></launch>
+    --- launch/lane.yaml
+    camera:
+      lane:
+        ros__parameters: {gain: 1.0}
+    other:
+      ros__parameters: {top: 1.0}
+    /lane:
+      ros__parameters: {detect: {white: {hue: 3}}}
+    --- scripts/lane.py
+    import rospy
+    rospy.init_node("lane")
+    print(rospy.get_param("~gain"), rospy.get_param("~detect.white.hue"))
+"""
+
+
+@pytest.mark.parametrize("snippet", [TWO_CALLBACKS, NESTED])
+def test_reports_that_were_false_on_public_code_are_gone(snippet, tmp_path, capsys):
+    assert reported(capsys, str(workspace(tmp_path, snippet))) == []
