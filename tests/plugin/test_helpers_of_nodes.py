@@ -111,7 +111,7 @@ def test_a_named_helper_in_a_folder_without_init_is_reported(tank: pytest.Pytest
 
 def test_an_episode_that_ran_an_older_text_is_an_error() -> None:
     ended = EpisodeRun(EpisodePlan(1), Recorder().finish(), passed=True, older=(Path("gains.py"),))
-    with pytest.raises(StaleTextError, match=r"gains\.py: a candidate was written into it"):
+    with pytest.raises(StaleTextError, match=r"gains\.py: the candidate was written into the file"):
         _outcome(lambda: ended, -1.0)
 
 
