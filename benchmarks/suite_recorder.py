@@ -47,7 +47,7 @@ def begin() -> None:
     if folder := os.environ["SUITE_RECORDED"]:
         _record(Path(folder))
     try:
-        settings = import_module("hypothesis").settings  # of the suite's environment
+        settings = import_module("hypothesis").settings  # from the suite's environment
     except ImportError:
         return
     settings.register_profile("suites", deadline=None, derandomize=True, database=None)

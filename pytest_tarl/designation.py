@@ -47,7 +47,7 @@ class Designation:
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict
-    )  # by direction of a space: the two ends of a range, or options, within which the guarantee must hold
+    )  # direction of a space → ends of the range, or the options, within which the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 

@@ -61,7 +61,7 @@ class Tarl:
         self._rewards = 0
         self._streams: dict[str, np.random.Generator] = {}
         self._ros: Ros | None = None
-        self._origin = 0  # of virtual time, in ns
+        self._origin = 0  # start of virtual time in ns
         self._requirements = requirements
         self._alone = alone  # True for the single episode of a plain test run
         self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)

@@ -351,9 +351,9 @@ class Comparison:
     )  # part → cells where deployed earns less
     target: str = ""  # the test as a pytest argument
     flags: tuple[str, ...] = ()  # non-default options of the run
-    changes: Mapping[Cell, float] = field(default_factory=dict)  # by cell, difference between the worlds
-    stated: Mapping[str, Guarantee] = field(default_factory=dict)  # by the worlds of `totals`
+    changes: Mapping[Cell, float] = field(default_factory=dict)  # difference between the worlds, by cell
+    stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`
     formulas: tuple[FormulaRow, ...] = ()
-    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, if it has a range
+    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # sizes of a drift with ranges, by its parts
     purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
     permanent: bool = False  # whether the drift is permanent, so that the designed world is the old one

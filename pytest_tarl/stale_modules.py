@@ -53,7 +53,7 @@ def _imported(module: ModuleType) -> Iterator[str]:
     code = spec.loader.get_code(spec.name)
     if code is None:
         return
-    before: deque[object] = deque((None, None), 2)  # of an import: its level, and the imported names
+    before: deque[object] = deque((None, None), 2)  # level and names of the current import
     for one in dis.get_instructions(code):
         if one.opname == "IMPORT_NAME":
             level, taken = before

@@ -256,7 +256,9 @@ STATE_BY_CALLBACKS: Final = (
 )  # fmt: skip
 
 NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])
-TESTS: Final = frozenset(["unittest.TestCase", "unittest.case.TestCase"])  # which a test runner makes
+TESTS: Final = frozenset(
+    ["unittest.TestCase", "unittest.case.TestCase"]
+)  # a test runner creates their objects
 NODE_BASES: Final = NODES | frozenset(
     [
         "object", "Exception",

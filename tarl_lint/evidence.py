@@ -44,7 +44,9 @@ class Outline:
     declared: set[str] = field(default_factory=set)  # names that functions declare global
     shared: frozenset[str] | None = None  # globals that functions change; None until computed
     held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)  # node → held locks, a cache
-    lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(default_factory=dict)  # by function
+    lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(
+        default_factory=dict
+    )  # calls under locks, by function
     by_text: bool = False  # whether names may be looked up by computed strings
 
     def __post_init__(self) -> None:

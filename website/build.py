@@ -2,7 +2,8 @@
 
     python -m website.build [--quick]
 
-Pages are put together in build/pages, zensical makes build/site of them. Warnings are errors. Nothing is fetched
+The script copies the pages to build/pages, and zensical builds build/site from them.
+Warnings are errors. Nothing is fetched
 once `python -m website.build --fetch` has kept fonts and scripts in build/assets.
 """
 

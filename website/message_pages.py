@@ -35,7 +35,7 @@ def anchor(words: str) -> str:
 
 
 def split(page: str) -> tuple[str, list[Message]]:
-    """Return the text before the first group of docs/messages.md, and its messages. Texts of groups go with each."""
+    """Return the text before the first group of docs/messages.md, and its messages, each with the text of its group."""
     ends = [*SECTION.finditer(page)]
     introduction = page[: ends[0].start()].strip()
     messages, group, lead = [], "", ""

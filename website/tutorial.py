@@ -73,7 +73,7 @@ def same(shown: str, printed: str) -> bool:
 
 
 def shortened(shown: str, printed: str) -> str:
-    """Return what was printed with as many lines at either end as the page shows."""
+    """Return the printed output, cut to as many lines at both ends as the page shows."""
     head, *rest = LEFT_OUT.split(shown, maxsplit=1)
     lines = printed.splitlines(keepends=True)
     if not rest:

@@ -23,7 +23,7 @@ PoseStamped = message_type("geometry_msgs/msg/PoseStamped")
 TwistStamped = message_type("geometry_msgs/msg/TwistStamped")
 
 GRAVITY = 9.81
-ARM = 0.2  # of each rotor
+ARM = 0.2  # lever arm of each rotor in m
 DRAG = 0.25  # per m/s
 MOMENT = 0.03
 ROTOR_LAG = 0.03
@@ -33,7 +33,7 @@ NEAR = 0.35
 GUST = (3.6, 5.0)  # positions at which the gust blows
 TIME_BOUND = 20.0
 TAKE_OFF = 4.0  # is done by then
-SOFT = 0.6  # of a landing
+SOFT = 0.6  # limit on the speed of a landing in m/s
 NOISE = 0.01
 SUBSTEPS = 4
 

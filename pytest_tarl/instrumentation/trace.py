@@ -19,8 +19,8 @@ class Trace:
     """Events and simulation steps of one episode.
 
     `cells` are the distinct cells in order of first use; the other cell columns are indices into it, -1 before the
-    first message. Event columns have shape (events,), step columns (steps,). Events come by step and, within a step,
-    by thread: consecutive events of different threads are not ordered. Events after the last reward belong to the
+    first message. Event columns have shape (events,), step columns (steps,). Events are sorted by step and then by
+    thread, so the order of events of different threads is not known. Events after the last reward belong to the
     last step. `thread` is None if one thread recorded everything.
     """
 

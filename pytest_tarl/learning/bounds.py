@@ -87,7 +87,7 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
         return 0.0
     above = BinomialTail(passed, episodes + 1)(
         least
-    )  # of a Beta(passed + 1, failed + 1), the share above `least`
+    )  # probability of a Beta(passed + 1, failed + 1) above `least`
     if above <= 0.0:
         return -inf
     mixed = log(above) - log(episodes + 1) - log_choose(episodes)[passed] - log1p(-least)

@@ -25,7 +25,7 @@ class Evidence:
     that share a bin of one sensor) and for the episodes' totals.
     """
 
-    move: Floats  # per cell, like the next two
+    move: Floats  # one column per cell, as in the next two fields
     reward: Floats
     novel: Floats
     move_error: Floats  # rounding error of `move` and `reward`, which are 0 if not above it

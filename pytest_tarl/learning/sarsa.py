@@ -27,7 +27,7 @@ class Learner:
         self.gamma = gamma
         self.alpha = alpha
         self._row: dict[Cell, int] = {}
-        self._full = [0.0]  # by state, the start first
+        self._full = [0.0]  # one entry per state; the first one is the start
         self._scaled = [0.0]
         self._seen = set[int]()
 

@@ -52,7 +52,9 @@ class Scale:
     """The scoring of missions: fitted model, its cells, and edges of every score's bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    known: NDArray[np.bool_]  # which cells the model was fitted in, plus False for all others
+    known: NDArray[
+        np.bool_
+    ]  # whether the model was fitted in a cell; the last entry, False, is for all other cells
     model: Model
     edges: Floats
 

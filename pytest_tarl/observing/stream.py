@@ -44,10 +44,10 @@ class Cut(NamedTuple):
     """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
 
     cells: list[Cell]  # cells that are new in this cut
-    latched: list[int]  # at each mark, the number of the cell from there on
+    latched: list[int]  # number of the current cell, by mark
     rewards: list[int]  # the marks that close a step
     totals: list[float]
-    threads: list[tuple[list[Any], list[int]]]  # per thread: its entries, and their number at each mark
+    threads: list[tuple[list[Any], list[int]]]  # entries of each thread, and their number at each mark
 
     @property
     def empty(self) -> bool:

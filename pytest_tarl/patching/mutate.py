@@ -41,7 +41,7 @@ class Mutation:
     value: float | int | bool
     place: Place | None = None
     form: Form | None = (
-        None  # of a structural repair, whose operand is an expression and whose value is a factor
+        None  # set for a structural repair, whose operand is an expression and whose value is a factor
     )
 
 

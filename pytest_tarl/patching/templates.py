@@ -25,7 +25,11 @@ SCALES = (
     "typical",
     "sensor",
 )  # a default as is, as a multiple of the value's usual size, or divided by the sensor's usual size
-OPERATORS = ("op", "closed", "back")  # of a comparison: its operator, with/without equality, and the way back
+OPERATORS = (
+    "op",
+    "closed",
+    "back",
+)  # placeholders for a comparison: its operator, with or without equality, and its reverse
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of an operator needs

@@ -25,7 +25,7 @@ from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 QUICK = 3  # seeds on which to try a guard before testing it on fresh ones
-WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed without the candidate
+WORLDS = 3  # worlds in which a test runs: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # episodes that show the reward of a permanent repair in the old world
 MOST = 5  # candidates to test per search ...
 SHARE = 2  # ... and how many of them may have the same operands while others wait

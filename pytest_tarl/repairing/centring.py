@@ -19,7 +19,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 THIN = 0.5  # share of the margin; candidates that lose less are not improved
 STEPS = (1.12, 1.04)  # ratios of neighbouring values
 SEEDS = 3  # seeds on which to compare values
-MOVES = 3  # at most in one direction with one ratio
+MOVES = 3  # maximum number of moves in one direction with one ratio
 ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios to the neighbours of a value that fails on some seeds
 
 

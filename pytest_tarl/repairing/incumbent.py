@@ -41,7 +41,7 @@ class Watch:
         return Refused(self.best, refused.reason, fmean(totals), len(totals))
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
-        """Return the candidates that came near once but not on further seeds, in the order they were found."""
+        """Return the candidates that nearly reached the goal once but not on further seeds, in order."""
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():

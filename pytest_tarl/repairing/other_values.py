@@ -20,7 +20,7 @@ from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
-MILDER = (0.75, 0.5)  # the same for a candidate whose missions succeed and earn too little
+MILDER = (0.75, 0.5)  # exponents for a candidate whose missions succeed but earn too little
 CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
 
 OtherValues = Generator[Candidate, Tried, None]

@@ -16,7 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
 MOST = 5  # tests to run
-EPISODES = 8  # per test, the first ones in which the guard holds
+EPISODES = 8  # episodes per test: the first ones in which the guard holds
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class _Findings:
     structure: int = 0  # episodes spent on structural changes, part of `episodes`
 
     def take(self, purse: Purse) -> None:
-        """Add the episodes spent from a purse."""
+        """Add the spent episodes of a budget."""
         self.episodes += purse.spent
         self.late = self.late or purse.late
 

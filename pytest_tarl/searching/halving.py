@@ -54,7 +54,7 @@ class Halving:
         return arm_effects(self.race)
 
     def _holding(self, arms: Sequence[Arm]) -> Iterator[Candidate]:
-        """Confirm the arms that came near on all seeds of the round, best first."""
+        """Confirm the arms that nearly reached the goal on all seeds of the round, best first."""
         race = self.race
         for arm in race.ranked(arms):
             candidate = arm.candidate(race.mutate)

@@ -13,7 +13,9 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
 from pytest_tarl.searching.units import Unit
 
-CONFIDENCE = 0.95  # of an approximate interval; it decides what to run next, not whether a repair holds
+CONFIDENCE = (
+    0.95  # confidence of an approximate interval that decides what to run next, not whether a repair holds
+)
 LEAST = 3  # common seeds before one arm can be behind another
 FINEST = 1.1  # two factors with a smaller ratio are not refined further
 

@@ -1,7 +1,7 @@
 """Factorial screening for many operands: each run mutates a few at random; ridge regression finds the main effects.
 
 The number of runs grows with the square root of the number of operands. The sweep then starts with the operands of the
-best main effects. A run that happens to come near the designed reward becomes a candidate at once.
+best main effects. A run that nearly earns the designed reward becomes a candidate at once.
 """
 
 from __future__ import annotations

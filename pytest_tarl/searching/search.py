@@ -117,7 +117,7 @@ class Trials:
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    _short: list[dict[int, float]] = field(default_factory=list)  # per weak candidate: seed → total
+    _short: list[dict[int, float]] = field(default_factory=list)  # for each weak candidate: seed → total
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
         """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""
@@ -145,7 +145,7 @@ class Trials:
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
-        """Remember a candidate that came near on every seed but earned too little on average."""
+        """Store a candidate that nearly reached the goal on every seed but earned too little on average."""
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:

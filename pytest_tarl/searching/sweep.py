@@ -1,6 +1,6 @@
 """Sweep and confirm, the default search: try one factor on all operands, then the next factor.
 
-Each run is paired with the unmutated run of the same seed. A candidate that comes near the designed reward is confirmed
+Each run is paired with the unmutated run of the same seed. A candidate with nearly the designed reward is confirmed
 on further seeds. Results steer the search: a larger step is tried only where the smaller one did not lose, best gain
 first. If no single operand suffices, the search combines those that gained.
 """

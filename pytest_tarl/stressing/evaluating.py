@@ -48,7 +48,7 @@ class Evaluator:
         return found
 
     def confirm(self, point: Point, pool: str, risk: float) -> bool:
-        """Return whether the fresh seeds of a pool show at `risk` that the guarantee fails, paired with nominal.
+        """Return whether the fresh seeds of a pool, paired with nominal runs, show at `risk` that the guarantee fails.
 
         A pool may serve several points if none of them was chosen by its outcomes.
         """

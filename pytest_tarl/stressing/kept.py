@@ -17,7 +17,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome
 
 FORMAT_VERSION = 1  # 1: first version
 MOST = 5  # number of failing drifts to keep
-EPISODES = 4  # of a replay
+EPISODES = 4  # number of episodes to replay a drift
 
 
 def write(failures: Sequence[Failure], path: Path) -> None:

@@ -63,7 +63,9 @@ class Interpreter:
         self.setters: set[str] = set()  # names of properties with a setter
         self.doubtful: set[ir.Call] = set()  # calls whose None may be computed from data
         self.came: dict[Key, set[int]] = {}  # copy of a vacant variable → nodes that decide whether it is set
-        self.came_out: dict[ir.Call, set[int]] = {}  # the same for calls that return such a copy
+        self.came_out: dict[
+            ir.Call, set[int]
+        ] = {}  # call that returns such a copy → nodes that decide whether it is set
         self.unchanged: set[ir.Call] = set()  # calls that return a value unchanged; only in thorough runs
         self.settings: dict[
             Obj, tuple[str, ir.Pos]

@@ -56,7 +56,7 @@ class _Exits:
 
     on_break: int = EXIT
     on_continue: int = EXIT
-    on_raise: int = EXIT  # without a handler
+    on_raise: int = EXIT  # EXIT if there is no handler
     handlers: tuple[tuple[frozenset[str], int], ...] = ()  # exception names of each handler, none for all
 
     def of(self, name: str) -> int:

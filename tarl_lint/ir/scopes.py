@@ -26,7 +26,7 @@ class Scope:
     nonlocals: set[str] = field(default_factory=set)
     counter: int = 0  # slots and statement numbers handed out
     renamed: dict[str, str] = field(default_factory=dict)  # comprehension targets, while lowered
-    around: dict[str, str] = field(default_factory=dict)  # the same of the parent at this definition
+    around: dict[str, str] = field(default_factory=dict)  # the parent's names at this definition
     plain: bool = False  # no expression in the file binds a name or yields
     prints: bool = False  # for a module: `print` is Python's built-in function
 

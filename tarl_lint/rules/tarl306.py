@@ -5,8 +5,8 @@ stop, because a sensor hangs, a cable breaks, or a node crashes, the robot goes 
 collided with expensive equipment (https://github.com/amor-ros-pkg/rosaria/pull/51). Remember when the last message
 arrived, and stop when it is too old.
 
-Nothing is reported if the program looks at the time at all, resets what the callback stored, or has words such as
-`timeout`, `last_` and `counter`, which suggest that it does so in another way.
+Nothing is reported if the program reads the time anywhere, resets the values that the callback stored, or contains
+words such as `timeout`, `last_` and `counter`, which suggest that it detects old messages in another way.
 """
 
 from __future__ import annotations

@@ -184,4 +184,4 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "sink": lambda packed: _unpacked(Sink, packed),
     "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
     "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
-}  # by field name
+}  # converters, by field name

@@ -74,7 +74,7 @@ def _table(system: System, glyphs: Glyphs) -> Iterator[Line]:
 
 
 def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
-    """Return the cells of a node; the last one of a node that was not read is the reason."""
+    """Return the cells of a node; for a node that was not read, the last cell is the reason."""
     node = instance.node
     where = f"{node.package}/{node.executable}" if node.package else node.executable
     name = f"{instance.name} ({node.condition})" if node.condition else instance.name

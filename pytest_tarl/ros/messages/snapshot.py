@@ -12,7 +12,7 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages import find_class, unknown_type
 from pytest_tarl.ros.messages.values import FieldError, as_float32
 
-_COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; entries never change
+_COPIERS: dict[type, Callable[[Any], Any]] = {}  # copier of each message class; entries never change
 _STAMPS: dict[
     type, tuple[str, str] | None
 ] = {}  # names of the stamp's parts in a class's header; entries never change

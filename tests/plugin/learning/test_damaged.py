@@ -83,7 +83,7 @@ def survived(content: bytes) -> bool:
 @FUZZ
 @given(st.integers(0, len(WHOLE) * 8 - 1))
 @example(WHOLE.index(b"PK\x01\x02") * 8 + 8 * 8)  # damaged flags of a zip member raise NotImplementedError
-@example(WHOLE.index(b"PK\x01\x02") * 8 + 10 * 8 + 1)  # its compression
+@example(WHOLE.index(b"PK\x01\x02") * 8 + 10 * 8 + 1)  # damaged compression method of a zip member
 def test_a_recording_with_a_flipped_bit_is_refused(bit: int) -> None:
     content = bytearray(WHOLE)
     content[bit // 8] ^= 1 << bit % 8

@@ -69,7 +69,7 @@ def test_a_memory_limit_of_the_container_applies_at_any_level(
     own.write_text(f"3:cpuset:/elsewhere\n{line}/pods/one\n")
     group(base / "pods" / "one", version, "max" if version == 2 else str(2**63 - 4096), 500_000, 0)
     assert free_memory.available() == 8000 * 1024
-    group(base / "pods" / "two", version, "1000", 0, 0)  # of others
+    group(base / "pods" / "two", version, "1000", 0, 0)  # a sibling group with another limit
     (base / "pods" / "memory.stat").write_text("")
     limit, usage, _ = free_memory._FILES[version]
     (base / "pods" / limit).write_text("3000000")

@@ -182,7 +182,7 @@ def test_short_missions_are_taken_without_decoding_their_records(tmp_path: Path,
     with path.open("rb") as file:
         block = blocks.next_block(file, len(MAGIC))
         assert block.record()["kind"] == "start"
-        if at_start:  # of a block
+        if at_start:  # at the start of a block
             block = blocks.next_block(file, blocks.end_of(block.spot()))
         assert [one[4] for one in block.at_once()] == [
             b"true" if one.passed else b"false" for one in walks(5, 3)

@@ -35,7 +35,7 @@ def test_patches_without_conflict_are_merged_with_the_evidence_of_both(robot: Pa
     assert combined.told("again") == [AGAIN, AGAIN]
     header = combined.path.read_text().partition("\ndiff --git")[0]
     words = ["part " + first.name, "drift: mud", "part " + second.name, "drift: wind"]
-    found_at = [header.index(word) for word in words]  # whose evidence is whose
+    found_at = [header.index(word) for word in words]  # positions of the two sections of evidence
     assert found_at == sorted(found_at)
 
 

@@ -64,7 +64,7 @@ def evaluator_of(world: World, space: Space, *, seed: int = 0, budget: int = 200
 
 
 def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -> Stress:
-    """Stress a world as a run does."""
+    """Run the stress search on a world."""
     evaluator = evaluator_of(world, space, seed=seed, budget=budget)
     curves = [Curve(ray) for ray in rays(space, {})]
     together = Together(0.01, curves)
