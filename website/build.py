@@ -3,8 +3,8 @@
     python -m website.build [--quick]
 
 The script copies the pages to build/pages, and zensical builds build/site from them.
-Warnings are errors. Nothing is fetched
-once `python -m website.build --fetch` has kept fonts and scripts in build/assets.
+Warnings are errors. Nothing is fetched once `python -m website.build --fetch` has stored
+fonts and scripts in build/assets.
 """
 
 from __future__ import annotations
