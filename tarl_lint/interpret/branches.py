@@ -55,7 +55,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     if s.target is not None and (elements := _told_apart(ctx, source)):
         return _turns(ctx, s, s.target, source, elements, frame)
     depth = len(ctx.store.layers)
-    head: Delta = {}
+    head = _first_head(ctx, s, frame)
     for _ in range(MAX_PASSES):
         ctx.store.push(head)
         table: dict[str, list[Delta]] = {"break": [], "continue": []}
@@ -77,7 +77,18 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
             ctx.store.reads.whole = False
             break  # the passes of nested loops multiply
         head = again
+    frame.heads[(s.id, *frame.turn)] = head
     return _loop_end(ctx, s, done, table["break"], frame)
+
+
+def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
+    """Return the initial state at a loop's head: the fixpoint of its last execution in the same call context.
+
+    States grow monotonically from one pass of an outer loop, or run of an entry point, to the next, so this is below
+    the new fixpoint. An inner loop then takes one pass if nothing has changed.
+    """
+    known = frame.heads.get((s.id, *frame.turn))
+    return {} if known is None else joins.joined(ctx, [{}, known])
 
 
 def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:

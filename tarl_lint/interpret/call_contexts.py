@@ -93,7 +93,7 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
     ctx.store.push()
     depth = len(ctx.store.layers) - 1
     frame.depth_of_layers = depth
-    frame.jumps, frame.tries, frame.escapes = [], [], []
+    frame.jumps, frame.tries, frame.escapes, frame.statement = [], [], [], None
     bind_parameters(ctx, frame, closure, passed)
     ctx.guards, guards = [], ctx.guards
     ctx.stack.append(frame)

@@ -146,8 +146,10 @@ class Interpreter:
 
     def look(self, objects: Iterable[Obj]) -> None:
         """Note that the running call depends on these objects' stamps: meaning, fields and data."""
+        noted = self.store.reads.objects
         for obj in objects:
-            self.store.reads.look(obj)
+            if obj not in noted:
+                noted[obj] = obj.stamp
 
     # --- places -----------------------------------------------------------------------------------------
 

@@ -17,7 +17,7 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
-from tarl_lint.memory.values import Key, Value, join_all
+from tarl_lint.memory.values import ABSENT, Key, Value, join_all
 
 READS = 40  # compared facts that cost as much as a statement
 
@@ -40,7 +40,7 @@ class Run:
     delta: Delta
     edges: int  # number of edges that it made
     noted: bool  # whether `delta` was stored value by value before
-    heard: dict[Key, Value | None]  # values that other roots may store at its waits
+    heard: dict[Key, Value]  # values that other roots may store at its waits
 
 
 def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:
@@ -58,7 +58,7 @@ def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[],
         return last
     made = _executed(ctx, frame, passed, mode, execute)
     if isinstance(last, Run) and same and made.reads.whole:
-        _check(frame, last, made)
+        _check(ctx, frame, last, made)
     frame.recorded = made if made.reads.whole and ctx.probe is None and ctx.watch is None else None
     return made
 
@@ -85,22 +85,27 @@ def _executed(
 
 
 def _hears(store: Store, last: Run) -> bool:
-    """Return whether other roots may store the same values as at the call's last wait."""
+    """Return whether other roots may store the same values as at the call's first and last waits."""
     heard = store.heard()
     if last.heard is not heard and last.heard == heard:
         last.heard = heard
-    return last.heard is heard
+    return last.heard is heard and last.reads.heard == len(heard)
 
 
-def _check(frame: Frame, last: Run, made: Run) -> None:
+def _check(ctx: Interpreter, frame: Frame, last: Run, made: Run) -> None:
     """Compare a run with the one that would have been replayed. Raises AssertionError if they differ."""
-    wrong = {
-        key for key in last.delta.keys() | made.delta.keys() if last.delta.get(key) != made.delta.get(key)
-    }
+    keys = last.delta.keys() | made.delta.keys()
+    wrong = {key for key in keys if _left(ctx, last, key) != _left(ctx, made, key)}
     escapes = [(e.name, e.value) for e in last.escapes] == [(e.name, e.value) for e in made.escapes]
     if wrong or last.result != made.result or not escapes or made.edges:
         what = [(key, last.delta.get(key), made.delta.get(key)) for key in sorted(wrong, key=str)]
         raise AssertionError(f"{frame}: {what}, {last.result} or {made.result}, {made.edges} new edges")
+
+
+def _left(ctx: Interpreter, run: Run, key: Key) -> Value | None:
+    """Return the value of a key after a run. A cleared field equals an unset one if it was unset before."""
+    value = run.delta.get(key)
+    return None if value is ABSENT and ctx.store.peek(key) is None else value
 
 
 def _wait_again(ctx: Interpreter, reads: Reads) -> None:
@@ -129,6 +134,6 @@ def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
     if ctx.leisure is not None and ctx.spent + last.cost > ctx.leisure:
         return False
     reads, store = last.reads, ctx.store
-    if reads.waits and (len(store.root.heeds) != reads.heeds or not _hears(store, last)):
+    if reads.waits and not _hears(store, last):
         return False
     return unchanged(reads, last.found, last.stored, store, ctx.graph)

@@ -26,7 +26,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
     """Exchange stored values with other roots, at a wait."""
     store, heeds = ctx.store, ctx.store.root.heeds
     reads = store.reads
-    reads.wait(len(heeds))
+    reads.wait(len(store.heard()))
     reads.keys.update((heeds & store.now.keys()) - reads.written)
     changed = show(ctx)
     ctx.spent += len(changed) // EXCHANGED

@@ -48,6 +48,7 @@ class Frame(Obj):
         "escapes",
         "function",
         "guards",
+        "heads",
         "id",
         "jumps",
         "module",
@@ -91,6 +92,9 @@ class Frame(Obj):
         self.statement: ir.Stmt | None = None
         self.closures: dict[int, Branches] = {}
         self.control: object = None
+        self.heads: dict[
+            tuple[int, ...], dict[Key, Value]
+        ] = {}  # loop and turn → state at its head, last fixpoint
         self.captured = False
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
@@ -112,6 +116,7 @@ class Frame(Obj):
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
         self.recorded = self.passed = None
+        self.heads.clear()
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is; None for functions."""

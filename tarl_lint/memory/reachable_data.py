@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import Final
+
 from tarl_lint.definitions import FIELDS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
@@ -12,6 +16,16 @@ from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Inside
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value
+
+NUMBER: Final = attrgetter("number")
+
+
+@dataclass(slots=True, eq=False)
+class Visit:
+    """One traversal: the nodes inside visited objects, and the objects with data in each points-to set."""
+
+    known: dict[Obj, Nodes] = field(default_factory=dict)
+    laden: dict[frozenset[Obj], list[Obj]] = field(default_factory=dict)
 
 
 def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
@@ -28,11 +42,11 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
         outer.add(last.reads)
         return last.nodes
     reads = store.reads = ctx.graph.reads = Reads()
-    known: dict[Obj, Nodes] = {}
+    visit = Visit()
     nodes, grown, tick = NONE, ctx.graph.grown, store.tick
     for obj in in_order(objects):
-        nodes |= _deep(ctx, obj, known, 0)
-    ctx.count(len(known))
+        nodes |= _deep(ctx, obj, visit, 0)
+    ctx.count(len(visit.known))
     store.reads = ctx.graph.reads = outer
     outer.add(reads)
     store.insides[key] = Inside(nodes, reads, *store.found_by(reads), tick, grown)
@@ -50,7 +64,7 @@ def _still(ctx: Interpreter, last: Inside) -> bool:
     return True
 
 
-def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
+def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool = False) -> Nodes:
     """Return the nodes inside one object; cycles are entered once.
 
     With `counted`, the summary field of the enclosing object has been added already, so the result is incomplete for
@@ -61,6 +75,7 @@ def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, co
     if not obj.laden:
         ctx.store.doubt(obj)
         return NONE
+    known = visit.known
     inside = known.get(obj)
     if inside is not None:
         return inside
@@ -78,9 +93,9 @@ def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, co
         if value is not None:
             found |= ctx.settled(value) if name.isidentifier() else value.deps
             if value.pts:
-                found |= _behind(ctx, value, known, depth + 1)
+                found |= _behind(ctx, value, visit, depth + 1)
     for sub in _parts(ctx, obj, overwritten):
-        found |= _deep(ctx, sub, known, depth + 1, counted=not overwritten)
+        found |= _deep(ctx, sub, visit, depth + 1, counted=not overwritten)
     inside = frozenset(found)
     if whole:
         known[obj] = inside
@@ -106,8 +121,8 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
 def defined(ctx: Interpreter, obj: Obj) -> str:
     """Return the name of a message's definition, also for a nested message; empty if unknown."""
-    if obj.parent is None:
-        return obj.defined
+    if obj.parent is None or not obj.whole.defined:
+        return obj.whole.defined
     outer = FIELDS.get(defined(ctx, obj.parent), {})
     return outer.get(obj.name, "")
 
@@ -124,15 +139,36 @@ def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
     )
 
 
-def _behind(ctx: Interpreter, value: Value, known: dict[Obj, Nodes], depth: int) -> Nodes:
+def _behind(ctx: Interpreter, value: Value, visit: Visit, depth: int) -> Nodes:
     """Return the nodes inside the objects of a field, passed through the field's carriers."""
-    inner = NONE
-    for target in in_order(value.pts):
-        if target.laden:
-            inner |= _deep(ctx, target, known, depth)
-        elif target.kind not in HOLLOW:
-            ctx.store.doubt(target)
+    inner = _inside_all(ctx, value.pts, visit, depth)
     return ctx.graph.through(inner, value.deps) if inner else inner
+
+
+def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: int) -> Nodes:
+    """Return the nodes inside objects. Many fields point to the same objects, so most were visited before."""
+    laden = visit.laden.get(objects)
+    if laden is None:
+        laden = visit.laden[objects] = _laden(ctx, objects)
+    if depth > MAX_NESTING or not laden:
+        return NONE
+    insides = [*map(visit.known.get, laden)]
+    if None in insides:
+        insides = [_deep(ctx, obj, visit, depth) for obj in laden]
+    return NONE.union(*filter(None, insides))
+
+
+def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:
+    """Return the objects that may contain data, in order of creation; record that the others contain none."""
+    found = []
+    for obj in in_order(objects):
+        if obj.kind in HOLLOW:
+            continue
+        if obj.laden:
+            found.append(obj)
+        else:
+            ctx.store.doubt(obj)
+    return found
 
 
 def _node_like(ctx: Interpreter, obj: Obj) -> bool:
@@ -150,4 +186,4 @@ def _is_self(ctx: Interpreter, frame: Frame, obj: Obj) -> bool:
 
 def in_order(objects: frozenset[Obj]) -> list[Obj]:
     """Return objects in order of creation; the order of a set depends on memory addresses."""
-    return sorted(objects, key=lambda obj: obj.number) if len(objects) > 1 else list(objects)
+    return sorted(objects, key=NUMBER) if len(objects) > 1 else list(objects)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Set
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final, TypeVar
 
 from tarl_lint.memory.values import Key, Obj, Value, join
 
+NEW: Final = -1  # stamp of an object that did not exist yet
+T = TypeVar("T")
+U = TypeVar("U")
 Fact = tuple[Callable[[Any], object], object]  # (function, its argument)
 
 
@@ -28,13 +31,16 @@ class Reads:
         default_factory=dict
     )  # object → stamp, the version of its fields, parts and data
     unreached: set[int] = field(default_factory=set)  # nodes that no source reached
+    holders: dict[Obj, int] = field(
+        default_factory=dict
+    )  # object → number of keys to which a pointer to it was ever stored
     held: dict[int, int] = field(
         default_factory=dict
     )  # carrier → number of nodes that it has passed on inside objects
     facts: dict[Fact, object] = field(default_factory=dict)
     whole: bool = True  # False if a budget limit cut the call short
     waits: bool = False
-    heeds: int = 0  # size of the root's `heeds` at the first wait
+    heard: int = 0  # number of keys at which other roots' values are taken in, at the first wait
     own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
     admitted: dict[Key, Value] = field(default_factory=dict)  # values from other roots, taken in at waits
     left: int = 0  # number of paths left so far, whose stores no longer count as `written`
@@ -50,10 +56,10 @@ class Reads:
         if (question, of) not in self.facts:
             self.facts[question, of] = question(of)
 
-    def wait(self, heeds: int, own: Set[Key] = frozenset()) -> None:
+    def wait(self, heard: int, own: Set[Key] = frozenset()) -> None:
         """Record a wait, at which other roots can see the stores so far, and store."""
         if not self.waits:
-            self.waits, self.heeds = True, heeds
+            self.waits, self.heard = True, heard
             self.own = frozenset(self.written | own)
 
     def admit(self, key: Key, value: Value) -> None:
@@ -63,20 +69,31 @@ class Reads:
 
     def add(self, inner: Reads) -> None:
         """Merge the reads of a nested call."""
-        if self.taken.get(inner) == self.left:
+        taken = self.taken.get(inner)
+        if taken == self.left:
             return
         self.taken[inner] = self.left
         self.keys.update(inner.keys - self.written)
         self.stored.update(inner.stored - self.written)
+        if taken is None:
+            self._add_rest(inner)
+
+    def _add_rest(self, inner: Reads) -> None:
+        """Merge the reads that do not depend on the current path; once is enough."""
         self.unreached |= inner.unreached
-        for obj in inner.objects.keys() - self.objects.keys():
-            self.objects[obj] = inner.objects[obj]
-        for carrier in inner.held.keys() - self.held.keys():
-            self.held[carrier] = inner.held[carrier]
-        for fact in inner.facts.keys() - self.facts.keys():
-            self.facts[fact] = inner.facts[fact]
+        _complete(self.objects, inner.objects)
+        _complete(self.holders, inner.holders)
+        _complete(self.held, inner.held)
+        _complete(self.facts, inner.facts)
         self.whole = self.whole and inner.whole
         if inner.waits:
-            self.wait(inner.heeds, inner.own)
+            self.wait(inner.heard, inner.own)
             for key, value in inner.admitted.items():
                 self.admit(key, value)
+
+
+def _complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
+    """Add missing entries, in time proportional to `theirs`, which is usually the smaller one."""
+    for key, value in theirs.items():
+        if key not in mine:
+            mine[key] = value

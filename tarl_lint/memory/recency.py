@@ -9,11 +9,11 @@ from collections.abc import Hashable
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reads import NEW
 from tarl_lint.memory.store import BORN
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
-NEW = -1  # stamp of an object that did not exist yet
 
 
 def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
@@ -43,7 +43,7 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
 
 def _age(ctx: Interpreter, obj: Obj) -> None:
     """Replace pointers to the former newest object by pointers to the summary of older ones."""
-    ctx.store.reads.ask(held_at, obj)
+    ctx.store.reads.holders.setdefault(obj, len(obj.holders))
     holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
     if not holders:
         return
@@ -61,11 +61,6 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
             if pts is None:
                 pts = without[value.pts] = (value.pts - {obj}) | {older}
             ctx.store.put(key, Value(value.deps, pts, value.consts))
-
-
-def held_at(obj: Obj) -> int:
-    """Return the number of keys to which a pointer to an object was ever stored."""
-    return len(obj.holders)
 
 
 def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:

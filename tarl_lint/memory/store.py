@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
+from tarl_lint.memory.values import ABSENT, DATA, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
@@ -91,7 +91,7 @@ class Shared:
             if current.laden:
                 continue
             current.laden = True
-            current.stamp += 1
+            current.changed(DATA)
             self.dirty |= self._others(self.doubters.pop(current, None), root)
             pending += current.inside
             pending += current.subs.values()
@@ -173,7 +173,8 @@ class Store:
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
     )  # values that other roots may store while this one waits
-    hearing: dict[Key, Value | None] = field(default_factory=dict)
+    hearing: dict[Key, Value] = field(default_factory=dict)
+    heeded: int = 0  # number of heeded keys when `hearing` was computed
     waited: bool = False  # whether other roots may have stored since the start
     reads: Reads = field(default_factory=Reads)  # reads of the running call
     gather: Callable[[Key, Value], Value] = as_it_is  # maps a value stored to a field with weak updates
@@ -246,7 +247,7 @@ class Store:
         if noted is None or (value.pts is not noted and not value.pts <= noted):
             owner.fields[name] = value.pts
             if noted is None:
-                owner.stamp += 1
+                owner.changed(name)
                 self.shared.edition += name == "__dict__"
             laden = self._note(key, value.pts) or laden
         if laden and not owner.laden:
@@ -346,10 +347,15 @@ class Store:
         news = part.deps or part.pts or not value.consts_in(theirs)
         return part if news or not (value.deps or value.pts) else None
 
-    def heard(self) -> dict[Key, Value | None]:
-        """Return the values that other roots may store at the keys that this root heeds; constant during its run."""
-        if len(self.hearing) != len(self.root.heeds):
-            self.hearing = {key: self.others(key) for key in self.root.heeds}
+    def heard(self) -> dict[Key, Value]:
+        """Return the values that other roots may store at the keys that this root heeds; constant during its run.
+
+        Keys to which no other root stores are left out: heeding one more of them changes nothing.
+        """
+        if self.heeded != len(self.root.heeds):
+            self.heeded = len(self.root.heeds)
+            news = ((key, self.others(key)) for key in self.root.heeds)
+            self.hearing = {key: value for key, value in news if value is not None}
         return self.hearing
 
     def own(self) -> list[Key]:

@@ -28,7 +28,8 @@ def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> No
         if isinstance(view.info, dict):
             before = dict(view.info)
             view.info.update(names)
-            view.stamp += view.info != before
+            if view.info != before:
+                view.changed()
 
 
 def seen_through(ctx: Interpreter, view: Obj, name: str) -> tuple[Obj, str]:

@@ -35,6 +35,14 @@ class Place:
     pos: ir.Pos
 
 
+@dataclass(slots=True)
+class Arrival:
+    """The nodes by which an item arrives; `consulted` maps the carriers asked to how many nodes they had passed on."""
+
+    nodes: Nodes
+    consulted: dict[int, int]
+
+
 @dataclass(slots=True, eq=False)
 class Graph:
     """The graph. Edges lead backwards, from a node to its dependencies.
@@ -73,6 +81,10 @@ class Graph:
     asking: set[tuple[int, int]] = field(
         default_factory=set
     )  # arguments of active calls of `_by`, against infinite recursion
+    arrivals: dict[tuple[int, int], Arrival] = field(
+        default_factory=dict
+    )  # cache of `_arrival`, by carrier and item
+    arrived_at: int = 0  # `grown` when this cache was last emptied
     reads: Reads = field(default_factory=Reads)  # reads of the running call
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -193,7 +205,7 @@ class Graph:
                 continue
             inside = self.held.get(self._first(carrier))
             for item in content & inside if inside else ():
-                arrived = self._by(carrier, item)
+                arrived = self._arrival(carrier, item)
                 if arrived:
                     found |= arrived
                     taken.add(item)
@@ -225,6 +237,23 @@ class Graph:
         while carrier in self.carried:
             carrier = self.carried[carrier][1]
         return carrier
+
+    def _arrival(self, carrier: int, item: int) -> Nodes:
+        """Return the nodes by which a carrier passes on an item; cached until `grown` changes."""
+        if self.asking:
+            return frozenset(self._by(carrier, item))
+        if self.arrived_at != self.grown:
+            self.arrived_at = self.grown
+            self.arrivals.clear()
+        known = self.arrivals.get((carrier, item))
+        if known is None:
+            self.reads.held, outer = {}, self.reads.held
+            found = frozenset(self._by(carrier, item))
+            known = self.arrivals[carrier, item] = Arrival(found, self.reads.held)
+            self.reads.held = outer
+        for consulted, size in known.consulted.items():
+            self.reads.held.setdefault(consulted, size)
+        return known.nodes
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
         """Return an item as passed on by one carrier; nothing if it was not inside then."""

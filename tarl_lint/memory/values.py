@@ -22,6 +22,7 @@ MAX_TEXTS = 24  # string constants of a value; high, for tables of topic names
 MAX_DEPTH = 6  # nesting depth of embedded objects
 MAX_ELEMENTS = 2  # nesting of separate elements; more would give exponentially many objects
 MAX_CELLS = 16  # separate nested elements of a library object, such as a matrix
+DATA: Final = "<data>"  # in `Obj.changes`: the object received its first data
 MESSAGES = frozenset(["message", "goal"])  # kinds of objects that are data themselves
 
 
@@ -30,6 +31,7 @@ class Obj:
 
     __slots__ = (
         "cells",
+        "changes",
         "defined",
         "depth",
         "elements",
@@ -69,9 +71,10 @@ class Obj:
             parent.laden if parent is not None else kind in MESSAGES
         )  # whether it may hold data, at any depth
         self.cells = 0  # number of nested elements so far
-        self.stamp = (
-            0  # version: grows with new fields or parts, with the first data, and with a change of meaning
-        )
+        self.stamp = 0  # version: length of `changes`
+        self.changes: list[
+            str | Obj | None
+        ] = []  # added fields and parts, DATA, or None for a change of meaning
         self.inside: dict[Obj, None] = {}  # objects that hold a pointer to it, stored while it was not laden
 
     def sub(self, name: str) -> Obj:
@@ -85,7 +88,7 @@ class Obj:
                     return self
                 self.whole.cells += 1
             found = self.subs[name] = Obj(self.kind, (self.key, name), name, self)
-            self.stamp += 1
+            self.changed(found)
         return found
 
     def path(self) -> str:
@@ -103,8 +106,13 @@ class Obj:
     def describe(self, info: object) -> None:
         """Set the object's meaning, and increment the stamp if it changed."""
         if info is not self.info and info != self.info:
-            self.stamp += 1
+            self.changed()
         self.info = info
+
+    def changed(self, added: str | Obj | None = None) -> None:
+        """Record a change: an added field or part, the first data (DATA), or None for a change of meaning."""
+        self.stamp += 1
+        self.changes.append(added)
 
     def release(self) -> None:
         """Drop references, to break cycles."""
@@ -112,6 +120,7 @@ class Obj:
             if sub is not self:
                 sub.release()
         self.subs.clear()
+        self.changes.clear()
         self.holders.clear()
         self.inside.clear()
         self.fields.clear()

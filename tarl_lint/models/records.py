@@ -198,7 +198,8 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
         obj.describe(BY_CLASS)
     definitions = {reachable_data.defined(ctx, o) for o in value.pts}
     defined = definitions.pop() if len(definitions) == 1 else ""
-    obj.stamp += defined != obj.defined
+    if defined != obj.defined:
+        obj.changed()
     obj.defined = defined
     return obj
 

@@ -1,0 +1,239 @@
+"""What of an object's changes can be told where a call begins, and where loops and carriers begin again."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret import branches
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory import recency
+from tarl_lint.memory.reads import NEW, Reads
+from tarl_lint.memory.same_reads import unchanged
+from tarl_lint.memory.store import BORN, Root, Shared, Store
+from tarl_lint.memory.value_flow_graph import Graph
+from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
+from tarl_lint.read.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.settings.config import Config
+
+DATA = frozenset([1])
+NESTED = """
+import rospy
+from std_msgs.msg import Float64
+
+def on_message(msg):
+    best, table = 0.0, {}
+    for i in range(9):
+        for j in range(9):
+            for k in range(9):
+                previous = best
+                table[i] = best
+                best = table[j] + last
+                last = msg.data
+    pub.publish(previous)
+
+pub = rospy.Publisher("out", Float64, queue_size=1)
+rospy.Subscriber("in", Float64, on_message)
+"""
+
+
+@pytest.fixture
+def store() -> Store:
+    return Store(Shared(), Root("test", "test"))
+
+
+@pytest.fixture
+def obj(store) -> Obj:
+    made = Obj("lib", "made")
+    store.put((made, BORN), BOTTOM)
+    return made
+
+
+def same(store: Store, reads: Reads) -> bool:
+    return unchanged(reads, *store.found_by(reads), store, Graph())
+
+
+def noted(store: Store, *objects: Obj) -> Reads:
+    """Return reads of a call that looked at objects as they are."""
+    reads = Reads()
+    for obj in objects:
+        reads.look(obj)
+    return reads
+
+
+def hidden(store: Store, obj: Obj, name: str, value: Value) -> None:
+    """Store a field on a path that is left again."""
+    store.push()
+    store.put((obj, name), value)
+    store.pop()
+
+
+def test_a_field_that_was_added_on_another_path_is_not_seen(store, obj):
+    reads = noted(store, obj)
+    hidden(store, obj, "x", BOTTOM)
+    assert same(store, reads)
+    store.put((obj, "x"), BOTTOM)
+    assert not same(store, reads)
+
+
+def test_a_call_that_waits_sees_what_others_store_in_new_fields(store, obj):
+    reads = noted(store, obj)
+    hidden(store, obj, "x", BOTTOM)
+    reads.wait(0)
+    assert not same(store, reads)
+
+
+def test_data_that_came_into_an_object_on_another_path_is_not_seen(store, obj):
+    store.put((obj, "x"), BOTTOM)
+    reads = noted(store, obj)
+    hidden(store, obj, "x", Value(DATA))
+    assert obj.laden
+    assert same(store, reads)
+    store.put((obj, "x"), Value(DATA))
+    assert not same(store, reads)
+
+
+def test_data_inside_what_an_object_holds_is_seen(store, obj):
+    inner = Obj("lib", "inner")
+    store.put((obj, "x"), pointer(inner))
+    reads = noted(store, obj)
+    store.put((inner, "y"), Value(DATA))
+    assert obj.laden
+    assert not same(store, reads)
+
+
+def test_data_that_may_be_anywhere_in_the_whole_is_seen_in_its_parts(store, obj):
+    part = obj.sub("x")
+    reads = noted(store, part)
+    store.put((obj, "*"), Value(DATA))
+    assert part.laden
+    assert not same(store, reads)
+
+
+def test_a_part_is_seen_when_something_is_stored_in_it_or_deeper(store, obj):
+    reads = noted(store, obj)
+    inner = obj.sub("x").sub("y")
+    assert same(store, reads)
+    store.put((inner, "z"), BOTTOM)
+    assert not same(store, reads)
+
+
+def test_what_an_object_stands_for_is_always_seen(store, obj):
+    reads = noted(store, obj)
+    obj.describe("another thing")
+    assert not same(store, reads)
+
+
+def test_an_object_that_a_call_made_is_new_again_only_where_nothing_of_it_is_left(store):
+    obj, holder = Obj("lib", "made"), Obj("instance", "holder")
+    reads = Reads(objects={obj: NEW})
+    hidden(store, obj, BORN, BOTTOM)
+    assert same(store, reads)
+    hidden(store, holder, "x", pointer(obj))
+    assert same(store, reads)
+    store.put((holder, "x"), pointer(obj))
+    assert not same(store, reads)  # making it would first move what is held to the older ones
+
+
+def test_places_that_hold_an_object_count_where_they_can_be_seen(store, obj):
+    one, other = Obj("instance", "one"), Obj("instance", "other")
+    store.put((one, "x"), pointer(obj))
+    reads = Reads(holders={obj: len(obj.holders)})
+    hidden(store, other, "x", pointer(obj))
+    assert same(store, reads)
+    store.put((other, "x"), pointer(obj))
+    assert not same(store, reads)
+
+
+def test_places_that_nobody_else_stores_to_are_not_heard():
+    shared, root, other = Shared(), Root("one", "test"), Root("other", "test")
+    mine, theirs = (Obj("instance", "a"), "x"), (Obj("instance", "b"), "x")
+    shared.leave(shared.pauses, other, theirs, Value(DATA))
+    store = Store(shared, root)
+    root.heeds.add(mine)
+    assert store.heard() == {}
+    root.heeds.add(theirs)
+    assert store.heard() == {theirs: Value(DATA)}
+
+
+def test_reads_that_no_path_decides_on_are_taken_over_once(obj):
+    inner, outer = Reads(objects={obj: 3}), Reads()
+    outer.add(inner)
+    assert outer.objects == {obj: 3}
+    outer.objects.clear()
+    outer.left += 1
+    outer.add(inner)
+    assert outer.objects == {}
+
+
+# --- loops ------------------------------------------------------------------------------------------------
+
+
+def linked(text: str) -> Linker:
+    machine = Linker([Module("node.py", "node", text, ast.parse(text))], Config(), thorough=False)
+    with_deep_stack(machine.link)
+    return machine
+
+
+def test_an_inner_loop_goes_on_from_where_it_ended(monkeypatch):
+    going_on = linked(NESTED)
+    monkeypatch.setattr(branches, "_first_head", lambda *_: {})
+    afresh = linked(NESTED)
+    assert Tracer(going_on).flows() == Tracer(afresh).flows() != ()
+    assert going_on.total < 0.7 * afresh.total
+
+
+def test_a_loop_begins_with_what_was_stored_since_it_ended(store):
+    machine = linked(NESTED)
+    frame = next(f for f in machine.frames.values() if f.function.name == "on_message")
+    machine.store = store
+    ((key, head), *_) = frame.heads.items()
+    statement = type("Loop", (), {"id": key[0]})()
+    best = (frame, "best")
+    store.put(best, Value(frozenset([-1])))
+    assert branches._first_head(machine, statement, frame)[best].deps == head[best].deps | {-1}  # type: ignore[arg-type]
+
+
+# --- carriers ---------------------------------------------------------------------------------------------
+
+
+def test_how_content_arrives_is_remembered_until_more_is_passed_on():
+    machine = linked(NESTED)
+    graph = machine.graph
+    place = graph.places[0]
+    item, outer, inner = (graph.node(("test", n), place, frozenset()) for n in range(3))
+    graph.hold(inner, frozenset([item]))
+    graph.hold(outer, frozenset([inner]))
+    (carried,) = graph.through(frozenset([inner]), frozenset([outer]))
+    first = graph.through(frozenset([item]), frozenset([carried]))
+    assert graph.arrivals
+    assert graph.through(frozenset([item]), frozenset([carried])) == first
+    graph.hold(outer, graph.through(frozenset([item]), frozenset([inner])))
+    assert graph.through(frozenset([item]), frozenset([carried])) != first
+
+
+def test_what_was_asked_for_a_remembered_arrival_is_read_again():
+    machine = linked(NESTED)
+    graph = machine.graph
+    place = graph.places[0]
+    item, outer, inner = (graph.node(("test", n), place, frozenset()) for n in range(3))
+    graph.hold(inner, frozenset([item]))
+    graph.hold(outer, frozenset([inner]))
+    (carried,) = graph.through(frozenset([inner]), frozenset([outer]))
+    asked = []
+    for _ in range(2):
+        graph.reads = Reads()
+        graph.through(frozenset([item]), frozenset([carried]))
+        asked.append(graph.reads.held)
+    assert asked[0] == asked[1] != {}
+
+
+def test_objects_are_made_anew_where_they_were_made_before(store):
+    machine = linked(NESTED)
+    frame = next(iter(machine.frames.values()))
+    machine.store = store
+    obj = recency.allocate(machine, "lib", frame, "test")
+    assert store.reads.objects[obj] == NEW
