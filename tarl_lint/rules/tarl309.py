@@ -10,7 +10,6 @@ where a callback receives them or a function makes them, and the variable holds 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import Final
 
 from tarl_lint.definitions import FIELDS
@@ -67,6 +66,8 @@ VALID: Final = (
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each use of an absent field, once for a program."""
+    from difflib import get_close_matches  # slow to import; reports import every rule
+
     for interface in {
         one.interface.path: one.interface for one in system.instances if one.interface
     }.values():
