@@ -59,7 +59,10 @@ class Monitor:
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
-        """Update with missions over the scale's cells plus one for others, the `new` ones; unknown totals are NaN."""
+        """Update with missions in order; a total is NaN if it is unknown.
+
+        Cells are numbered as in the scale; all others, which are listed in `new`, share the next number.
+        """
         bins = binned(self.scale, sample)
         self.moments.add(self.counts.missions, time.tolist())
         for begin in range(0, sample.episodes, conformal.TOGETHER):

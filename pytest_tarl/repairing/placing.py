@@ -67,7 +67,7 @@ class Placing:
         pairs = self.order.goal.pairs[:LOOKED_AT]
         first = pairs[0].seed
         if trials(moved, first) == trials(candidate, first):
-            return moved  # equal reward as at the use, so the definition affects nothing else
+            return moved  # same reward as a change at the use, so nothing else depends on the definition
         if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved
         for mutation in mutations:
