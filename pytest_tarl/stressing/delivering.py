@@ -26,7 +26,7 @@ class Delivered:
 def deliver(request: Request, root: Path) -> Delivered:
     """Replay kept drifts, stress, write result and page. Raise RecordingError if the test itself is broken."""
     name = f"{slug(request.fixture.test)}-{slug(request.drift)}"
-    memory = root / ".tarl" / "stress" / f"{name}.json"
+    memory = root / ".tarl" / "stress" / f"{name}-failing.json"
     try:
         before = _replayed(request, memory)
     except KeyboardInterrupt:
@@ -55,7 +55,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
     """Write the files; return a line for each that could not be written. The result does not depend on them."""
     folder = root / ".tarl"
     jobs: dict[Path, Callable[[Path], None]] = {
-        folder / "results" / f"{name}-stress.json": lambda path: write_atomically(
+        folder / "stress" / f"{name}.json": lambda path: write_atomically(
             path, json_result.text(found).encode()
         ),
         folder / "report" / f"{name}-stress.html": lambda path: write_atomically(

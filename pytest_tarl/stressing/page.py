@@ -28,6 +28,10 @@ text { font: 12px system-ui, sans-serif; fill: #4a5265 } table { border-collapse
 td, th { padding: .1rem .8rem .1rem 0; text-align: right } .broken { color: #b3261e; font-weight: 600 }
 @media (prefers-color-scheme: dark) { body { background: #14171f; color: #e6e9f0 } text { fill: #aab2c5 } }
 """
+LEGEND = (
+    "Each curve shows the margin over the values of a direction: 1 as designed, 0 where the guarantee is just met. "
+    "Green values hold, red ones fail, brown ones are undecided. A boundary lies in the shaded part."
+)
 COLOURS = {"fails": "#b3261e", "holds": "#1f7a4d", "open": "#8a6d00"}
 
 
@@ -53,6 +57,7 @@ def _opening(stress: Stress) -> Iterator[str]:
         yield nominal_words()
     elif stress.ended:
         yield ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)
+    yield LEGEND
 
 
 def _sections(stress: Stress) -> Iterator[str]:

@@ -37,7 +37,7 @@ def spaced(tank: pytest.Pytester) -> pytest.Pytester:
 
 def written(tank: pytest.Pytester) -> tuple[bytes, bytes]:
     folder = tank.path / ".tarl"
-    (found,), (page,) = folder.glob("results/*-stress.json"), folder.glob("report/*-stress.html")
+    (found,), (page,) = folder.glob("stress/*-world.json"), folder.glob("report/*-stress.html")
     return found.read_bytes(), page.read_bytes()
 
 
@@ -52,6 +52,10 @@ def test_a_run_reports_writes_keeps_and_replays(spaced: pytest.Pytester) -> None
         ]
     )
     first = written(spaced)
+    assert first[1].count(b"<svg") == 2
+    assert not [
+        *spaced.path.glob(".tarl/results/*")
+    ]  # which hold comparisons only, as `tarl summary` expects
     found = json.loads(first[0])
     jsonschema.validate(found, json_result.schema())
     pump, gauge = found["directions"]
