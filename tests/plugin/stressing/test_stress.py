@@ -18,17 +18,14 @@ from pytest_tarl.stressing.findings import failure
 from tests.plugin.stressing.worlds import space_of
 from tests.plugin.tank import RECORD, changed
 
-STRESS = ("--tarl-stress", "--tarl-stress-budget=320")
-SPACE = (
-    '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0),'
-    ' gauge=faults.bias("/level", "data", 0.0, 0.5))}'
-)
+STRESS = ("--tarl-stress", "--tarl-stress-budget=150")
+SPACE = '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0))}'
 
 
 @pytest.fixture
 def spaced(tank: pytest.Pytester) -> pytest.Pytester:
-    """A recorded tank whose pump may be clogged, and whose gauge may be wrong."""
-    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor, faults")
+    """A recorded tank whose pump may be clogged."""
+    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor")
     changed(tank, "test_tank", '{"clogged": 0.25}', SPACE)
     changed(tank, "test_tank", "1.0 if tarl_drift is None else tarl_drift", 'tarl_drift["pump"]')
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
@@ -52,16 +49,15 @@ def test_a_run_reports_writes_keeps_and_replays(spaced: pytest.Pytester) -> None
         ]
     )
     first = written(spaced)
-    assert first[1].count(b"<svg") == 2
+    assert first[1].count(b"<svg") == 1
     assert not [
         *spaced.path.glob(".tarl/results/*")
     ]  # which hold comparisons only, as `tarl summary` expects
     found = json.loads(first[0])
     jsonschema.validate(found, json_result.schema())
-    pump, gauge = found["directions"]
+    (pump,) = found["directions"]
     # the reward is about -3.6 / pump, and 5 % less than -3.6 is tolerated: 1 / 1.05 = 0.952
     assert 0.93 < pump["boundary"]["estimate"] < 0.98
-    assert 0.0 < gauge["boundary"]["estimate"] < 0.05  # a loss this small in each of 25 steps is tolerated
     again = spaced.runpytest(*STRESS, "--tarl-workers=2")
     assert "still fails." in again.stdout.str()
     assert written(spaced) == first
@@ -84,17 +80,17 @@ def test_a_nominal_world_that_is_not_the_recorded_one_is_told(spaced: pytest.Pyt
 def test_ctrl_c_keeps_what_is_known(spaced: pytest.Pytester) -> None:
     stop = "    if tarl_drift['pump'] < 0.5:\n        raise KeyboardInterrupt\n    tarl.start"
     changed(spaced, "test_tank", "    tarl.start", stop)
-    done = spaced.runpytest_subprocess(*STRESS)
-    assert done.ret == pytest.ExitCode.INTERRUPTED
-    assert "Interrupted after" in done.stdout.str()
-    assert json.loads(written(spaced)[0])["ended"] == "interrupted"
+    with pytest.raises(KeyboardInterrupt):
+        spaced.runpytest(*STRESS)
+    found = json.loads(written(spaced)[0])
+    assert (found["ended"], found["episodes"]) == ("interrupted", 16)
 
 
 def test_without_a_recording_or_a_space_the_next_step_is_told(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*STRESS)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines(["*No test declares a space of drifts*"])
-    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor, faults")
+    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor")
     changed(tank, "test_tank", '{"clogged": 0.25}', SPACE)
     done = tank.runpytest(*STRESS, "-rs")
     done.assert_outcomes(skipped=1, deselected=1)
