@@ -1,0 +1,194 @@
+"""Boundaries that a stress run finds, against an exhaustive grid, and how often it reports one where nothing breaks.
+
+    python benchmarks/stress.py [TASK ...] [--harmless 25]
+
+Each task of benchmarks/drift, and the examples with one number as drift, has the direction from its nominal value to
+its drift. The grid has 41 values, each with 40 episodes on seeds of its own; its boundary is where the margin first
+crosses zero, interpolated. A line per task: both boundaries in shares of the range, their distance, the episodes of
+both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "drift"))
+
+from stage import TASKS, Stage, visit  # noqa: E402
+
+from pytest_tarl.drifts import Drift  # noqa: E402
+from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending  # noqa: E402
+from pytest_tarl.seeds import episode_seeds  # noqa: E402
+from pytest_tarl.spaces import Space, Span  # noqa: E402
+from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
+from pytest_tarl.stressing.findings import Curve  # noqa: E402
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed  # noqa: E402
+from pytest_tarl.stressing.rays import rays  # noqa: E402
+from pytest_tarl.stressing.search import along_rays  # noqa: E402
+
+GRID, EPISODES = 41, 40  # values, and episodes at each
+RECORDED = 100
+SHARE = 0.15  # of the grid's episodes that a stress run may use
+NEAR = 0.05  # of the range: how near the boundary must be to the grid's
+RISK = 0.05 / 3  # of a run with one ray: alpha over the ray, combinations, and nominal
+SIZE = "size"  # name of the only direction
+EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
+
+
+@dataclass(frozen=True)
+class Sized:
+    """Episodes of a task whose drift is a single number, taken from the plan's point."""
+
+    stage: Stage
+    whole: bool  # whether the task counts in whole numbers
+    workers = 1
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode."""
+        size = (plan.point or {})[SIZE]
+        value: Any = round(size) if self.whole else size
+        name = self.stage.drift
+        marked = replace(self.stage.marked, drifts={name: Drift(value)})
+        rollout = replace(self.stage.rollout, designation=marked)
+        return rollout(EpisodePlan(plan.seed, name))
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Return an episode that runs when its result is requested."""
+        return Deferred(self, plan)
+
+
+def nominal_of(stage: Stage) -> str:
+    """Return the nominal value as the task's test writes it."""
+    (path,) = [path for path in stage.folder.glob("test_*.py") if "tarl_drift or" in path.read_text()]
+    found = re.search(r"tarl_drift or ([-\d.]+)", path.read_text())
+    if found is None:
+        raise SystemExit(f"{stage.task}: no nominal value in {path.name}")
+    return found[1].rstrip(".")
+
+
+def span_of(low: float, high: float) -> Space:
+    """Return the space from the nominal value to another."""
+    return Space({SIZE: Span(min(low, high), max(low, high), low)}, {})
+
+
+def run_at(rollout: Sized, size: float, seeds: Sequence[int]) -> list[Outcome]:
+    """Return the outcomes at a size."""
+    return [outcome(rollout(EpisodePlan(seed, point={SIZE: size}))) for seed in seeds]
+
+
+def recorded(rollout: Sized, nominal: float) -> Guarantee:
+    """Return what a recording of the nominal world guarantees."""
+    runs = run_at(rollout, nominal, episode_seeds(11, "offline", RECORDED))
+    stated = rollout.stage.marked.tolerance or 0.0
+    tolerance = max(0.05 * abs(fmean(one.total for one in runs)), stated)
+    return guaranteed(runs, tolerance, rollout.stage.marked)
+
+
+def exhaustive(rollout: Sized, given: Guarantee, nominal: float, far: float) -> float | None:
+    """Return where the margin first crosses zero, as a share of the range; None if it never does."""
+    seeds = episode_seeds(12, "grid", EPISODES)
+    before = run_at(rollout, nominal, seeds)
+    last = 1.0
+    for number in range(1, GRID):
+        after = run_at(rollout, nominal + (far - nominal) * number / (GRID - 1), seeds)
+        loss = fmean(one.total - other.total for one, other in zip(before, after, strict=True))
+        margin = given.margin(fmean(one.passed for one in after), loss)
+        if margin < 0.0:
+            return (number - 1 + last / (last - margin)) / (GRID - 1)
+        last = margin
+    return None
+
+
+def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: int) -> tuple[Curve, int]:
+    """Return the curve of a stress run in one direction, and its episodes."""
+    evaluator = Evaluator(rollout, space, "stress", given, seed, budget, lambda *_: None)
+    (curve,) = (Curve(ray) for ray in rays(space, {}))
+    with suppress(BudgetSpentError):
+        along_rays([curve], evaluator, RISK)
+    return curve, evaluator.spent
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One task: boundaries in shares of the range, episodes of the run, and false boundaries of harmless runs."""
+
+    grid: float | None
+    found: float | None
+    near: float
+    far: float
+    episodes: int
+    harmless: int
+    false: int
+
+
+def compare(stage: Stage, harmless: int) -> Compared:
+    """Compare a stress run of one task with the grid."""
+    text = nominal_of(stage)
+    nominal, far = float(text), float(stage.marked.drifts[stage.drift].value)
+    rollout = Sized(stage, isinstance(stage.marked.drifts[stage.drift].value, int) and "." not in text)
+    given = recorded(rollout, nominal)
+    budget = round(SHARE * GRID * EPISODES)
+    curve, episodes = stressed(rollout, given, span_of(nominal, far), 1, budget)
+    grid = exhaustive(rollout, given, nominal, far)
+    found = curve.boundary
+    false = 0
+    if harmless:
+        half = nominal + (far - nominal) * (0.5 * grid if grid is not None else 1.0)
+        for seed in range(harmless):
+            quiet, _ = stressed(rollout, given, span_of(nominal, half), 100 + seed, budget)
+            false += quiet.confirmed is not None
+    return Compared(
+        grid,
+        found.at if found else None,
+        found.near if found else 0.0,
+        found.far if found else 1.0,
+        episodes,
+        harmless,
+        false,
+    )
+
+
+def agrees(one: Compared) -> bool:
+    """Return whether both found a boundary near each other, or neither did."""
+    if one.grid is None or one.found is None:
+        return one.grid is None and one.found is None
+    return abs(one.grid - one.found) <= NEAR
+
+
+def main() -> None:
+    """Print a line per task, and the sums."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("tasks", nargs="*")
+    parser.add_argument("--harmless", type=int, default=0, help="runs per task where nothing breaks")
+    arguments = parser.parse_args()
+    print(
+        "| task | grid | stress | interval | episodes | of the grid | false |\n|---|---|---|---|---|---|---|"
+    )
+    every = []
+    for task in arguments.tasks or (*TASKS, *EXAMPLES):
+        one: Compared = visit(
+            task, lambda stage: compare(stage, arguments.harmless), EXAMPLES.get(task), HERE / "drift"
+        )
+        every.append(one)
+        shown = [f"{value:.3f}" if value is not None else "none" for value in (one.grid, one.found)]
+        print(
+            f"| {task} | {shown[0]} | {shown[1]} | {one.near:.3f}–{one.far:.3f} | {one.episodes} "
+            f"| {one.episodes / (GRID * EPISODES):.1%} | {one.false} of {one.harmless} |",
+            flush=True,
+        )
+    near = sum(map(agrees, every))
+    print(f"\nWithin {NEAR:.0%} of the range: {near} of {len(every)}.")
+    print(f"False boundaries: {sum(one.false for one in every)} of {sum(one.harmless for one in every)}.")
+
+
+if __name__ == "__main__":
+    main()
