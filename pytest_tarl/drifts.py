@@ -120,7 +120,7 @@ def drift(where: str, name: str, value: Any) -> Drift:
 
 
 def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
-    """Return the value of the scenario `name` in a seed's episode: plain values, one drawn from every range.
+    """Return the value of the scenario `name` for the episode of a seed; each range is replaced by a drawn number.
 
     A space has the values of `point`, or of a drawn one.
     """

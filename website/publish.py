@@ -4,7 +4,7 @@
 
 A version such as v0.2.0 becomes the directory 0.2.0, and `latest` leads to the newest of them; any other name, such as
 `dev`, becomes a directory only. `versions.json` feeds the menu of versions. The JSON schemas of the newest version
-stand in `schemas/`, so that their addresses stay.
+are in `schemas/`, so that their addresses do not change.
 """
 
 from __future__ import annotations

@@ -56,12 +56,12 @@ class World:
 
     @property
     def finished(self) -> bool:
-        """Tell whether the robot is at the end of the line."""
+        """Return whether the robot is at the end of the line."""
         return self.along > LENGTH - 0.05
 
     @property
     def over(self) -> bool:
-        """Tell whether there is nothing left to happen."""
+        """Return whether there is nothing left to happen."""
         return self.finished or bool(self.failure)
 
     @property

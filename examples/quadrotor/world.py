@@ -61,7 +61,7 @@ class World:
 
     @property
     def over(self) -> bool:
-        """Tell whether there is nothing left to happen."""
+        """Return whether there is nothing left to happen."""
         return self.landed or bool(self.failure)
 
     def publish(self, bus: Bus) -> None:

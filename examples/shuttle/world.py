@@ -63,17 +63,17 @@ class World:
 
     @property
     def delivered(self) -> bool:
-        """Tell whether every goal was met in time and precisely."""
+        """Return whether every goal was met in time and precisely."""
         return self.leg == len(self.goals)
 
     @property
     def over(self) -> bool:
-        """Tell whether there is nothing left to happen."""
+        """Return whether there is nothing left to happen."""
         return self.delivered or bool(self.failure)
 
     @property
     def on_patch(self) -> bool:
-        """Tell whether the robot stands on the patch."""
+        """Return whether the robot stands on the patch."""
         return self.patch and PATCH[0] <= self.body.position.x <= PATCH[1]
 
     def publish(self, bus: Bus) -> None:

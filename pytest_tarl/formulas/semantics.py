@@ -108,7 +108,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return bounds(node)
 
     def visitUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the largest of min(right then, left until just before)."""
+        """Return the maximum over instants of min(right at the instant, left before it)."""
         return _until(*self._both(node))
 
     def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802

@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares lost in the worst possible episode
 DOUBT = 1.5  # factor on the variance estimated from few episodes
-CERTAIN = 0.005  # approximate risk of giving up although the mean is above the limit; used only to refuse
+CERTAIN = 0.005  # approximate risk of refusing early although the mean is above the limit
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ without pickle, written to a temporary file and renamed; the same episodes give 
 
 FORMAT_VERSION history:
 1  Columns of float64.
-2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. Where there are formulas also
-   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions ignore, like
-   `stated`, the bounds, and `world`, digests of the test's modules.
+2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. With formulas, the header also
+   has `formulas` and `signals`, and there are columns `robustness` and `lost`. Older versions ignore these, and also
+   `stated` (bounds) and `world` (digests of the test's modules).
 """
 
 from __future__ import annotations

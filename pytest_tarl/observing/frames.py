@@ -4,8 +4,8 @@ A record is `length, crc32` (two little-endian 32-bit numbers) and that many byt
 complete records can be read even if the writer was killed; the next writer removes an incomplete one.
 
 FORMAT history:
-1  Records start, mission, steps, end. Where there are formulas, steps and end also hold `changes` of signals, steps
-   the `times` at which they were closed, and end how long the mission `lasted`; older readers ignore them.
+1  Records start, mission, steps, end. With formulas, steps and end also have `changes` (of signals), steps has
+   `times` (when steps were closed), and end has `lasted` (length of the mission); older readers ignore them.
 """
 
 from __future__ import annotations

@@ -140,7 +140,7 @@ def _anywhere(space: Space, ends: Sequence[Ray], draws: np.random.Generator) -> 
 
 
 def _around(space: Space, best: Failure, draws: np.random.Generator) -> Point:
-    """Return a point around the best one; half of the directions that are nominal there stay so, options all do."""
+    """Return a point around the best one; half of its nominal directions stay nominal, and options stay as they are."""
     target = dict(best.point)
     for name, extent in space.extents.items():
         step, part = float(draws.normal(0.0, SPREAD * best.distance)), draws.random()

@@ -71,7 +71,7 @@ def together(stress: Stress) -> Iterator[str]:
     if len(found) > MOST_SHOWN:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
     if not found and stress.tried:
-        yield f"No combination of directions was found to fail before each alone does ({stress.tried} tried)."
+        yield f"No combination was found that fails although each direction alone holds ({stress.tried} tried)."
 
 
 def broken_promises(stress: Stress) -> list[str]:

@@ -3,7 +3,7 @@
 ROS 2 does not connect a subscription that asks for `RELIABLE` with a publisher that offers `BEST_EFFORT`, nor one
 that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. A number in place of a profile
 means `RELIABLE` and `VOLATILE`; drivers of sensors publish with `qos_profile_sensor_data`, which is `BEST_EFFORT`.
-Who subscribes to a laser scanner with the number 10 receives nothing
+A subscription with the number 10 therefore receives nothing from a laser scanner
 (https://github.com/ros2/ros2_documentation/issues/569).
 
 Both profiles must be constant in the code.

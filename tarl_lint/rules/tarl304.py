@@ -68,7 +68,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each client that misses a server by its name only."""
+    """Yield a hazard for each client whose service differs from that of a server only in its name."""
     if not system.complete:
         return
     served, called = ({name for name, _, _ in system.ends(role)} for role in ("serves", "calls"))

@@ -231,7 +231,7 @@ def _making(frame: Frame, receiver: Obj) -> bool:
 
 
 def _top(frame: Frame) -> bool:
-    """Return whether the main program leads here, not a callback."""
+    """Return whether the main program reaches this code, rather than a callback."""
     top = frame
     while top.caller is not None:
         top = top.caller

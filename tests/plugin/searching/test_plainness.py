@@ -54,7 +54,7 @@ def test_only_numeric_conditions_have_a_threshold() -> None:
 
 
 def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> Sweep:
-    """A world in which any of some operands restores the reward alone, within a window around its right factor."""
+    """A world in which each of several operands alone restores the reward, within a window around its right factor."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         noise = float(np.random.default_rng(seed).normal(0, 0.05))
