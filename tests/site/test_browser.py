@@ -103,7 +103,7 @@ def test_links_lead_to_pages_and_headings_and_nothing_comes_from_the_network(sit
     assert links.broken(site) == []
 
 
-def test_a_broken_link_and_a_foreign_script_are_told(tmp_path: Path) -> None:
+def test_a_broken_link_and_an_external_script_are_reported(tmp_path: Path) -> None:
     (tmp_path / "a.html").write_text(
         '<h1 id="here"></h1><a href="b.html">b</a><a href="#there">c</a><a href="#here">d</a>'
     )

@@ -51,7 +51,7 @@ def test_the_tutorial_ends_with_a_merged_patch() -> None:
 @pytest.mark.parametrize(
     "page", [TUTORIAL, *sorted((ROOT / "docs" / "howto").glob("*.md"))], ids=lambda page: page.stem
 )
-def test_what_is_installed_is_enough_without_ros(page: Path) -> None:
+def test_the_installed_extras_suffice_without_ros(page: Path) -> None:
     installed = re.findall(r'install [^\n]*"tarl\[([\w,]+)\]"', page.read_text("utf-8"))
     assert all({"pytest", "ros", "report"} <= set(extras.split(",")) for extras in installed)
     assert installed or page != TUTORIAL

@@ -55,7 +55,7 @@ def test_the_boundary_of_failed_missions_is_found(edge: float, seed: int) -> Non
     assert found.curves[0].ray.value(boundary.at) == pytest.approx(edge, abs=0.03)
 
 
-def test_both_ways_of_a_range_have_boundaries_of_their_own() -> None:
+def test_both_ends_of_a_range_have_separate_boundaries() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return -0.4 < point["slope"] < 0.1, float(draws.normal(1.0, 0.01))
 
@@ -66,7 +66,7 @@ def test_both_ways_of_a_range_have_boundaries_of_their_own() -> None:
     assert up.ray.value(up.boundary.at) == pytest.approx(0.1, abs=0.02)
 
 
-def test_options_are_told_apart() -> None:
+def test_options_are_examined_separately() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return point["camera"] != 1.0, 1.0
 
@@ -75,16 +75,16 @@ def test_options_are_told_apart() -> None:
     assert told["camera"] == ["Fails with camera='down'.", "No failure found with camera='left'."]
 
 
-def test_what_breaks_nothing_is_told() -> None:
+def test_harmless_directions_are_reported_as_such() -> None:
     found = stressed(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD, slope=SLOPE))
     assert found.failures == ()
     told = "\n".join(words.lines(found))
     assert "Not affected by mud: no failure found from 0 to 1 (4 values)." in told
-    assert "No combination of directions was found to fail" in told
+    assert "No combination was found that fails although each direction alone holds" in told
 
 
 @pytest.mark.parametrize("spread", [0.1, 1.5])
-def test_chance_alone_hardly_ever_makes_a_boundary(spread: float) -> None:
+def test_noise_rarely_gives_a_boundary(spread: float) -> None:
     def world(_: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 0.96), float(draws.normal(10.0, spread))
 
@@ -92,7 +92,7 @@ def test_chance_alone_hardly_ever_makes_a_boundary(spread: float) -> None:
     assert sum(bool(one.failures) for one in found) <= 1
 
 
-def test_an_island_of_failures_is_not_called_monotone() -> None:
+def test_an_interval_of_failures_is_not_reported_as_monotone() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return not 0.4 < point["mud"] < 0.6, float(draws.normal(1.0, 0.01))
 
@@ -102,7 +102,7 @@ def test_an_island_of_failures_is_not_called_monotone() -> None:
     assert curve.ray.value(curve.boundary.at) == pytest.approx(0.6, abs=0.02)
 
 
-def test_two_harmless_directions_that_break_it_together_are_found() -> None:
+def test_two_directions_that_fail_only_together_are_found() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 1.2), float(draws.normal(1.0, 0.01))
 
@@ -128,7 +128,7 @@ def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
     assert nearest.point["d"] < 0.2
 
 
-def test_a_budget_ends_the_search_and_keeps_what_is_known() -> None:
+def test_a_spent_budget_keeps_the_findings_so_far() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(point["mud"] > 0.5), 1.0
 
@@ -169,7 +169,7 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_workers(
     assert plans[0] == plans[1]
 
 
-def test_the_margin_is_one_as_designed_and_zero_where_the_guarantee_is_just_met() -> None:
+def test_the_margin_is_one_as_designed_and_zero_at_the_guarantee() -> None:
     given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
     assert given_.margin(1.0, 0.0) == 1.0
     assert given_.margin(1.0, given_.tolerance) == pytest.approx(0.0)
@@ -177,7 +177,7 @@ def test_the_margin_is_one_as_designed_and_zero_where_the_guarantee_is_just_met(
     assert given_.margin(0.5, 0.0) < -1.0
 
 
-def test_one_failure_among_few_episodes_refutes_nothing() -> None:
+def test_one_failure_in_few_episodes_does_not_refute_the_guarantee() -> None:
     given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
     fine, failed = Outcome(True, 10.0), Outcome(False, 10.0)
     assert examined(given_, [fine] * 7 + [failed], [fine] * 8).result == "open"

@@ -38,7 +38,7 @@ def written(tank: pytest.Pytester) -> tuple[bytes, bytes]:
     return found.read_bytes(), page.read_bytes()
 
 
-def test_a_run_reports_writes_keeps_and_replays(spaced: pytest.Pytester) -> None:
+def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pytester) -> None:
     done = spaced.runpytest(*STRESS)
     done.assert_outcomes(passed=1, deselected=1)
     done.stdout.fnmatch_lines(
@@ -70,14 +70,14 @@ def test_a_failure_inside_must_hold_fails_the_test(spaced: pytest.Pytester) -> N
     assert "but must_hold is 0.2 to 1." in done.stdout.str()
 
 
-def test_a_nominal_world_that_is_not_the_recorded_one_is_told(spaced: pytest.Pytester) -> None:
+def test_a_nominal_world_that_differs_from_the_recorded_one_is_reported(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", "nominal=1.0", "nominal=0.2")
     done = spaced.runpytest(*STRESS)
     done.assert_outcomes(failed=1, deselected=1)
     assert "The guarantee fails at the nominal values already" in done.stdout.str()
 
 
-def test_ctrl_c_keeps_what_is_known(spaced: pytest.Pytester) -> None:
+def test_ctrl_c_keeps_the_findings_so_far(spaced: pytest.Pytester) -> None:
     stop = "    if tarl_drift['pump'] < 0.5:\n        raise KeyboardInterrupt\n    tarl.start"
     changed(spaced, "test_tank", "    tarl.start", stop)
     with pytest.raises(KeyboardInterrupt):
@@ -86,7 +86,7 @@ def test_ctrl_c_keeps_what_is_known(spaced: pytest.Pytester) -> None:
     assert (found["ended"], found["episodes"]) == ("interrupted", 16)
 
 
-def test_without_a_recording_or_a_space_the_next_step_is_told(tank: pytest.Pytester) -> None:
+def test_without_a_recording_or_a_space_the_message_gives_the_next_step(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*STRESS)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines(["*No test declares a space of drifts*"])
@@ -107,9 +107,7 @@ def test_without_a_recording_or_a_space_the_next_step_is_told(tank: pytest.Pytes
         (("--tarl-stress", "--tarl-stress-budget=3"), "--tarl-stress-budget"),
     ],
 )
-def test_flags_that_do_not_go_together_are_told(
-    tank: pytest.Pytester, flags: tuple[str, ...], told: str
-) -> None:
+def test_conflicting_flags_are_refused(tank: pytest.Pytester, flags: tuple[str, ...], told: str) -> None:
     done = tank.runpytest(*flags)
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines([f"*{told}*"])
@@ -128,7 +126,7 @@ DRIFTS = {
 }
 
 
-def test_promises_are_ranges_or_options_of_a_direction() -> None:
+def test_must_hold_takes_ranges_or_options_of_a_direction() -> None:
     given = {"mud": (0.4, 1), "camera": ["up", "down"], "late": (0, 0.1)}
     assert must_hold("t", given, DRIFTS) == {"mud": (0.4, 1.0), "camera": ("up", "down"), "late": (0.0, 0.1)}
 
@@ -145,12 +143,12 @@ def test_promises_are_ranges_or_options_of_a_direction() -> None:
         ({"camera": "up"}, "options of its choice"),
     ],
 )
-def test_other_promises_are_told(value: Any, told: str) -> None:
+def test_other_values_of_must_hold_are_refused(value: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         must_hold("t", value, DRIFTS)
 
 
-def test_a_damaged_or_foreign_memory_is_ignored(tmp_path: Path) -> None:
+def test_a_damaged_file_of_failures_or_one_of_another_space_is_ignored(tmp_path: Path) -> None:
     space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
     path = tmp_path / "kept.json"
     assert kept.read(path, space) == []
