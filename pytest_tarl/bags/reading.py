@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -106,12 +108,18 @@ def _require() -> None:
 
 def _unreadable() -> tuple[type[Exception], ...]:
     """Return the exceptions that reading a damaged bag can raise."""
-    import apsw
     from rosbags.rosbag1 import ReaderError as Error1
     from rosbags.rosbag2 import ReaderError as Error2
 
-    return (Error1, Error2, apsw.Error, OSError, EOFError, ValueError, AssertionError, IndexError, KeyError,
+    return (Error1, Error2, *_of_databases(), OSError, EOFError, ValueError, AssertionError, IndexError, KeyError,
             TypeError, struct.error, RuntimeError)  # fmt: skip
+
+
+def _of_databases() -> Iterator[type[Exception]]:
+    """Yield the errors of the database libraries that versions of rosbags read .db3 files with."""
+    for name in ("apsw", "sqlite3"):
+        with suppress(ImportError):
+            yield import_module(name).Error
 
 
 def _reader(path: Path, kind: Kind) -> Reader1 | Reader2:

@@ -149,6 +149,9 @@ def _inflated(data: bytes, compression: str) -> bytes:
     return bytes(_decompressor(compression).decompress(data))
 
 
+_ZSTANDARD = ("zstandard", "ZstdDecompressor")  # of rosbags 0.11.0
+
+
 def _decompressor(compression: str) -> Any:
     """Return a streaming decompressor from the library that the installed `rosbags` depends on.
 
@@ -158,11 +161,16 @@ def _decompressor(compression: str) -> Any:
         return bz2.BZ2Decompressor()
     homes = {
         "lz4": (("lz4.frame", "LZ4FrameDecompressor"),),
-        "zstd": (("compression.zstd", "ZstdDecompressor"), ("backports.zstd", "ZstdDecompressor")),
+        "zstd": (
+            ("compression.zstd", "ZstdDecompressor"),
+            ("backports.zstd", "ZstdDecompressor"),
+            _ZSTANDARD,
+        ),
     }
     for module, name in homes.get(compression, ()):
         with suppress(ImportError):
-            return getattr(import_module(module), name)()
+            made = getattr(import_module(module), name)()
+            return made.decompressobj() if (module, name) == _ZSTANDARD else made
     raise ValueError(f"{compression} is not supported here")
 
 

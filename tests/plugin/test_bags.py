@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from pytest_tarl.bags import reading
 from tests.plugin.missions import NUMBER, mission, write_bag
 from tests.plugin.tank import RECORD, changed, result
 
@@ -188,3 +190,12 @@ def test_a_missing_or_invalid_bag_is_refused(deployed: pytest.Pytester) -> None:
         ["*keeper.py is not a bag: --tarl-bag takes*"]
     )
     deployed.runpytest("--tarl-bag=m.bag").stderr.fnmatch_lines(["*--tarl-bag needs --tarl-online*"])
+
+
+@pytest.mark.parametrize("absent", ["apsw", "sqlite3"])
+def test_a_damaged_database_is_noticed_with_every_version_of_rosbags(
+    monkeypatch: pytest.MonkeyPatch, absent: str
+) -> None:
+    present = pytest.importorskip("sqlite3" if absent == "apsw" else "apsw")
+    monkeypatch.setitem(sys.modules, absent, None)
+    assert present.Error in reading._unreadable()

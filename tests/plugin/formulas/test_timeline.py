@@ -1,0 +1,30 @@
+"""The course of signals, as formulas see it: a step function of the last value given at each instant."""
+
+from __future__ import annotations
+
+from math import nan
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.formulas.signals import Timeline
+
+GIVEN = st.lists(st.tuples(st.integers(0, 6), st.sampled_from([0.0, 1.0, 2.5, nan])), min_size=1, max_size=12)
+
+
+@given(given=GIVEN)
+def test_at_each_instant_the_last_value_given_holds(given: list[tuple[int, float]]) -> None:
+    given = sorted(given, key=lambda one: one[0])  # in the order of time
+    timeline = Timeline(["x"])
+    for time, value in given:
+        timeline.give("x", value, time)
+    numbers = [(time, value) for time, value in given if value == value]
+    if not numbers:
+        assert timeline.missing(["x"]) == "x"
+        return
+    for instant in range(8):
+        before = [value for time, value in numbers if time <= instant]
+        expected = before[-1] if before else timeline.samples(["x"])["x"][0][1]
+        assert timeline.at(["x"], instant) == {"x": expected}
+    first = [value for time, value in numbers if time == numbers[0][0]]
+    assert timeline.samples(["x"])["x"][0] == [0, first[-1]]
