@@ -62,7 +62,7 @@ def named(extras: set[str]) -> set[str]:
     return names
 
 
-def test_what_the_benchmarks_import_is_declared() -> None:
+def test_imports_of_the_benchmarks_are_declared() -> None:
     known, allowed = packages_distributions(), named({"bench"})
     assert {"scipy", "pymunk", "numpy", "rosbags"} <= allowed
     own = {path.stem for path in FOLDER.rglob("*.py")} | {"pytest_tarl", "tarl_lint"} | ROS
@@ -89,7 +89,7 @@ def test_every_script_starts_and_knows_the_arguments_of_its_smallest_run(script:
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
 @pytest.mark.parametrize("name", SMALLEST)
-def test_the_smallest_run_ends_well(name: str, tmp_path: Path) -> None:
+def test_the_smallest_run_succeeds(name: str, tmp_path: Path) -> None:
     (script,) = (path for path in SCRIPTS if path.stem == name)
     (tmp_path / "node.py").write_text("import rospy\n")
     arguments = [argument.format(tmp=tmp_path) for argument in SMALLEST[name]]

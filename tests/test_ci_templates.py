@@ -100,7 +100,7 @@ def results(project: Path) -> None:
 @pytest.mark.parametrize(
     ("tests", "extras"), [("", "tarl @ file"), ("tests/sim", "tarl[pytest,ros,report] @ file")]
 )
-def test_it_installs_what_is_needed(project: Path, tests: str, extras: str) -> None:
+def test_it_installs_the_required_extras(project: Path, tests: str, extras: str) -> None:
     assert run("Install TARL", project, tests=tests).returncode == 0
     assert extras in (project / "python.txt").read_text()
 
@@ -124,7 +124,7 @@ def test_it_compares_and_keeps_the_status(project: Path, repair: str, flags: str
     assert "❌ degraded" in (project / "summary.md").read_text()
 
 
-def test_it_comments_once_and_edits_that(project: Path) -> None:
+def test_it_comments_once_and_later_edits_that_comment(project: Path) -> None:
     assert run("Comment", project, tests="t").returncode == 0
     assert not (project / "gh.txt").exists()
     results(project)

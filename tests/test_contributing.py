@@ -30,7 +30,7 @@ def commands(workflow: Path) -> list[str]:
     return [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
 
 
-def test_workflows_run_what_a_contributor_runs() -> None:
+def test_workflows_run_the_same_commands_as_contributors() -> None:
     targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
     ran = [command for path in ROOT.glob(".github/workflows/*.yml") for command in commands(path)]
     assert ".ci/run" in ran
@@ -39,7 +39,7 @@ def test_workflows_run_what_a_contributor_runs() -> None:
 
 
 @pytest.mark.parametrize("path", [*ROOT.glob(".github/ISSUE_TEMPLATE/*_*.yml")], ids=lambda path: path.name)
-def test_issue_forms_have_what_github_requires(path: Path) -> None:
+def test_issue_forms_have_the_keys_that_github_requires(path: Path) -> None:
     form = yaml.safe_load(path.read_text("utf-8"))
     assert form["name"]
     assert form["description"]
@@ -48,7 +48,7 @@ def test_issue_forms_have_what_github_requires(path: Path) -> None:
     assert all(field["attributes"]["label"] for field in form["body"])
 
 
-def test_the_development_container_sets_up_as_the_readme_says() -> None:
+def test_the_development_container_uses_the_setup_of_the_readme() -> None:
     container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text("utf-8"))
     assert container["postCreateCommand"] == "make setup"
 

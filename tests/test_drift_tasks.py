@@ -122,7 +122,7 @@ def rates(by_hand: bool) -> dict[str, tuple[float, float]]:
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-def test_drifts_hurt_and_repairs_by_hand_restore() -> None:
+def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it() -> None:
     tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
     before, after = rates(by_hand=False), rates(by_hand=True)
     assert set(before) == set(after) == {task.name for task in tasks}

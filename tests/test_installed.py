@@ -165,7 +165,7 @@ def test_pip_installs_the_commands(wheel: Path, tmp_path: Path) -> None:
         assert said.stdout.startswith(command)
 
 
-def test_the_linter_runs_alone_in_plain_text(
+def test_the_linter_runs_without_the_extras_in_plain_text(
     alone: Run, project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
@@ -180,7 +180,9 @@ def test_the_linter_runs_alone_in_plain_text(
     ("command", "arguments"),
     [("show", ["f.npz"]), ("diff", ["a.npz", "b.npz"]), ("apply", ["p.diff"]), ("observe", ["node.py"])],
 )
-def test_a_command_names_the_extra(alone: Run, project: Path, command: str, arguments: list[str]) -> None:
+def test_a_command_names_the_missing_extra(
+    alone: Run, project: Path, command: str, arguments: list[str]
+) -> None:
     ended = alone("pytest_tarl", command, *arguments, cwd=project)
     assert ended.returncode == 2
     assert ended.stderr == (
@@ -190,7 +192,7 @@ def test_a_command_names_the_extra(alone: Run, project: Path, command: str, argu
     assert alone("pytest_tarl", command, "--help", cwd=project).returncode == 0
 
 
-def test_the_server_names_its_extra(alone: Run, project: Path) -> None:
+def test_the_server_names_its_missing_extra(alone: Run, project: Path) -> None:
     ended = alone("pytest_tarl", "lsp", cwd=project)
     assert ended.returncode == 2
     assert (
@@ -198,7 +200,7 @@ def test_the_server_names_its_extra(alone: Run, project: Path) -> None:
     )
 
 
-def test_other_pytest_runs_stay_untouched(beside_pytest: Run, project: Path) -> None:
+def test_other_pytest_runs_are_not_affected(beside_pytest: Run, project: Path) -> None:
     (project / "test_broken.py").write_text("import no_such_package\n")
     ended = beside_pytest("pytest", "-q", "test_plain.py", cwd=project)
     assert ended.returncode == 0, ended.stdout + ended.stderr
@@ -208,20 +210,22 @@ def test_other_pytest_runs_stay_untouched(beside_pytest: Run, project: Path) -> 
     assert "numpy" not in ended.stdout
 
 
-def test_flags_marker_and_fixtures_are_known(beside_pytest: Run, project: Path) -> None:
+def test_flags_marker_and_fixtures_are_registered_without_the_extra(
+    beside_pytest: Run, project: Path
+) -> None:
     assert "--tarl-record" in beside_pytest("pytest", "--help", cwd=project).stdout
     assert "@pytest.mark.tarl(nodes, sensors" in beside_pytest("pytest", "--markers", cwd=project).stdout
     assert "tarl_drift" in beside_pytest("pytest", "--fixtures", "test_plain.py", cwd=project).stdout
 
 
 @pytest.mark.parametrize("flag", ["--tarl-record", "--tarl-online", "--tarl-online --tarl-repair"])
-def test_a_run_with_flags_names_the_extra(beside_pytest: Run, project: Path, flag: str) -> None:
+def test_a_run_with_flags_names_the_missing_extra(beside_pytest: Run, project: Path, flag: str) -> None:
     ended = beside_pytest("pytest", "-q", *flag.split(), cwd=project)
     assert ended.returncode == pytest.ExitCode.USAGE_ERROR
     assert ended.stderr.strip() == f"ERROR: A run with TARL's flags {SENTENCE}"
 
 
-def test_a_fixture_names_the_extra(beside_pytest: Run, project: Path) -> None:
+def test_a_fixture_names_the_missing_extra(beside_pytest: Run, project: Path) -> None:
     ended = beside_pytest("pytest", "-q", "test_node.py", "test_plain.py", cwd=project)
     assert ended.returncode == pytest.ExitCode.TESTS_FAILED
     assert f"The fixture `tarl` {SENTENCE}" in ended.stdout
@@ -229,7 +233,7 @@ def test_a_fixture_names_the_extra(beside_pytest: Run, project: Path) -> None:
     assert "1 passed, 1 error" in ended.stdout
 
 
-def test_a_conftest_names_the_extra(beside_pytest: Run, project: Path) -> None:
+def test_a_conftest_names_the_missing_extra(beside_pytest: Run, project: Path) -> None:
     (project / "conftest.py").write_text("from pytest_tarl import Sensor\n")
     ended = beside_pytest("pytest", "-q", cwd=project)
     assert ended.returncode == pytest.ExitCode.USAGE_ERROR

@@ -69,7 +69,7 @@ def kinds(seen: list[Any], *events: str) -> list[Any]:
 CONNECTIONS = ("socket.connect", "socket.getaddrinfo")
 
 
-def test_the_hook_sees_what_it_is_there_for(tmp_path: Path) -> None:
+def test_the_audit_hook_detects_unpickling_and_execution(tmp_path: Path) -> None:
     (tmp_path / "bad.py").write_text(
         "import pickle, collections\npickle.loads(pickle.dumps(collections.OrderedDict))\n"
     )
@@ -78,7 +78,7 @@ def test_the_hook_sees_what_it_is_there_for(tmp_path: Path) -> None:
     assert ["exec", str(tmp_path / "bad.py")] in seen
 
 
-def test_linting_runs_nothing_of_what_it_reads(tmp_path: Path) -> None:
+def test_linting_executes_no_linted_code(tmp_path: Path) -> None:
     project = tmp_path / "project"
     project.mkdir()
     for name in ("node.py", "helper.py", "conftest.py", "sitecustomize.py", "setup.py"):
@@ -134,7 +134,7 @@ def test_a_run_opens_no_connection_and_writes_below_tarl_only(tmp_path: Path, wo
     assert after == before
 
 
-def test_each_promise_names_tests_that_are_there() -> None:
+def test_each_promise_names_existing_tests() -> None:
     rows = [line for line in (ROOT / "SECURITY.md").read_text("utf-8").splitlines() if line.startswith("| ")][
         1:
     ]

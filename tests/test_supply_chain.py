@@ -101,7 +101,7 @@ def test_every_licence_of_the_environment_is_allowed() -> None:
     assert {name: found for name, found in others.items() if found} == {}
 
 
-def test_the_lock_pins_what_pyproject_asks_for_with_digests() -> None:
+def test_the_lock_pins_all_requirements_of_pyproject_with_digests() -> None:
     sbom = load("sbom")
     pinned: dict[str, list[dict[str, object]]] = {}
     for one in sbom.pins(LOCK.read_text()):
@@ -123,7 +123,7 @@ def test_the_lock_pins_what_pyproject_asks_for_with_digests() -> None:
     assert not re.search(r"https?://|file:", re.sub(r"^#.*$", "", LOCK.read_text(), flags=re.MULTILINE))
 
 
-def test_the_bill_of_materials_names_what_users_install_and_is_the_same_each_time(tmp_path: Path) -> None:
+def test_the_bill_of_materials_names_user_dependencies_and_is_reproducible(tmp_path: Path) -> None:
     wheel = tmp_path / "tarl-0.1.0-py3-none-any.whl"
     lines = [f"Requires-Dist: {one}" for one in requires("tarl") or ()]
     with zipfile.ZipFile(wheel, "w") as archive:
@@ -141,7 +141,7 @@ def test_the_bill_of_materials_names_what_users_install_and_is_the_same_each_tim
 
 
 @pytest.mark.skipif(not SLOW, reason="builds twice: set TARL_SLOW=1")
-def test_a_release_is_the_same_bytes_each_time() -> None:
+def test_a_release_is_reproducible_to_the_byte() -> None:
     done = subprocess.run([sys.executable, ".ci/reproducible.py"], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert re.search(r"^[0-9a-f]{64}  tarl-.*\.whl$", done.stdout, re.MULTILINE)
@@ -150,7 +150,7 @@ def test_a_release_is_the_same_bytes_each_time() -> None:
 @pytest.mark.parametrize(
     ("enabled", "refused"), [(None, False), (lambda: True, False), (lambda: False, True)]
 )
-def test_a_python_without_its_lock_is_refused_in_a_sentence(
+def test_a_python_without_a_lock_file_gives_one_sentence(
     enabled: object, refused: bool, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if enabled is None:

@@ -22,7 +22,7 @@ pytest.importorskip("rtamt")
         ("quadrotor", "payload", "always[4:20] ((z > 1.4 and z < 3.9) or descending)"),
     ],
 )
-def test_a_drift_violates_what_is_required(tmp_path: Path, example: str, drift: str, formula: str) -> None:
+def test_each_drift_violates_a_formula(tmp_path: Path, example: str, drift: str, formula: str) -> None:
     project = tmp_path / example
     shutil.copytree(EXAMPLES / example, project, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
 

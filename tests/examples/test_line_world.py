@@ -56,14 +56,14 @@ def test_the_line_is_followed_by_day() -> None:
         assert 9.0 < world.total < 10.0
 
 
-def test_the_line_is_lost_in_the_first_bend_at_dusk() -> None:
+def test_the_robot_loses_the_line_in_the_first_bend_at_dusk() -> None:
     for seed in SEEDS:
         world = run(seed, dusk=DUSK)
         assert world.failure == "lost the line"
         assert LINE.LAMP < world.along < 1.6
 
 
-def test_dusk_dims_light_and_contrast_alike_beyond_the_lamp_only() -> None:
+def test_dusk_dims_light_and_contrast_equally_and_only_beyond_the_lamp() -> None:
     day, dusk = LINE.World(random(1)), LINE.World(random(1), dusk=DUSK)
     assert day.light == dusk.light
     day.along = dusk.along = LINE.LAMP + 0.1
@@ -80,7 +80,7 @@ def test_dusk_dims_light_and_contrast_alike_beyond_the_lamp_only() -> None:
 
 
 @pytest.mark.parametrize("edits", [STRONGER, STRONGER_AT_DUSK], ids=["always", "at dusk"])
-def test_a_stronger_gain_is_enough_at_dusk_and_harmless_by_day(edits: dict[str, str]) -> None:
+def test_a_higher_gain_suffices_at_dusk_and_does_no_harm_by_day(edits: dict[str, str]) -> None:
     for seed in SEEDS:
         designed = run(seed).total
         assert run(seed, dusk=DUSK, edits=edits).total > 0.97 * designed
@@ -89,7 +89,7 @@ def test_a_stronger_gain_is_enough_at_dusk_and_harmless_by_day(edits: dict[str, 
 
 @pytest.mark.parametrize("factor", [0.4, 2.2, 5.0])
 @pytest.mark.parametrize("operand", OTHERS)
-def test_no_other_constant_is_enough_at_dusk(operand: str, factor: float) -> None:
+def test_no_other_constant_suffices_at_dusk(operand: str, factor: float) -> None:
     name = operand.replace("min(", "").split()[0].rstrip(",")
     edits = {operand: operand.replace(name, f"({factor} * {name})")}
     assert not all(run(seed, dusk=DUSK, edits=edits).finished for seed in SEEDS)
@@ -100,7 +100,7 @@ def test_the_declared_speed_can_be_set_from_outside() -> None:
     assert run(0, speed=0.1).failure == "too slow"
 
 
-def test_the_same_seed_is_the_same_run() -> None:
+def test_equal_seeds_give_equal_runs() -> None:
     assert run(3).total == run(3).total
     assert run(3).total != run(4).total
 
@@ -113,7 +113,7 @@ def test_the_robot_follows_its_command() -> None:
     assert world.body.angular_velocity == pytest.approx(1.0, rel=0.01)
 
 
-def test_the_line_is_as_long_as_its_bends() -> None:
+def test_the_line_ends_after_its_declared_length() -> None:
     world = LINE.World(random(1))
     last = max(world.starts, key=lambda piece: world.starts[piece])
     assert world.starts[last] + last.a.get_distance(last.b) == pytest.approx(LINE.LENGTH)

@@ -48,14 +48,14 @@ def test_the_mission_is_flown_as_designed() -> None:
         assert sum(world.parts.values()) > 14.0
 
 
-def test_a_payload_keeps_it_below_the_band_near_the_start() -> None:
+def test_a_payload_keeps_it_below_the_altitude_band_near_the_start() -> None:
     world = fly(1, PAYLOAD)
     assert world.failure == "too slow"
     assert abs(world.body.position.x) < 0.5
     assert world.parts["altitude"] < -5.0
 
 
-def test_a_gust_stops_it_on_the_way_at_the_right_altitude() -> None:
+def test_a_gust_stops_it_at_the_right_altitude() -> None:
     world = fly(1, GUST)
     assert world.failure == "too slow"
     assert QUADROTOR.GUST[0] <= world.body.position.x <= QUADROTOR.GUST[1]
@@ -74,11 +74,11 @@ def test_one_constant_restores_it(drift: dict[str, float], edits: dict[str, str]
         assert fly(seed, drift, edits).landed
 
 
-def test_a_fast_touch_down_is_no_landing() -> None:
+def test_a_fast_touch_down_is_not_a_landing() -> None:
     world = fly(1, edits={"DESCENT = 0.35": "DESCENT = 1.5"})
     assert world.failure.startswith("landed hard")
 
 
-def test_the_same_seed_is_the_same_flight() -> None:
+def test_equal_seeds_give_equal_flights() -> None:
     assert fly(2).parts == fly(2).parts
     assert fly(2).parts != fly(3).parts

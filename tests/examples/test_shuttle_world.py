@@ -74,12 +74,12 @@ def test_there_and_back_is_delivered_as_designed() -> None:
         assert 18.0 < sum(rewards) < 20.0
 
 
-def test_some_missions_meet_the_patch_and_some_do_not() -> None:
+def test_some_missions_cross_the_patch_and_some_do_not() -> None:
     met = sum(SHUTTLE.World(random(seed)).patch for seed in range(200))
     assert 90 < met < 150
 
 
-def test_the_patch_does_no_harm_as_designed() -> None:
+def test_the_patch_is_harmless_in_the_designed_world() -> None:
     for seed in SEEDS:
         assert mission(seed, patch=True).total == mission(seed, patch=False).total
 
@@ -98,7 +98,7 @@ def test_mud_leaves_its_share_of_the_commanded_speed() -> None:
     assert muddy.body.velocity.x == pytest.approx(MUD * commanded, rel=0.03)
 
 
-def test_mud_makes_exactly_the_missions_with_the_patch_late() -> None:
+def test_exactly_the_missions_across_the_patch_are_late_in_mud() -> None:
     for seed in SEEDS:
         world = mission(seed, mud=MUD)
         assert world.delivered is not world.patch
@@ -106,7 +106,9 @@ def test_mud_makes_exactly_the_missions_with_the_patch_late() -> None:
 
 
 @pytest.mark.parametrize("edits", [IN_PATCH, BY_POSITION], ids=["terrain", "position"])
-def test_a_higher_gain_on_the_patch_is_enough_in_mud_and_harmless_as_designed(edits: dict[str, str]) -> None:
+def test_a_higher_gain_on_the_patch_suffices_in_mud_and_is_harmless_as_designed(
+    edits: dict[str, str],
+) -> None:
     designed = [mission(seed).total for seed in SEEDS]
     in_mud = [mission(seed, mud=MUD, edits=edits).total for seed in SEEDS]
     assert sum(in_mud) > 0.97 * sum(designed)
@@ -119,7 +121,7 @@ def test_a_higher_gain_everywhere_misses_the_goal_in_both_worlds() -> None:
         assert not any(mission(seed, mud=mud, edits=EVERYWHERE).delivered for seed in SEEDS)
 
 
-def test_the_same_seed_is_the_same_mission() -> None:
+def test_equal_seeds_give_equal_missions() -> None:
     assert mission(5, mud=MUD).total == mission(5, mud=MUD).total
     assert mission(5).total != mission(6).total
 
@@ -131,7 +133,7 @@ def test_running_past_the_goal_ends_the_mission() -> None:
     assert world.failure == "ran past the goal"
 
 
-def test_a_goal_counts_only_after_the_robot_has_stayed() -> None:
+def test_a_goal_counts_only_after_the_robot_stayed_for_the_handover() -> None:
     world, wires = push(1.0, G2, 0.0, 0)
     rewards = []
     for _ in range(SHUTTLE.HANDOVER):

@@ -35,7 +35,7 @@ def test_the_client_library_is_the_one_that_the_nodes_import(
     assert choice.libraries([node(tmp_path, text)]) == found
 
 
-def test_a_folder_of_nodes_is_searched(tmp_path: Path) -> None:
+def test_nodes_in_a_folder_are_found(tmp_path: Path) -> None:
     node(tmp_path, "import rclpy")
     assert choice.libraries([tmp_path]) == ("rclpy",)
 
@@ -55,7 +55,7 @@ def test_auto_selects_the_embedded_ros_if_no_other_is_installed(
         ("import math", "no node of the marker imports rospy or rclpy"),
     ],
 )
-def test_error_names_the_missing_real_ros(
+def test_the_error_names_the_missing_ros(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, says: str
 ) -> None:
     monkeypatch.setattr(choice.PathFinder, "find_spec", lambda _: None)

@@ -57,13 +57,13 @@ def test_links_to_headings_of_messages_lead_to_their_pages(tmp_path: Path) -> No
     assert "[g](../guide.md)" in (tmp_path / "messages" / "b.md").read_text()
 
 
-def test_a_link_that_leads_nowhere_is_refused() -> None:
+def test_a_link_to_a_missing_page_is_refused() -> None:
     with pytest.raises(ValueError, match=r"guide\.md: the link nosuch\.md leads to no page"):
         relinked("[x](nosuch.md)", next(place for place in written() if place.name == "guide.md"))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_snippets_can_be_read(page: Path) -> None:
+def test_snippets_parse(page: Path) -> None:
     readers = {"python": _python, "toml": tomllib.loads, "yaml": yaml.safe_load, "json": json.loads}
     for _, language, text in FENCE.findall(page.read_text("utf-8")):
         if language in readers:
@@ -84,7 +84,7 @@ def test_every_page_is_in_the_menu(staged: Path) -> None:
     assert menu == wanted, "name each page once in `nav` of website/zensical.toml"
 
 
-def test_reference_pages_hold_every_option_setting_and_schema() -> None:
+def test_reference_pages_contain_every_option_setting_and_schema() -> None:
     from pytest_tarl.flags import FLAGS
     from tarl_lint.settings.schema import KEYS
 
@@ -96,7 +96,7 @@ def test_reference_pages_hold_every_option_setting_and_schema() -> None:
     assert helped.count("usage: tarl-lint ") == 1
 
 
-def test_schemas_have_addresses_of_their_own(staged: Path) -> None:
+def test_schemas_have_stable_addresses(staged: Path) -> None:
     assert len(schemas()) >= 4
     for path in schemas():
         assert json.loads((staged / "schemas" / path.name).read_text("utf-8"))["title"]

@@ -57,7 +57,7 @@ def test_the_installed_extras_suffice_without_ros(page: Path) -> None:
     assert installed or page != TUTORIAL
 
 
-def test_output_is_compared_apart_from_digests_and_seconds() -> None:
+def test_outputs_are_compared_except_for_digests_and_times() -> None:
     shown = "wrote 45d58605.npz\n1 passed in 0.42s\n"
     assert same(shown, "wrote 00000000.npz\n1 passed in 10.01s\n")
     assert not same(shown, "wrote 00000000.npz\n2 passed in 0.42s\n")
@@ -65,7 +65,7 @@ def test_output_is_compared_apart_from_digests_and_seconds() -> None:
     assert not same("", "output where none is shown\n")
 
 
-def test_lines_that_are_left_out_may_be_any() -> None:
+def test_omitted_lines_may_contain_anything() -> None:
     assert same("a\n...\nz\n", "a\nb\nc\nz\n")
     assert same("a\n...\nz\n", "a\nz\n")
     assert not same("a\n...\nz\n", "a\nb\n")
@@ -73,16 +73,14 @@ def test_lines_that_are_left_out_may_be_any() -> None:
     assert shortened("cut off...\nz\n", "1\n2\n3\n4\n") == "1\n2\n3\n4\n"
 
 
-def test_a_page_is_renewed_in_place(tmp_path: Path) -> None:
+def test_a_page_is_updated_in_place(tmp_path: Path) -> None:
     page = 'Text.\n\n```text title="a.txt"\nhello\n```\n\n```console\n$ cat a.txt\nbye\n$ echo two\ntwo\n```\n\nMore.\n'
     ran = list(run(page, tmp_path))
     assert renewed(page, ran) == page.replace("bye", "hello")
 
 
 @pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="installs packages; runs with TARL_SLOW=1")
-def test_the_tutorial_runs_in_an_environment_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_tutorial_runs_in_a_new_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = TUTORIAL.read_text("utf-8").replace('"tarl[', f'"{ROOT}[')
     ran = list(run(text, tmp_path, nightly=True))
     assert (tmp_path / "tarl-venv" / "bin" / "tarl").exists()
