@@ -41,7 +41,7 @@ class Placing:
         return moved or (None if edit == "definition" else candidate)
 
     def notes(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes on why a repair is at its use, and on other users of a changed definition."""
+        """Yield notes on why a constant is changed where it is used, and on other users of a changed definition."""
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
