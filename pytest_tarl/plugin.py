@@ -139,7 +139,7 @@ def _ours(error: BaseException) -> bool:
 
 
 def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
-    """Return an error of ours, after the innermost line of the user's code that led to it."""
+    """Return the text of a TARL error, preceded by the innermost line of the user's code."""
     ours = Path(__file__).parent
     lines = [entry for entry in excinfo.traceback if ours not in Path(entry.path).parents]
     if not lines:

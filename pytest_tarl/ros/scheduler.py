@@ -169,7 +169,7 @@ class Scheduler:
         self._ready.append(job)
 
     def at(self, instant: int, job: Callable[[], None]) -> None:
-        """Call a function outside of tasks at an instant (ns), before the tasks that wake then."""
+        """Call a function outside of tasks at a virtual time (ns), before the tasks that wake at this time."""
         self._sequence += 1
         heappush(self._alarms, (instant, self._sequence, job))
 

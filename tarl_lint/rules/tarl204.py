@@ -180,7 +180,7 @@ def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether a publish call uses only other publishers that have the same name."""
+    """Return whether a publish call uses only publishers other than this one, although the name is the same."""
     place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
     record = evidence.machine.sinks.get((read.path, place))
     if record is None or (path, pos) in record.publishers or read.path != path:
