@@ -11,6 +11,8 @@ from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
+UNTRIED = 2  # named constants to try before a changed literal is accepted
+
 
 class Oddness(IntEnum):
     """How unusual a change reads, from the plainest to the oddest.
@@ -35,13 +37,15 @@ def plainer(
 ) -> list[Unit]:
     """Return the units whose change is plainer than the candidate found, best gain first.
 
-    Units that gain at least `promising` are worth refining. If the candidate scales a variable or is an offset,
-    untried units are worth trying too, the plainest first.
+    Units that gain at least `promising` are worth refining. Untried units come next, the plainest first: all of them
+    if the candidate scales a variable or is an offset, the first `UNTRIED` named constants if it changes a literal.
     """
     read = [unit for unit in units if _kind(unit) < odd]
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
-    others = [unit for unit in read if unit not in gains] if odd >= Oddness.VARIABLE else []
-    return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *sorted(others, key=_kind)]
+    others = sorted((unit for unit in read if unit not in gains), key=_kind)
+    if odd < Oddness.VARIABLE:
+        others = others[:UNTRIED]
+    return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *others]
 
 
 def named(units: Iterable[Unit]) -> list[Unit]:

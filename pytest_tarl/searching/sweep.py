@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
@@ -198,9 +199,14 @@ class Sweep:
         others = [one for one in self.units if one != unit]
         gains = self._gains.under(guard)
         for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):
+            held = guard
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
-            yield from self._closer(other, guard, before, pair)
+            if not self._gains.of(other, guard) and ALWAYS in self.guards:
+                held = ALWAYS  # the condition cannot be written there, for example in a helper
+                for factor in NEAR:
+                    yield from self._try(other, held, factor, pair)
+            yield from self._closer(other, held, before, pair)
             if self.trials.spent - begun >= PLAINER:
                 return
         for factor, nearer in FURTHER if odd is Oddness.INNER else ():

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
@@ -53,10 +54,21 @@ def test_only_numeric_conditions_have_a_threshold() -> None:
     assert edges(Guard((Conjunct(POSITION, -math.inf, math.inf),))) == ()
 
 
-def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> Sweep:
-    """A world in which each of several operands alone restores the reward, within a window around its right factor."""
+def restoring(
+    right: dict[Operand, float],
+    window: float,
+    harm: float = 0.0,
+    guards: tuple[Guard, ...] = (ALWAYS,),
+    helpers: tuple[Operand, ...] = (),
+) -> Sweep:
+    """A world in which each of several operands alone restores the reward, within a window around its right factor.
+
+    No condition can be written at the operands of `helpers`.
+    """
 
     def run(candidate: Candidate, seed: int) -> Outcome:
+        if candidate.guard.conjuncts and any(one.operand in helpers for one in candidate.mutations):
+            raise RepairError("Sensor 'pos' cannot be read there.")
         noise = float(np.random.default_rng(seed).normal(0, 0.05))
         total = 0.0
         for mutation in candidate.mutations:
@@ -77,13 +89,23 @@ def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> 
     goal = Goal(pairs, near=9.0, enough=9.5, online=0.0, passing=True)
     filler = tuple(operand(at, f"{at}.0", float(at)) for at in range(20, 26))
     return Sweep(
-        (*sorted(right, key=lambda one: one.span), *filler), mutations, (ALWAYS,), Trials(run, 300), goal
+        (*sorted(right, key=lambda one: one.span), *filler), mutations, guards, Trials(run, 300), goal
     )
 
 
 def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
     found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
     assert [next(found).mutations[0].operand for _ in range(2)] == [NAMED, OFFSET]
+
+
+def test_a_named_constant_of_a_helper_is_tried_without_a_condition_before_a_literal() -> None:
+    far = Guard((Conjunct(POSITION, 5, math.inf),))
+    found = restoring(
+        {INNER: 2.2, NAMED: 2.2}, window=0.2, guards=(far, ALWAYS), helpers=(NAMED,)
+    ).candidates()
+    first, second = (next(found) for _ in range(2))
+    assert (first.mutations[0].operand, first.guard) == (NAMED, ALWAYS)
+    assert (second.mutations[0].operand, second.guard) == (INNER, far)
 
 
 def test_an_offset_is_accepted_after_few_runs_if_no_plainer_change_holds() -> None:
