@@ -7,10 +7,10 @@ import gc
 import sys
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator
-from importlib.machinery import SourceFileLoader
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import resolve_name
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 
 _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
@@ -48,11 +48,24 @@ def of_tests(file: Path) -> bool:
 
 
 def _imported(module: ModuleType) -> Iterator[str]:
-    """Yield the dotted names imported at module level; a constant imported from a module keeps no reference to it."""
+    """Yield the dotted names imported anywhere in a module; a constant taken from a module keeps no reference to it.
+
+    Imports in functions count, because a function called at module level may return such a constant.
+    """
     spec = module.__dict__["__spec__"]
     code = spec.loader.get_code(spec.name)
-    if code is None:
-        return
+    for one in _nested(code) if code is not None else ():
+        yield from _imported_by(one, spec)
+
+
+def _nested(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _nested(constant)
+
+
+def _imported_by(code: CodeType, spec: ModuleSpec) -> Iterator[str]:
     before: deque[object] = deque((None, None), 2)  # level and names of the current import
     for one in dis.get_instructions(code):
         if one.opname == "IMPORT_NAME":

@@ -40,6 +40,6 @@ def interrupted(text):
 
 if __name__ == "__main__":
     run = runner.run
-    runner.run = lambda chosen, config: run(chosen, config, interrupted)
+    runner.run = lambda chosen, config, tell: run(chosen, config, interrupted)
     sys.exit(main(["--jobs", "2", "--no-cache", "node0.py", "node1.py"]))
 """

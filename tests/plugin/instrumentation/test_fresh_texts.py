@@ -64,13 +64,8 @@ def ran(root: Path, node: Path, overlay: dict[Path, str]) -> tuple[Any, tuple[Pa
     return out, imports.older
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.data())
-def test_an_edited_file_is_run_through_any_chain_of_imports(
-    data: st.DataObject,
-) -> None:
-    places = data.draw(st.lists(st.sampled_from(PLACES), min_size=1, max_size=4), "places")
-    forms = data.draw(st.lists(st.sampled_from(sorted(FORMS)), min_size=4, max_size=4), "forms")
+def edited(places: list[str], forms: list[str]) -> None:
+    """Check that the node takes each new number of the last module of a chain."""
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder).resolve()
         node, *files = laid_out(top, places, forms)
@@ -79,6 +74,18 @@ def test_an_edited_file_is_run_through_any_chain_of_imports(
         for value in (2, 3):
             assert ran(top / "tests", node, {leaf: LEAF.format(value)}) == (value, ())
         assert ran(top / "tests", node, {leaf: leaf.read_text()}) == (1, ())
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.data())
+def test_an_edited_file_is_run_through_any_chain_of_imports(data: st.DataObject) -> None:
+    places = data.draw(st.lists(st.sampled_from(PLACES), min_size=1, max_size=4), "places")
+    forms = data.draw(st.lists(st.sampled_from(sorted(FORMS)), min_size=4, max_size=4), "forms")
+    edited(places, forms)
+
+
+def test_a_constant_that_an_installed_function_took_from_an_edited_file_is_computed_anew() -> None:
+    edited(["workspace", "site", "workspace"], ["number", "inside", "constant"])
 
 
 def test_a_helper_kept_by_another_module_is_reported(tmp_path: Path) -> None:
