@@ -24,6 +24,7 @@ class Given:
 
 
 NOTHING = Given()
+DEEPEST = 50  # levels of nested parameters; a YAML mapping may contain itself
 
 
 @cache
@@ -140,7 +141,8 @@ def _flat(values: Mapping[Any, Any], above: str = "") -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, value in values.items():
         name = f"{above}{key}"
-        found.update(_flat(value, f"{name}.") if isinstance(value, dict) else {name: value})
+        nested = isinstance(value, dict) and name.count(".") < DEEPEST
+        found.update(_flat(value, f"{name}.") if nested else {name: value})
     return found
 
 
@@ -154,7 +156,7 @@ def _yaml(setting: Setting) -> Any:
         ) from None
     try:
         return yaml.safe_load(setting.yaml or "")
-    except yaml.YAMLError as problem:
+    except (yaml.YAMLError, RecursionError) as problem:
         raise SettingsError(f"{setting.file} is not YAML: {' '.join(str(problem).split())}") from None
 
 

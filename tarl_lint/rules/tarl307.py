@@ -75,6 +75,7 @@ VALID: Final = (
     """,
 )
 
+DEEPEST: Final = 50  # levels of nested parameters; a YAML mapping may contain itself
 _OF_ROS: Final = frozenset(
     ["use_sim_time", "qos_overrides", "start_type_description_service", "robot_description"]
 )
@@ -127,7 +128,7 @@ def _dotted(values: dict[Any, Any], above: str = "") -> Iterator[str]:
     """Yield nested parameters of ROS 2 by names with dots."""
     for key, value in values.items():
         name = f"{above}{key}"
-        if isinstance(value, dict):
+        if isinstance(value, dict) and name.count(".") < DEEPEST:
             yield from _dotted(value, f"{name}.")
         else:
             yield name
@@ -140,5 +141,5 @@ def _parsed(text: str) -> Any:
         return None
     try:
         return yaml.safe_load(text)
-    except yaml.YAMLError:
+    except (yaml.YAMLError, RecursionError):
         return None

@@ -29,10 +29,20 @@ _OF_ROS1: Final = re.compile(
 
 
 def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
-    """Read a launch file, with defaults for missing arguments. Nothing is executed."""
+    """Read a launch file, with defaults for missing arguments. Nothing is executed.
+
+    A file that nests too deeply, or contains itself, starts no node; `problems` then has the reason.
+    """
+    try:
+        return _launch(path, workspace, dict(arguments or {}))
+    except RecursionError:
+        return Launch(path, problems=(Problem(path, 0, "it nests too deeply, or contains itself"),))
+
+
+def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Launch:
     if path.suffix not in (".py", *_YAML) and not is_ros2_xml(path, workspace):
         return read_xml(path, workspace, arguments)
-    context = Context(workspace, path, dict(arguments or {}))
+    context = Context(workspace, path, dict(arguments))
     runner = Runner(_opened)
     runner.run(_opened(path, context, runner.problems), context)
     return Launch(path, tuple(runner.nodes), (), tuple(dict.fromkeys(runner.problems)))

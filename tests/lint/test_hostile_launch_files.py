@@ -1,0 +1,93 @@
+"""Launch files that nest without end, contain themselves or are no text end in a sentence, never in a traceback."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tarl_lint.cli import main
+from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.read import read
+
+DEEP = 3_000
+IMPORTS = "from launch import LaunchDescription\nfrom launch.actions import GroupAction\n"
+GENERATE = "def generate_launch_description():\n    return LaunchDescription({})\n"
+FILES = {
+    "groups.launch": f"<launch>{'<group>' * DEEP}{'</group>' * DEEP}</launch>",
+    "groups.launch.xml": f'<launch><let name="a" value="b"/>{"<group>" * DEEP}{"</group>" * DEEP}</launch>',
+    "self.launch": '<launch><include file="$(find p)/launch/self.launch"/></launch>',
+    "lists.launch.yaml": f"launch: {'[' * DEEP}{']' * DEEP}",
+    "alias.launch.yaml": "launch: &a\n  - group: *a\n  - group: {x: *a}\n",
+    "parameters.launch": '<launch><node pkg="p" type="n.py" name="n"><rosparam>' + "[" * DEEP + "]" * DEEP
+    + '</rosparam><rosparam>&amp;a {b: *a}</rosparam><param name="x" type="yaml" value="&amp;a [*a]"/></node></launch>',
+    "brackets.launch.py": f"def generate_launch_description():\n    return {'(' * DEEP}{')' * DEEP}\n",
+    "list.launch.py": f"{IMPORTS}x = []\nx.append(x)\n{GENERATE.format('x')}",
+    "group.launch.py": f"{IMPORTS}g = GroupAction([])\ng.add_action(g)\n{GENERATE.format('[g]')}",
+    "recursion.launch.py": f"{IMPORTS}def f():\n    return f()\n{GENERATE.format('f()')}",
+    "nul.launch.py": "\0\0",
+    "control.launch": "\x01\x02<launch>",
+}  # fmt: skip
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / "n.py").write_text("import rospy\nrospy.init_node('n')\n")
+    (tmp_path / "n.py").chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_hostile_launch_file_ends_in_a_report(package, capsys, name):
+    (package / "launch" / name).write_text(FILES[name])
+    assert main(["--launch", f"launch/{name}"]) in (0, 1)
+    out, err = capsys.readouterr()
+    assert "Traceback" not in out + err
+    if name not in ("parameters.launch", "list.launch.py", "group.launch.py", "recursion.launch.py"):
+        assert "Not known here:" in out, out
+
+
+PARTS = (
+    *(
+        "<group>",
+        "</group>",
+        "<node pkg='p' type='n.py' name='n'/>",
+        "<launch>",
+        "</launch>",
+        "<include file='",
+        "'/>",
+    ),
+    *(
+        "if='$(",
+        "$(arg x)",
+        "$(eval (",
+        "&a",
+        "*a",
+        "[",
+        "]",
+        "{",
+        "}",
+        ": ",
+        "\n",
+        "  ",
+        "- node",
+        "- group",
+        "\0",
+    ),
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    parts=st.lists(st.sampled_from(PARTS), max_size=30),
+    suffix=st.sampled_from((".launch", ".launch.xml", ".launch.yaml", ".launch.py")),
+)
+def test_any_text_is_read_without_an_exception(tmp_path_factory, parts, suffix):
+    folder = tmp_path_factory.mktemp("any")
+    (folder / "package.xml").write_text("<package><name>p</name></package>")
+    file = folder / f"any{suffix}"
+    file.write_text("".join(parts))
+    assert read_launch(file, read(folder)).file == file
