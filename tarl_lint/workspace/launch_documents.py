@@ -79,19 +79,23 @@ def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
     except (yaml.YAMLError, RecursionError) as error:
         problems.append(Problem(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
         return []
-    pairs = getattr(root, "value", ())
-    launch = next((value for key, value in pairs if key.value == "launch"), None) if pairs else None
+    launch = next((value for key, value in _pairs(root) if key.value == "launch"), None)
     left = [MOST]
     return _named(launch, left) if launch is not None else []
+
+
+def _pairs(node: Any) -> list[tuple[Any, Any]]:
+    """Return the keys and values of a YAML node; none unless it is a mapping."""
+    return node.value if node is not None and node.id == "mapping" else []
 
 
 def _named(node: Any, left: list[int]) -> list[Entity]:
     """Return the elements of a list of mappings with one key each: the key is the tag."""
     found: list[Entity] = []
-    for one in node.value if isinstance(node.value, list) else ():
-        for key, value in one.value if not isinstance(one, tuple) and isinstance(one.value, list) else ():
+    for one in node.value if node.id == "sequence" else ():
+        for key, value in _pairs(one):
             left[0] -= 1
-            if left[0] >= 0 and hasattr(key, "value"):
+            if left[0] >= 0:
                 found.append(_entity(str(key.value), value, key.start_mark.line + 1, left))
     return found
 
@@ -103,7 +107,7 @@ def _entity(tag: str, node: Any, line: int, left: list[int]) -> Entity:
     if node.id == "sequence":
         entity.children = _named(node, left)
         return entity
-    for key, value in node.value:
+    for key, value in _pairs(node):
         name = str(key.value)
         if isinstance(value.value, str):
             entity.attributes[name.replace("-", "_") if name not in ("if",) else name] = value.value
@@ -126,4 +130,5 @@ def _flow(node: Any, left: list[int]) -> str:
         return ""
     if isinstance(node.value, str):
         return node.value
-    return f"[{', '.join(_flow(one, left) for one in node.value if hasattr(one, 'value'))}]"
+    parts = node.value if node.id == "sequence" else [key for key, _ in _pairs(node)]
+    return f"[{', '.join(_flow(one, left) for one in parts)}]"
