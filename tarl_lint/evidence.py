@@ -12,7 +12,7 @@ from tarl_lint.flows.reachability import Tracer
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding, Flow, Source, Span
 from tarl_lint.rules.limits.range_checks import limits
-from tarl_lint.trees import children, walk
+from tarl_lint.trees import children, last_name, walk
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -74,16 +74,16 @@ class Outline:
 
     def _assigned(self, targets: Sequence[ast.expr], value: ast.expr) -> None:
         for target in targets:
-            self.assigned.setdefault(_last(target), []).append(value)
+            self.assigned.setdefault(last_name(target), []).append(value)
         if isinstance(value, ast.Call):
             self._lock(targets, value)
 
     def _lock(self, targets: Sequence[ast.expr], call: ast.Call) -> None:
-        if _last(call.func) not in LOCKS:
+        if last_name(call.func) not in LOCKS:
             return
-        shared = _last(call.args[0]) if call.args else ""
+        shared = last_name(call.args[0]) if call.args else ""
         for target in targets:
-            name = _last(target)
+            name = last_name(target)
             self.locks[name] = self.locks.get(shared, shared) or name
 
     def around(self, node: ast.AST) -> Iterator[ast.AST]:
@@ -166,7 +166,7 @@ class Evidence:
     def _looked_up(self, node: ast.Constant, outline: Outline) -> bool:
         """Return whether a string may be used to look up a name, rather than being a topic of the same name."""
         outer = outline.parents.get(node)
-        if isinstance(outer, ast.Call) and _last(outer.func) in LOOK_UPS:
+        if isinstance(outer, ast.Call) and last_name(outer.func) in LOOK_UPS:
             return True
         return any(self.outline(path).by_text for path in self.machine.modules)
 
@@ -188,11 +188,6 @@ def _reads(node: ast.expr, name: str, attribute: bool) -> bool:
     if isinstance(node, ast.Name):
         return not attribute and node.id == name and not isinstance(node.ctx, ast.Store)
     return isinstance(node, ast.Constant) and node.value == name
-
-
-def _last(expr: ast.expr) -> str:
-    """Return the last part of a dotted name."""
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 
 def _by_text(call: ast.Call) -> bool:

@@ -40,6 +40,11 @@ def walk(*trees: ast.AST) -> Iterator[ast.AST]:
         pending += inside
 
 
+def last_name(expr: ast.expr) -> str:
+    """Return the last part of a dotted name, "" for any other expression."""
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
+
+
 def _holding(kind: type[ast.AST]) -> tuple[str, ...]:
     if kind is ast.Constant:
         return ()

@@ -19,7 +19,7 @@ from tarl_lint.model import Finding
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.prefilter.one_sided import Side
 from tarl_lint.read.source import Module
-from tarl_lint.trees import walk
+from tarl_lint.trees import last_name, walk
 
 FACTS: Final = {**catalog.FUNCTIONS, **catalog.METHODS}
 MAKERS: Final = frozenset(n.rpartition(".")[2] for n, f in FACTS.items() if f.kind == "publisher")
@@ -86,20 +86,15 @@ def _all_publish(module: Module, text: str) -> bool:
         return True
     mentioned, names = 0, list[str]()
     for node in walk(module.tree):
-        if isinstance(node, (ast.Name, ast.Attribute)) and _last(node) in MAKERS:
+        if isinstance(node, (ast.Name, ast.Attribute)) and last_name(node) in MAKERS:
             mentioned += 1
         elif isinstance(node, ast.ImportFrom) and any(a.name in MAKERS and a.asname for a in node.names):
             return False
         elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            made = _last(node.value.func) in MAKERS
-            names += [_last(target) for target in node.targets if made]
+            made = last_name(node.value.func) in MAKERS
+            names += [last_name(target) for target in node.targets if made]
     apart = mentioned == len(names) == len(set(names))
     return apart and all(n and re.search(rf"\b{n}\s*\.\s*publish\b", text) for n in names)
-
-
-def _last(expr: ast.expr) -> str:
-    """Return the last part of a dotted name."""
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

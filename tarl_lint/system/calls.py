@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Outline
+from tarl_lint.trees import last_name
 
 _PROXIES: Final = frozenset(["ServiceProxy"])
 _CLIENTS: Final = frozenset(["create_client"])
@@ -16,21 +17,16 @@ def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:
     """Yield the calls that create a client, with the service's literal name and the last part of its type."""
     for calls in outline.calls.values():
         for call in calls:
-            made = _last(call.func)
+            made = last_name(call.func)
             places = (0, 1) if made in _PROXIES else (1, 0) if made in _CLIENTS else None
             if places is None:
                 continue
             name = _argument(call, places[0], ("name", "srv_name"))
             kind = _argument(call, places[1], ("service_class", "srv_type"))
             if isinstance(name, ast.Constant) and isinstance(name.value, str):
-                yield call, name.value, _last(kind) if kind is not None else ""
+                yield call, name.value, last_name(kind) if kind is not None else ""
 
 
 def _argument(call: ast.Call, place: int, names: tuple[str, ...]) -> ast.expr | None:
     named = next((one.value for one in call.keywords if one.arg in names), None)
     return named if named is not None else call.args[place] if len(call.args) > place else None
-
-
-def _last(expr: ast.expr) -> str:
-    """Return the last part of a dotted name."""
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

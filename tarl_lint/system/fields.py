@@ -11,6 +11,7 @@ from tarl_lint.evidence import Outline
 from tarl_lint.model import Span
 from tarl_lint.read.source import Module
 from tarl_lint.system.model import Misfit
+from tarl_lint.trees import last_name
 
 _STANDARD: Final = frozenset(["std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs"])
 _METHODS: Final = frozenset(
@@ -61,10 +62,10 @@ def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[str]]
     """Return function name → types of the messages with which a subscription calls it; "" for an unknown type."""
     found: dict[str, set[str]] = {}
     for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
-        places = _REGISTERS.get(_last(call.func))
+        places = _REGISTERS.get(last_name(call.func))
         if places is not None and len(call.args) > max(places):
-            kind = types.get(_last(call.args[places[0]]), "")
-            found.setdefault(_last(call.args[places[1]]), set()).add(kind)
+            kind = types.get(last_name(call.args[places[0]]), "")
+            found.setdefault(last_name(call.args[places[1]]), set()).add(kind)
     return {name: kinds for name, kinds in found.items() if name and "" not in kinds}
 
 
@@ -89,7 +90,7 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             stores[node.id] = stores.get(node.id, 0) + 1
     return {
-        name: types[_last(values[0].func)]
+        name: types[last_name(values[0].func)]
         for name, values in assigned.items()
         if len(values) == stores.get(name) == 1
         and isinstance(values[0], ast.Call)
@@ -115,7 +116,3 @@ def _kind(expr: ast.expr, held: Mapping[str, str]) -> str:
     if isinstance(expr, ast.Attribute):
         return FIELDS.get(_kind(expr.value, held), {}).get(expr.attr, "")
     return ""
-
-
-def _last(expr: ast.expr) -> str:
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

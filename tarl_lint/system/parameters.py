@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from tarl_lint.read.source import Module
+from tarl_lint.trees import last_name
 
 READERS: Final = frozenset(
     ["get_param", "get_param_cached", "has_param", "search_param", "declare_parameter", "declare_parameters",
@@ -34,11 +35,9 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
     if any(OPEN.search(module.text) for module in modules):
         return False
     for module in modules:
-        for node in ast.walk(module.tree):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
-                name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
-                if name in READERS and node.args and _computed(node.args[0]):
-                    return False
+        calls = (n for n in ast.walk(module.tree) if isinstance(n, ast.Call) and last_name(n.func) in READERS)
+        if any(call.args and _computed(call.args[0]) for call in calls):
+            return False
     return True
 
 

@@ -8,6 +8,7 @@ from typing import Final
 from tarl_lint.evidence import Outline
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.system.model import Qos
+from tarl_lint.trees import last_name
 
 _NAMED: Final = {
     "qos_profile_sensor_data": Qos(reliable=False, latched=False),
@@ -37,10 +38,10 @@ def of_call(outline: Outline, pos: Pos) -> Qos | None:
 def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
     if isinstance(expr, ast.Constant) and isinstance(expr.value, int):
         return Qos(reliable=True, latched=False)
-    last = _last(expr)
+    last = last_name(expr)
     if last in _NAMED:
         return _NAMED[last]
-    if isinstance(expr, ast.Call) and _last(expr.func) == "QoSProfile":
+    if isinstance(expr, ast.Call) and last_name(expr.func) == "QoSProfile":
         return _profile(expr)
     if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
         values = outline.assigned.get(last, [])
@@ -62,7 +63,7 @@ def _policy(expr: ast.expr | None, otherwise: str) -> str:
     """Return the name of a policy: the last part of `ReliabilityPolicy.BEST_EFFORT`, without an old prefix."""
     if expr is None:
         return otherwise
-    name = _last(expr)
+    name = last_name(expr)
     for prefix in ("RMW_QOS_POLICY_RELIABILITY_", "RMW_QOS_POLICY_DURABILITY_"):
         name = name.removeprefix(prefix)
     return name
@@ -74,10 +75,6 @@ def _changed(outline: Outline, name: str) -> bool:
         isinstance(node, ast.Attribute)
         and node.attr in _FIELDS
         and isinstance(node.ctx, ast.Store)
-        and _last(node.value) == name
+        and last_name(node.value) == name
         for node in ast.walk(outline.tree)
     )
-
-
-def _last(expr: ast.expr) -> str:
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

@@ -9,7 +9,7 @@ from tarl_lint.evidence import Outline
 from tarl_lint.read.source import Module
 from tarl_lint.rules.races.accesses import Access, accesses
 from tarl_lint.rules.races.held_locks import FUNCTIONS, locks_around
-from tarl_lint.trees import walk
+from tarl_lint.trees import last_name, walk
 
 
 def always_or_never_guarded(modules: Sequence[Module]) -> bool:
@@ -20,7 +20,7 @@ def always_or_never_guarded(modules: Sequence[Module]) -> bool:
     """
     outlines = [Outline(module.tree) for module in modules]
     ours = {d.name for outline in outlines for d in outline.definitions}
-    if any(_last(call.func) in ours for outline in outlines for call in _under_locks(outline)):
+    if any(last_name(call.func) in ours for outline in outlines for call in _under_locks(outline)):
         return False
     guarded: set[str] = set()
     bare: set[str] = set()
@@ -58,7 +58,3 @@ def _at_module_level(tree: ast.Module) -> Iterator[str]:
 def _first(function: ast.AST) -> str:
     arguments = getattr(function, "args", None)
     return arguments.args[0].arg if arguments is not None and arguments.args else "self"
-
-
-def _last(expr: ast.expr) -> str:
-    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

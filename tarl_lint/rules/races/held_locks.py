@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Outline
-from tarl_lint.trees import walk
+from tarl_lint.trees import last_name, walk
 
 LOCKISH: Final = re.compile(r"lock|mutex|sem(aphore)?$|cond(ition)?$", re.I)
 FUNCTIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
@@ -71,7 +71,7 @@ def lock_name(expr: ast.expr, outline: Outline) -> str:
     """Return the last part of a lock's name; of a condition, that of its lock; "" for anything else."""
     if isinstance(expr, ast.Call):
         expr = expr.func.value if isinstance(expr.func, ast.Attribute) else expr.func
-    name = expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
+    name = last_name(expr)
     made = outline.locks.get(name)
     return made if made is not None else name if LOCKISH.search(name) else ""
 
