@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite, nan
 from typing import Any, Literal
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.finite_numbers import finite_number
 
 Shape = Literal["step", "ramp", "burst"]
 
@@ -43,15 +43,10 @@ class Schedule:
 
 def profile(shape: Shape, at: Any, lasts: Any = 0.0) -> Profile:
     """Return a checked profile. Raise SettingsError for an invalid moment or duration."""
-    begin, duration = _seconds(at), _seconds(lasts)
-    if not begin >= 0.0:
+    begin, duration = finite_number(at), finite_number(lasts)
+    if begin is None or begin < 0.0:
         raise SettingsError(f"Drift.{shape}: at must be a moment in seconds, 0 or later, got {at!r}.")
-    if shape != "step" and not duration > 0.0:
+    if duration is None or (shape != "step" and duration <= 0.0):
         name = "over" if shape == "ramp" else "lasts"
         raise SettingsError(f"Drift.{shape}: {name} must be a duration in seconds above 0, got {lasts!r}.")
     return Profile(shape, begin, duration)
-
-
-def _seconds(value: Any) -> float:
-    number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    return float(value) if number else nan

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.schedules import Profile, Schedule
 
 if TYPE_CHECKING:
@@ -106,15 +106,17 @@ def world_value(extent: Span | Choice, number: float) -> Any:
 
 def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None = None) -> Span:
     """Return a checked range; `what` names it in messages. Raise SettingsError for an invalid one."""
-    if not _number(low) or not _number(high) or not low < high:
+    least, most = finite_number(low), finite_number(high)
+    if least is None or most is None or not least < most:
         raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
     if nominal is None:
-        return Span(float(low), float(high))
-    if not _number(nominal) or not low <= nominal <= high:
+        return Span(least, most)
+    usual = finite_number(nominal)
+    if usual is None or not least <= usual <= most:
         raise SettingsError(
-            f"{what}: the nominal value must be a number from {low:g} to {high:g}, got {nominal!r}."
+            f"{what}: the nominal value must be a number from {least:g} to {most:g}, got {nominal!r}."
         )
-    return Span(float(low), float(high), float(nominal), profile)
+    return Span(least, most, usual, profile)
 
 
 def choice(options: tuple[Any, ...], usual: Any) -> Choice:
@@ -146,7 +148,3 @@ def space(parts: Mapping[str, Any]) -> Space:
         else:
             raise SettingsError(f"Drift.space: {name!r} must be {DIRECTIONS}, got {part!r}.")
     return Space(directions, faults)
-
-
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

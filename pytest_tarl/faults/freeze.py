@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.faults.topic import Arrivals, Channel, TopicFault, of_topic, up_to
+from pytest_tarl.finite_numbers import finite_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,14 +17,15 @@ def freeze(topic: str, most: float, *, at: float = 0.0) -> TopicFault:
 
     Raise SettingsError for an invalid moment.
     """
-    if isinstance(at, bool) or not isinstance(at, int | float) or not 0 <= at < float("inf"):
+    moment = finite_number(at)
+    if moment is None or moment < 0.0:
         raise SettingsError(f"faults.freeze: at must be a moment in seconds, 0 or later, got {at!r}.")
 
     def begin(size: float, _draws: np.random.Generator) -> Channel:
         last: list[Any] = []
 
         def held(message: Any, now: float) -> Arrivals:
-            if not last or not at <= now < at + size:
+            if not last or not moment <= now < moment + size:
                 last[:] = [message]
             return [(0.0, last[0])]
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.faults.topic import up_to
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.spaces import Span
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def restart(node: str, most: float, *, at: float) -> NodeRestart:
     """
     if not isinstance(node, str) or not node:
         raise SettingsError(f"faults.restart: name the node that tarl.start starts, got {node!r}.")
-    if isinstance(at, bool) or not isinstance(at, int | float) or not 0 < at < float("inf"):
+    moment = finite_number(at)
+    if moment is None or moment <= 0.0:
         raise SettingsError(f"faults.restart: at must be a moment in seconds, after 0, got {at!r}.")
-    return NodeRestart(node, float(at), up_to("restart", most))
+    return NodeRestart(node, moment, up_to("restart", most))

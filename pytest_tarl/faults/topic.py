@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.faults.fields import altered, no_such_field
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.spaces import Choice, Span, span
 
 if TYPE_CHECKING:
@@ -89,11 +90,11 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
 
 def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
     """Return the sizes from 0, no fault, to `most`. Raise SettingsError unless it is positive, up to `limit`."""
-    given = isinstance(most, int | float) and not isinstance(most, bool)
-    if not given or not 0 < most < float("inf") or (limit is not None and most > limit):
+    largest = finite_number(most)
+    if largest is None or largest <= 0.0 or (limit is not None and largest > limit):
         upper = "" if limit is None else f", at most {limit:g}"
         raise SettingsError(f"faults.{kind}: the largest size must be a number above 0{upper}, got {most!r}.")
-    return Span(0.0, float(most), 0.0)
+    return Span(0.0, largest, 0.0)
 
 
 def _text(kind: str, what: str, value: Any) -> None:

@@ -11,7 +11,6 @@ from pytest_tarl.stressing import json_result, kept, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
 from pytest_tarl.stressing.search import Request, stress
-from pytest_tarl.stressing.words import shown
 
 
 @dataclass(frozen=True)
@@ -45,8 +44,7 @@ def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
     given = guarantee(request.fixture, request.designation)
     lines: list[str] = []
     for point, fails in kept.replayed(points, request.rollout, request.drift, request.options.seed, given):
-        changed = [name for name, number in point.items() if number != space.nominal[name]]
-        where = " and ".join(f"{name}={shown(space.extents[name], point[name])}" for name in changed)
+        where = words.of_point(space, point)
         lines.append(f"  {'kept' if not lines else '':10} {where} {'still fails' if fails else 'holds now'}.")
     return tuple(lines)
 
@@ -54,18 +52,18 @@ def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
 def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
     """Write the files; return a line for each that could not be written. The result does not depend on them."""
     folder = root / ".tarl"
-    jobs: dict[Path, Callable[[Path], None]] = {
-        folder / "stress" / f"{name}.json": lambda path: write_atomically(
-            path, json_result.text(found).encode()
-        ),
-        folder / "report" / f"{name}-stress.html": lambda path: write_atomically(
-            path, page.render(found).encode()
-        ),
+    report = folder / "report" / f"{name}-stress.html"
+
+    def as_text(content: str) -> Callable[[Path], None]:
+        return lambda path: write_atomically(path, content.encode())
+
+    jobs = {
+        folder / "stress" / f"{name}.json": as_text(json_result.text(found)),
+        report: as_text(page.render(found)),
     }
     if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
         jobs[memory] = lambda path: kept.write(found.failures, path)
     lines = [line for path, write in jobs.items() for line in _unwritten(path, write, root)]
-    report = folder / "report" / f"{name}-stress.html"
     return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"] if report.exists() else lines
 
 

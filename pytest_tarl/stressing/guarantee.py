@@ -91,7 +91,7 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
     losses = _losses(outcomes, nominal)
     loss = fmean(losses)
     bound = mean_of(losses, 1.0 - SEARCH_RISK)
-    failing = rate(passed, count, 1.0 - SEARCH_RISK).high < given.rate or bound.low > given.tolerance
+    failing = _too_few_pass(given, outcomes, SEARCH_RISK) or bound.low > given.tolerance
     holding = count >= LEAST and passed / count >= given.rate and bound.high < given.tolerance
     answer: Answer = "fails" if failing else "holds" if holding else "open"
     return Evidence(answer, given.margin(passed / count, loss), count, passed, loss)
@@ -103,8 +103,7 @@ def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Out
     The loss is paired by seed with the nominal drift. Its bound is exact if the marker declares total_range, and
     Student's otherwise.
     """
-    count, passed = len(outcomes), sum(one.passed for one in outcomes)
-    if rate(passed, count, 1.0 - risk / 2).high < given.rate:
+    if _too_few_pass(given, outcomes, risk / 2):
         return True
     ends = given.declared
     differences = None if ends is None else Range(ends.low - ends.high, ends.high - ends.low)
@@ -113,11 +112,16 @@ def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Out
 
 def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
     """Return whether episodes show at `risk` that the guarantee fails against the recorded rewards."""
-    count, passed = len(outcomes), sum(one.passed for one in outcomes)
-    if rate(passed, count, 1.0 - risk / 2).high < given.rate:
+    if _too_few_pass(given, outcomes, risk / 2):
         return True
     totals = [one.total for one in outcomes]
     return loss_between(given.totals, totals, 1.0 - risk / 2, given.declared).low > given.tolerance
+
+
+def _too_few_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
+    """Return whether outcomes show at `risk` that too few episodes pass (Clopper and Pearson)."""
+    passed = sum(one.passed for one in outcomes)
+    return rate(passed, len(outcomes), 1.0 - risk).high < given.rate
 
 
 def _losses(outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> list[float]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.files import write_atomically
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Choice, Point, Space
@@ -59,8 +60,8 @@ def _inside(space: Space, point: Any) -> bool:
     if not isinstance(point, dict) or point.keys() != space.extents.keys():
         return False
     for name, extent in space.extents.items():
-        number = point[name]
-        if isinstance(number, bool) or not isinstance(number, int | float):
+        number = finite_number(point[name])
+        if number is None:
             return False
         if isinstance(extent, Choice):
             if number not in range(len(extent.options)):

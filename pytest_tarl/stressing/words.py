@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
-from pytest_tarl.spaces import Choice, Point, Span, nominal, value_of
-from pytest_tarl.stressing.findings import Boundary, Curve, Failure, Stress
+from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
+from pytest_tarl.stressing.findings import Boundary, Curve, Stress
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # combinations
@@ -67,7 +67,8 @@ def together(stress: Stress) -> Iterator[str]:
     """Yield sentences on combinations, the nearest first."""
     found = sorted(stress.combinations, key=lambda one: (one.distance, one.names))
     for one in found[:MOST_SHOWN]:
-        yield f"Fails with {_point(stress, one)} (distance {one.distance:.2g}), although each alone holds."
+        where = of_point(stress.space, one.point)
+        yield f"Fails with {where} (distance {one.distance:.2g}), although each alone holds."
     if len(found) > MOST_SHOWN:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
     if not found and stress.tried:
@@ -144,12 +145,14 @@ def _option(curve: Curve) -> str:
     return f"{'No failure found' if curve.swept else 'Not examined'} with {name}={option!r}."
 
 
-def _point(stress: Stress, one: Failure) -> str:
-    return " and ".join(f"{name}={shown(stress.space.extents[name], one.point[name])}" for name in one.names)
-
-
 def _number(ray: Ray, t: float) -> str:
     return f"{ray.value(t):.3g}"
+
+
+def of_point(space: Space, point: Point) -> str:
+    """Return the values of a point that are not nominal."""
+    changed = [name for name, number in point.items() if number != space.nominal[name]]
+    return " and ".join(f"{name}={shown(space.extents[name], point[name])}" for name in changed)
 
 
 def point_values(stress: Stress, point: Point) -> dict[str, Any]:

@@ -1,0 +1,17 @@
+"""Numbers that users give: finite, and no truth values."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from pytest_tarl.sensors import as_number
+
+
+def finite_number(value: Any) -> float | None:
+    """Return a finite real number or numpy scalar as a float; None for a truth value or anything else."""
+    dtype = getattr(value, "dtype", None)
+    if isinstance(value, bool) or getattr(dtype, "kind", "") == "b":
+        return None
+    number = as_number(value)
+    return number if number is not None and isfinite(number) else None
