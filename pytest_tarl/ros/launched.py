@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.ros.messages.workspace import on_forget, workspaces
+from tarl_lint.workspace.bounded_files import UnreadableError
+from tarl_lint.workspace.executables import is_python
+from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.parameter_yaml import NoYamlError, content, of_node
+from tarl_lint.workspace.programs import Program, program
+from tarl_lint.workspace.ros_names import joined
 
 
 @dataclass(frozen=True)
 class Given:
-    """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file."""
+    """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
+
+    `node` is the absolute name of a node that is started under the name of the launch file, else empty.
+    """
 
     private: Mapping[str, Any] = field(default_factory=dict)
     shared: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
+    node: str = ""
 
 
 NOTHING = Given()
-DEEPEST = 50  # levels of nested parameters; a YAML mapping may contain itself
 
 
 @cache
@@ -77,19 +86,32 @@ def _runs(workspace: Workspace, node: LaunchedNode, script: Path) -> bool:
     package = workspace.package(node.package)
     if package is None:
         return False
-    declared = next((one for one in package.executables if one.name == node.executable), None)
-    if declared is not None:
-        return declared.path == script
-    return script.name == node.executable and script.is_relative_to(package.folder)
+    found = program(node, workspace, (*python_files(package.folder), script))
+    return isinstance(found, Program) and found.path == script
+
+
+@cache
+def python_files(package: Path) -> tuple[Path, ...]:
+    """Return the Python files below the folder of a package."""
+    return tuple(
+        one for folder, names in folders(package) for name in names if is_python(one := folder / name)
+    )
 
 
 def _given(launch: Launch, node: LaunchedNode) -> Given:
-    """Return the values of a node's parameters, with YAML parsed."""
+    """Return the values of a node's parameters, with YAML parsed, for a test that starts it in the namespace `/`."""
+    found = parameters(launch, node, joined(node.namespace, node.name) if node.name else node.namespace + "/")
+    shared = {_rooted(name, node): value for name, value in found.shared.items()}
+    return replace(found, shared=shared, private={_rooted(k, node): v for k, v in found.private.items()})
+
+
+def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
+    """Return the values of the parameters of a launched node, with YAML parsed."""
     private: dict[str, Any] = {}
     shared: dict[str, Any] = {}
     files: list[Path] = []
     for setting in (*launch.settings, *node.settings):
-        values = {_rooted(name, node): value for name, value in _values(setting, node)}
+        values = dict(_values(setting, full_name))
         (private if setting.name.startswith("~") else shared).update(values)
         files += [setting.file] if values and setting.file not in files else []
     sources = ", ".join(file.name for file in files if file != launch.file)
@@ -103,61 +125,32 @@ def _rooted(name: str, node: LaunchedNode) -> str:
     return name.removeprefix(node.namespace.rstrip("/")) if inside else name
 
 
-def _values(setting: Setting, node: LaunchedNode) -> Iterator[tuple[str, Any]]:
+def _values(setting: Setting, full_name: str) -> Iterator[tuple[str, Any]]:
     """Yield the parameters of a setting, by private or absolute name."""
     above = setting.name.removeprefix("~").rstrip("/")
     if setting.yaml is None:
         yield above, setting.value
         return
-    content = _yaml(setting)
-    if not isinstance(content, dict):
-        yield above, content
+    parsed = _yaml(setting)
+    if not isinstance(parsed, dict):
+        yield above, parsed
         return
-    for name, value in _of_node(content, node).items():
+    for name, value in of_node(parsed, full_name).items():
         if "$(" in str(value):  # known on the robot only
             continue
         yield f"{above}/{name}" if above or not setting.name.startswith("~") else str(name), value
 
 
-def _of_node(content: dict[Any, Any], node: LaunchedNode) -> dict[Any, Any]:
-    """Return the section of a ROS 2 parameter file for a node; other content unchanged."""
-    parts = [
-        (str(key).strip("/"), value["ros__parameters"])
-        for key, value in content.items()
-        if isinstance(value, dict) and isinstance(value.get("ros__parameters"), dict)
-    ]
-    if not parts:
-        return content
-    wanted = {"**", node.name, f"{node.namespace.strip('/')}/{node.name}".strip("/")}
-    chosen: dict[Any, Any] = {}
-    for key, value in parts:
-        if key in wanted or (not node.name and len(parts) == 1):
-            chosen.update(_flat(value))
-    return chosen
-
-
-def _flat(values: Mapping[Any, Any], above: str = "") -> dict[str, Any]:
-    """Flatten nested ROS 2 parameters to dotted names."""
-    found: dict[str, Any] = {}
-    for key, value in values.items():
-        name = f"{above}{key}"
-        nested = isinstance(value, dict) and name.count(".") < DEEPEST
-        found.update(_flat(value, f"{name}.") if nested else {name: value})
-    return found
-
-
 def _yaml(setting: Setting) -> Any:
     try:
-        import yaml
-    except ModuleNotFoundError:
+        return content(setting)
+    except NoYamlError:
         raise SettingsError(
             f"{setting.file} has parameters of the node, and reading them needs PyYAML: run pip install PyYAML, or say "
             "tarl.start(…, launch=False)."
         ) from None
-    try:
-        return yaml.safe_load(setting.yaml or "")
-    except (yaml.YAMLError, RecursionError) as problem:
-        raise SettingsError(f"{setting.file} is not YAML: {' '.join(str(problem).split())}") from None
+    except UnreadableError as reason:
+        raise SettingsError(f"{setting.file}: {reason}") from None
 
 
 def _launches(workspace: Workspace, script: Path) -> tuple[Launch, ...]:
@@ -184,5 +177,5 @@ def _read(file: Path, workspace: Workspace) -> Launch:
     return read_launch(file, workspace)
 
 
-for known in (given, _bytes):
+for known in (given, python_files, _bytes):
     on_forget(known.cache_clear)

@@ -11,12 +11,14 @@ literal names. Parameters that groups set for all their nodes are reported if no
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Final
 
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_node
 from tarl_lint.system.model import Instance, System
+from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
+from tarl_lint.workspace.parameter_yaml import NoYamlError, content, dotted, is_wildcard, matches, sections
 
 CODE: Final = "TARL307"
 SUMMARY: Final = "a launch file sets a parameter that the node does not have"
@@ -75,7 +77,6 @@ VALID: Final = (
     """,
 )
 
-DEEPEST: Final = 50  # levels of nested parameters; a YAML mapping may contain itself
 _OF_ROS: Final = frozenset(
     ["use_sim_time", "qos_overrides", "start_type_description_service", "robot_description"]
 )
@@ -108,38 +109,19 @@ def _lacks(instance: Instance, name: str) -> bool:
 def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
     """Yield the names of the parameters that a setting gives a node of its own."""
     above = setting.name.lstrip("~").strip("/")
-    if setting.yaml is None:
+    if setting.yaml is None or above:
         yield above
         return
-    content = _parsed(setting.yaml)
-    if above:
-        yield above
-    elif isinstance(content, dict) and "ros__parameters" not in setting.yaml:
-        yield from map(str, content)
-    elif isinstance(content, dict):
-        named = {instance.name.rpartition("/")[2] for instance in instances}
-        for key, value in content.items():
-            inside = value.get("ros__parameters") if isinstance(value, dict) else None
-            if isinstance(inside, dict) and str(key).rpartition("/")[2] in named:
-                yield from _dotted(inside)
-
-
-def _dotted(values: dict[Any, Any], above: str = "") -> Iterator[str]:
-    """Yield nested parameters of ROS 2 by names with dots."""
-    for key, value in values.items():
-        name = f"{above}{key}"
-        if isinstance(value, dict) and name.count(".") < DEEPEST:
-            yield from _dotted(value, f"{name}.")
-        else:
-            yield name
-
-
-def _parsed(text: str) -> Any:
     try:
-        import yaml
-    except ModuleNotFoundError:
-        return None
-    try:
-        return yaml.safe_load(text)
-    except (yaml.YAMLError, RecursionError):
-        return None
+        parsed = content(setting)
+    except (NoYamlError, UnreadableError):
+        return  # the report says so
+    named = list(sections(parsed))
+    if not named and isinstance(parsed, dict):
+        yield from map(str, parsed)
+    for pattern, values in named:
+        own = [one for one in instances if matches(pattern, one.name)]
+        if own and not is_wildcard(
+            pattern
+        ):  # a section for all nodes is meant for those that have the parameter
+            yield from dotted(values)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,6 +29,7 @@ from tarl_lint.system.hazards import hazards
 from tarl_lint.system.interfaces import interface
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
@@ -156,25 +156,10 @@ def _launch_file(named: str, workspace: Workspace) -> Path:
     """
     if Path(named).is_file():
         return Path(named).resolve()
-    known = {
-        (package.name, file.name): file for package in workspace.packages for file in package.launch_files
-    }
-    package, _, name = named.rpartition("/")
-    found = [
-        file for (owner, file_name), file in known.items() if file_name == name and package in ("", owner)
-    ]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        owners = ", ".join(sorted(f"{owner}/{one}" for owner, one in known if one == name))
-        raise UsageError(f"{named} is a launch file of several packages: name one of {owners}.")
-    names = sorted({file_name for _, file_name in known})
-    close = difflib.get_close_matches(name, names, n=1)
-    meant = f" Did you mean {close[0]}?" if close else ""
-    raise UsageError(
-        f"{named}: no such file, and no launch file of the workspace {shown(workspace.root)} has this name.{meant} "
-        "`tarl workspace` lists them; --launch all reads each one."
-    )
+    try:
+        return launch_file(named, workspace, shown(workspace.root))
+    except NoLaunchFileError as problem:
+        raise UsageError(str(problem)) from None
 
 
 def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> Iterator[Line]:

@@ -9,8 +9,10 @@ from typing import Final
 from tarl_lint.model import Finding, Kind
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
-from tarl_lint.workspace.launch_model import Launch, LaunchedNode
-from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.bounded_files import UnreadableError
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
+from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.programs import Program, program
 
 UNKNOWN: Final = "?"
@@ -26,7 +28,31 @@ Reader = Callable[[Program], Interface | str]  # returns a program's interface, 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
     """Return the system of a launch file. `files` are the Python files of the workspace."""
     instances = [_instance(node, workspace, files, read) for node in launch.nodes]
-    return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), launch.problems)
+    problems = (*launch.problems, *_unparsed(launch))
+    return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), problems)
+
+
+def _unparsed(launch: Launch) -> Iterator[Problem]:
+    """Yield a problem for each file whose parameters of nodes cannot be read."""
+    files: dict[Path, Setting] = {}
+    for setting in (one for node in launch.nodes for one in node.settings):
+        if setting.yaml is not None and setting.name == "~":
+            files.setdefault(setting.file, setting)
+    reasons = {file: _unparsable(setting) for file, setting in files.items()}
+    yield from (Problem(file, 0, reason) for file, reason in reasons.items() if reason)
+
+
+def _unparsable(setting: Setting) -> str:
+    """Return why the YAML of a setting cannot be read; empty if it can."""
+    try:
+        content(setting)
+    except NoYamlError:
+        return (
+            "TARL307 does not check its parameters, since reading them needs PyYAML: run pip install PyYAML"
+        )
+    except UnreadableError as reason:
+        return str(reason)
+    return ""
 
 
 def _instance(node: LaunchedNode, workspace: Workspace, files: Sequence[Path], read: Reader) -> Instance:

@@ -48,9 +48,14 @@ class LaunchedNode:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """A launch file with its included files. `settings` are the parameters outside of nodes."""
+    """A launch file with its included files. `settings` are the parameters outside of nodes.
+
+    `arguments` are the names of its launch arguments, `ros2` the generation of ROS that it is for.
+    """
 
     file: Path
     nodes: tuple[LaunchedNode, ...] = ()
     settings: tuple[Setting, ...] = ()
     problems: tuple[Problem, ...] = ()
+    arguments: tuple[str, ...] = ()
+    ros2: bool = False

@@ -45,7 +45,8 @@ def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Laun
     context = Context(workspace, path, dict(arguments))
     runner = Runner(_opened)
     runner.run(_opened(path, context, runner.problems), context)
-    return Launch(path, tuple(runner.nodes), (), tuple(dict.fromkeys(runner.problems)))
+    names = tuple(sorted({*runner.arguments, *context.asked}))
+    return Launch(path, tuple(runner.nodes), (), tuple(dict.fromkeys(runner.problems)), names, ros2=True)
 
 
 def is_ros2_xml(path: Path, workspace: Workspace) -> bool:

@@ -63,6 +63,7 @@ class Runner:
     opened: Opener
     nodes: list[LaunchedNode] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
+    arguments: set[str] = field(default_factory=set)  # declared names
     depth: int = 0
     seen: int = 0
 
@@ -129,6 +130,7 @@ class Runner:
         values, kind = action.values, action.kind
         name = performed(values.get("name"), context)
         if kind == "argument":
+            self.arguments.add(name)
             if name not in context.configurations:
                 default = values.get("default_value")
                 text = f"$(var {name})" if default is None else performed(default, context)

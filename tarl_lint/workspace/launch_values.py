@@ -31,6 +31,7 @@ class Context:
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
     settings: tuple[Setting, ...] = ()  # parameters of all following nodes
+    asked: set[str] = field(default_factory=set)  # launch configurations that were read; shared by all groups
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
 
     @property
@@ -51,6 +52,7 @@ class Context:
             self.namespace,
             self.remaps,
             self.settings,
+            self.asked,
         )
 
 
@@ -78,6 +80,7 @@ class Configuration(Substitution):
     def text(self, context: Context, depth: int) -> str:
         """Return the value of the launch argument."""
         name = performed(self.name, context, depth)
+        context.asked.add(name)
         if name in context.configurations:
             return context.configurations[name]
         return f"$(var {name})" if self.default is None else performed(self.default, context, depth)

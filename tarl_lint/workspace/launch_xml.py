@@ -38,6 +38,7 @@ class _Reader:
     nodes: list[LaunchedNode] = field(default_factory=list)
     settings: list[Setting] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
+    arguments: set[str] = field(default_factory=set)  # names in the outermost file
     seen: int = 0
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
@@ -85,6 +86,8 @@ class _Reader:
 
     def _argument(self, element: Element, place: _Place) -> _Place:
         name = element.get("name", "")
+        if not place.depth and "value" not in element.attrib:
+            self.arguments.add(name)
         if name in place.scope.arguments and "value" not in element.attrib:
             return place  # set by the including file
         stated = element.get("value", element.get("default"))
@@ -211,7 +214,13 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
     """Read a ROS 1 launch file, with defaults for missing arguments."""
     reader = _Reader(workspace)
     reader.file(path, dict(arguments or {}), None)
-    return Launch(path, tuple(reader.nodes), tuple(reader.settings), tuple(reader.problems))
+    return Launch(
+        path,
+        tuple(reader.nodes),
+        tuple(reader.settings),
+        tuple(reader.problems),
+        tuple(sorted(reader.arguments)),
+    )
 
 
 def _parameter(above: str, name: str) -> str:

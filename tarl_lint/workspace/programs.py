@@ -19,7 +19,11 @@ class Program:
 
 
 def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> Program | str:
-    """Return the program of a node, or the reason why there is none. `files` are the Python files of the workspace."""
+    """Return the program of a node, or the reason why there is none. `files` are the Python files of the workspace.
+
+    A script that the package installs from a place where it does not exist is looked for in the whole package, as
+    `rosrun` does.
+    """
     if node.kind != "node":
         return "a composable node" if node.kind == "component" else "a container of composable nodes"
     package = workspace.package(node.package)
@@ -28,6 +32,8 @@ def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> 
     declared = next((one for one in package.executables if one.name == node.executable), None)
     if declared is not None and declared.path is not None:
         return Program(declared.path, declared.entry or "")
+    if declared is not None and declared.entry:
+        return f"{declared.module} of {node.package}, in which {node.executable} begins, does not exist"
     named = [one for one in files if one.name == node.executable and one.is_relative_to(package.folder)]
     if named:  # rosrun finds a file anywhere in the package
         return Program(min(named, key=lambda one: (len(one.parts), one)))

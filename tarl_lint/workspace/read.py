@@ -8,10 +8,10 @@ from typing import Final
 
 from tarl_lint.workspace.executables import installed, may_be_started
 from tarl_lint.workspace.folders import folders
+from tarl_lint.workspace.launch_lookup import ENDINGS
 from tarl_lint.workspace.manifests import Manifest, manifest
 from tarl_lint.workspace.model import INTERFACES, Package, Problem, Workspace
 
-_LAUNCH: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
 _YAML: Final = (".yaml", ".yml")
 
 
@@ -30,7 +30,7 @@ class _Found:
     def take(self, path: Path) -> None:
         """Classify a file by its name."""
         name, above = path.name, path.parent.name
-        if name.endswith(_LAUNCH) or (above == "launch" and _is_launch_file(path)):
+        if name.endswith(ENDINGS) or (above == "launch" and _is_launch_file(path)):
             self.launch_files.append(path)
         elif path.suffix == ".cfg" and _mentions(path, b"dynamic_reconfigure"):
             self.configurations.append(path)

@@ -1,0 +1,46 @@
+"""Find the launch file that a user names, by path or by its name in the workspace."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Final
+
+from tarl_lint.workspace.model import Workspace
+
+ENDINGS: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
+
+
+class NoLaunchFileError(Exception):
+    """No launch file, or more than one, has the name; the message is a sentence."""
+
+
+def is_launch_name(name: str) -> bool:
+    """Return whether a file's name is that of a launch file."""
+    return name.endswith((*ENDINGS, "_launch.py", "_launch.xml", "_launch.yaml", "_launch.yml"))
+
+
+def launch_file(named: str, workspace: Workspace, shown: str) -> Path:
+    """Return a launch file of the workspace by its name, or as `package/name`; `shown` names the workspace.
+
+    Raises NoLaunchFileError if there is none, or if several packages have it.
+    """
+    known = {
+        (package.name, file.name): file for package in workspace.packages for file in package.launch_files
+    }
+    package, _, name = named.rpartition("/")
+    found = [
+        file for (owner, file_name), file in known.items() if file_name == name and package in ("", owner)
+    ]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        owners = ", ".join(sorted(f"{owner}/{one}" for owner, one in known if one == name))
+        raise NoLaunchFileError(f"{named} is a launch file of several packages: name one of {owners}.")
+    names = sorted({file_name for _, file_name in known})
+    close = difflib.get_close_matches(name, names, n=1)
+    meant = f" Did you mean {close[0]}?" if close else ""
+    raise NoLaunchFileError(
+        f"{named}: no such file, and no launch file of the workspace {shown} has this name.{meant} "
+        "`tarl workspace` lists them."
+    )
