@@ -11,7 +11,7 @@ from tarl_lint.system.model import System
 
 @dataclass(frozen=True)
 class Drawing:
-    """Names of nodes and topics, and edges between their numbers. Nodes in `unread` are drawn dashed.
+    """Names of nodes and topics, and edges between them, by name. Nodes in `unread` are drawn dashed.
 
     An edge from a topic to a node is `(topic, node, kind)`; `kind` is that of the strongest flow of its data out of
     the node, "" if there is none. `touching` are pairs of a node that was not read and a topic that its remappings

@@ -8,7 +8,8 @@ from typing import Final
 
 from tarl_lint.definitions import FIELDS
 from tarl_lint.evidence import Outline
-from tarl_lint.model import Span
+from tarl_lint.flows.statement_text import Texts
+from tarl_lint.ir.lower_expressions import position
 from tarl_lint.read.source import Module
 from tarl_lint.system.model import Misfit
 from tarl_lint.trees import last_name
@@ -22,7 +23,7 @@ _REGISTERS: Final[Mapping[str, tuple[int, int]]] = {"Subscriber": (1, 2), "creat
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def misfits(module: Module, outline: Outline) -> Iterator[Misfit]:
+def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
     """Yield the uses of absent fields: on messages that a callback receives, or that a function makes."""
     types = _imported(module.tree)
     if not types:
@@ -39,12 +40,8 @@ def misfits(module: Module, outline: Outline) -> Iterator[Misfit]:
         for node in ast.walk(function) if held else ():
             found = _absent(node, held) if isinstance(node, ast.Attribute) else None
             if found is not None and isinstance(node, ast.Attribute):
-                yield Misfit(*found, _span(module.path, node), outline.qualname(node.lineno))
-
-
-def _span(path: str, node: ast.expr) -> Span:
-    end = node.end_lineno or node.lineno
-    return Span(path, node.lineno, node.col_offset + 1, end, (node.end_col_offset or 0) + 1)
+                span = texts[module.path].stretch(position(node))
+                yield Misfit(*found, span, outline.qualname(node.lineno))
 
 
 def _imported(tree: ast.Module) -> dict[str, str]:

@@ -15,7 +15,8 @@ from tarl_lint.evidence import Outline
 from tarl_lint.fingerprints import of_finding
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
-from tarl_lint.model import Finding, Flow, Span
+from tarl_lint.ir.lower_expressions import position
+from tarl_lint.model import Finding, Flow
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.node_names import node_name
 from tarl_lint.prefilter.by_words import reached
@@ -48,7 +49,8 @@ def interface(
     plain = replace(config, remaps=())  # names as in the code
     machine, flows = engine.trace(modules, plain, thorough=False)
     tracer = Tracer(machine)
-    endpoints = tuple(sorted(_endpoints(machine, tracer, modules), key=lambda e: (e.span, e.role)))
+    outlines = {module.path: Outline(module.tree) for module in modules}
+    endpoints = tuple(sorted(_endpoints(machine, tracer, modules, outlines), key=lambda e: (e.span, e.role)))
     found = tuple(
         _marked(finding, flow, package, config)
         for finding, flow in zip(engine.findings(flows), flows, strict=True)
@@ -67,7 +69,7 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         stale=stale(found, modules),
-        misfits=tuple(one for module in modules for one in misfits(module, Outline(module.tree))),
+        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], tracer.texts)),
     )
 
 
@@ -107,8 +109,9 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
     return replace(finding, fingerprint=print_.digest(), package=print_.package)
 
 
-def _endpoints(machine: Linker, tracer: Tracer, modules: Sequence[Module]) -> Iterator[Endpoint]:
-    outlines = {module.path: Outline(module.tree) for module in modules}
+def _endpoints(
+    machine: Linker, tracer: Tracer, modules: Sequence[Module], outlines: Mapping[str, Outline]
+) -> Iterator[Endpoint]:
     for record in machine.sources.values():
         source = tracer.source(record)
         if record.kind == "topic":
@@ -118,17 +121,16 @@ def _endpoints(machine: Linker, tracer: Tracer, modules: Sequence[Module]) -> It
             yield Endpoint("serves", source.topics, source.type, source.span, None, source.qualname)
     yield from _publishers(machine, tracer, outlines)
     for module in modules:
-        yield from _clients(machine, module, outlines[module.path])
+        yield from _clients(machine, tracer, module, outlines[module.path])
 
 
-def _clients(machine: Linker, module: Module, outline: Outline) -> Iterator[Endpoint]:
+def _clients(machine: Linker, tracer: Tracer, module: Module, outline: Outline) -> Iterator[Endpoint]:
     """Yield the services that a module calls, as far as its functions run."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     for call, name, kind in called_services(outline):
         place = outline.qualname(call.lineno)
         if not ran or place in ran or not place:
-            end = call.end_lineno or call.lineno
-            span = Span(module.path, call.lineno, call.col_offset + 1, end, (call.end_col_offset or 0) + 1)
+            span = tracer.texts[module.path].stretch(position(call))
             yield Endpoint("calls", (name,), kind, span, None, place)
 
 

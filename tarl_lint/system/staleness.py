@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import replace
 from typing import Final
 
 from tarl_lint.model import Finding, Flow
@@ -74,8 +73,3 @@ def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
 def _without_init(text: str) -> str:
     """Return a text without its initialisers, in which attributes begin as None."""
     return re.sub(r"def __init__\(.*?(?=\n    def |\n\S|\Z)", "", text, flags=re.DOTALL)
-
-
-def about(finding: Finding) -> Finding:
-    """Return the finding without its flow, as a hazard has none."""
-    return replace(finding, flow=None)

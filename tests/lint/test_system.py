@@ -327,3 +327,28 @@ def test_chains_pass_through_topics_that_a_cpp_node_names(source, workspace, cap
         ("/safe", "Float64", 5 if source == CPP else 2),
         ("/limit/log", "DiagnosticStatus", 6 if source == CPP else 4),
     ]
+
+
+NON_ASCII = '''\
+#!/usr/bin/env python3
+import rospy
+from geometry_msgs.msg import Accel
+from std_srvs.srv import Empty
+rospy.init_node("relay")
+def heard(msg):
+    rospy.loginfo("öäü → %s", msg.accel)
+rospy.Subscriber("in", Accel, heard)
+rospy.loginfo("größer"); rospy.ServiceProxy("reset", Empty)()
+'''  # fmt: skip
+
+
+def test_columns_count_characters_not_bytes(workspace, capsys):
+    write(workspace, {"arm/scripts/relay.py": NON_ASCII})
+    file = launched(workspace, relay("a", "/x", "/y"))
+    _, out, _ = run(capsys, "--launch", file, "--format", "json")
+    (system,) = json.loads(out)["systems"]
+    (absent,) = [one for one in system["diagnostics"] if one["code"] == "TARL309"]
+    (called,) = system["nodes"][0]["calls"]
+    lines = NON_ASCII.splitlines()
+    for found, text in ((absent, "msg.accel"), (called, 'rospy.ServiceProxy("reset", Empty)')):
+        assert lines[found["line"] - 1][found["column"] - 1 : found["end_column"] - 1] == text
