@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from lsprotocol import types
 
 from pytest_tarl.editor.positions import Places
+from tarl_lint.documentation import rule_page
 from tarl_lint.editing import Result
 from tarl_lint.model import Finding, Flow, Span
 
@@ -30,6 +31,7 @@ def diagnostics(result: Result, places: Places) -> dict[str, list[types.Diagnost
                 severity=types.DiagnosticSeverity.Error,
                 source=SOURCE,
                 code="TARL001",
+                code_description=_page("TARL001"),
             )
         )
     return found
@@ -42,9 +44,16 @@ def _diagnostic(finding: Finding, places: Places) -> types.Diagnostic:
         severity=_severity(finding),
         source=SOURCE,
         code=finding.code,
+        code_description=_page(finding.code),
         related_information=_taint_list(finding.flow, places) if finding.flow else None,
         data={"fingerprint": finding.fingerprint, "code": finding.code, "new": finding.status == "new"},
     )
+
+
+def _page(code: str) -> types.CodeDescription | None:
+    """Return the address of a rule's page, at which an editor makes its code a link."""
+    page = rule_page(code)
+    return types.CodeDescription(page) if page else None
 
 
 def _severity(finding: Finding) -> types.DiagnosticSeverity:

@@ -9,6 +9,7 @@ from typing import Any, Final
 from urllib.parse import quote
 
 from tarl_lint import __version__, explain
+from tarl_lint.documentation import rule_page, site
 from tarl_lint.files import shown
 from tarl_lint.model import OFF_BY_DEFAULT, Dependence, Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.read.source import SourceError
@@ -49,7 +50,12 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
         _result(finding, identity, codes, result, cut.steps, silenced=finding in silenced)
         for finding, identity in chosen
     ]
-    driver = {"name": "tarl-lint", "version": __version__, "rules": [_rule(code) for code in codes]}
+    driver = {
+        "name": "tarl-lint",
+        "version": __version__,
+        **({"informationUri": site()} if site() else {}),
+        "rules": [_rule(code) for code in codes],
+    }
     left_out = [*_left_out(len(named) - len(chosen)), *_shortened([pair[0] for pair in chosen], cut.steps)]
     notes = [*_notifications(result), *_incomplete(result), *left_out]
     run = {
@@ -106,6 +112,7 @@ def _rule(code: str) -> dict[str, Any]:
         "name": code,
         "shortDescription": {"text": title.partition(": ")[2] or title},
         "fullDescription": {"text": description},
+        **({"helpUri": rule_page(code)} if rule_page(code) else {}),
         "help": {"text": text, "markdown": page},
         "defaultConfiguration": {"level": grade} | ({"enabled": False} if code in OFF_BY_DEFAULT else {}),
         "properties": {
