@@ -94,13 +94,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     if name in METHODS_OF.get(kind, ()):
         return held_method(ctx, obj, name)
     if kind in ("message", "lib", "goal"):
-        if name.startswith("[") and (held := content(ctx, obj)).pts:
-            return held
-        if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
-            return Value(ctx.ops.deep(ctx, frozenset([obj])))
-        ctx.store.reads.look(obj)
-        any_of_them = obj.subs.get("[]") if name.startswith("[") else None
-        return Value(pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them]))
+        return _part(ctx, obj, name)
     if kind in ("sequence", "mapping"):
         return content(ctx, obj) if name.startswith("[") else BOTTOM
     if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
@@ -116,6 +110,19 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     if kind == "module":
         return opened(ctx, obj, name)
     return BOTTOM
+
+
+def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return an unset field of a library object: a part of it, except for summary and pseudo-fields."""
+    if name == ANY or name.startswith("<"):
+        return BOTTOM
+    if name.startswith("[") and (held := content(ctx, obj)).pts:
+        return held
+    if obj.kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
+        return Value(ctx.ops.deep(ctx, frozenset([obj])))
+    ctx.store.reads.look(obj)
+    any_of_them = obj.subs.get("[]") if name.startswith("[") else None
+    return Value(pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them]))
 
 
 def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:

@@ -12,7 +12,7 @@ from tarl_lint.memory import heap, joins, reachable_data, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import BORN, Root, Store
-from tarl_lint.memory.values import BOTTOM, MAX_CONSTS, Value, const, join, pointer
+from tarl_lint.memory.values import ABSENT, BOTTOM, MAX_CONSTS, Value, const, join, pointer
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
@@ -111,6 +111,24 @@ def test_an_empty_part_of_a_message_is_covered_by_the_whole(ctx):
     assert reachable_data.deep(ctx, frozenset([message])) == frozenset([7])
     ctx.store.put((message.sub("pose"), "x"), Value(DATA))
     assert reachable_data.deep(ctx, frozenset([message])) == frozenset([7]) | DATA
+
+
+@pytest.mark.parametrize("name", [heap.ANY, heap.LENGTH, heap.KEYS, heap.HELD, heap.SENT])
+def test_a_summary_field_of_a_library_object_is_no_part_of_it(ctx, name):
+    obj = recency.intern(ctx, "lib", "matrix")
+    assert heap.read_field(ctx, obj, name) is BOTTOM
+    assert not obj.subs
+
+
+def test_joining_a_cleared_summary_field_adds_no_objects(ctx, frame):
+    obj = recency.allocate(ctx, "lib", frame, "slot")
+    updates.add_element(ctx, pointer(obj), Value(DATA))
+    ctx.store.push()
+    recency.allocate(ctx, "lib", frame, "slot")
+    cleared = ctx.store.pop()
+    assert cleared[obj, heap.ANY] is ABSENT
+    assert joins.joined(ctx, [cleared, {}])[obj, heap.ANY] == Value(DATA)
+    assert not obj.subs
 
 
 def test_unreachable_objects_are_dropped_when_a_function_returns(ctx, frame):
