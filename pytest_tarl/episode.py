@@ -18,6 +18,7 @@ from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.sensors import Sensor, as_number
 from pytest_tarl.situation import Situation
+from pytest_tarl.starting import Starter
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.instrumentation.trace import Trace
     from pytest_tarl.ros import Bus, Ros
+    from pytest_tarl.starting import Replacement
 
 LARGEST = 1e100  # largest magnitude of a reward; flow values have the same bound
 
@@ -61,6 +63,7 @@ class Tarl:
         self._rewards = 0
         self._streams: dict[str, np.random.Generator] = {}
         self._ros: Ros | None = None
+        self._starter = Starter(folder, imports, lambda: self.ros)
         self._origin = 0  # start of virtual time in ns
         self._requirements = requirements
         self._alone = alone  # True for the single episode of a plain test run
@@ -125,22 +128,30 @@ class Tarl:
         those of all nodes. Other parameters come from the launch file of the workspace that starts the script:
         from `launch` if given, or from none with `launch=False`.
         """
-        path = (self._folder / script).resolve()
-        if not path.is_file():
-            raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
         self.drives_ros = True
-        self.ros.use_definitions_around(path.parent)
-        self.ros.give(parameters or {})
-        if launch is not False:
-            from pytest_tarl.ros.launched import given
+        self._starter.start(script, name, argv, parameters or {}, entry, launch)
 
-            self.ros.launch(given(path, None if launch is None else (self._folder / launch).resolve()))
-        imports = self._imports
+    def launch(
+        self,
+        file: str,
+        *,
+        arguments: Mapping[str, Any] | None = None,
+        only: Sequence[str] | None = None,
+        replace: Mapping[str, Replacement] | None = None,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Start the Python nodes of a launch file, with their names, namespaces, remappings and parameters.
 
-        def program() -> None:
-            imports.run(path, entry)
+        `file` is a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
+        `arguments` are its launch arguments, `only` the names of the nodes to start. A function in `replace` stands
+        for the node of that name; it is called with a `StandIn`, by which it publishes and subscribes under the names
+        in the node's code. Nodes that are no Python and not replaced are named in a note. `parameters` are added to
+        those of all nodes and take precedence.
 
-        self.ros.start(program, name=name or path.stem, argv=argv)
+        Raise SettingsError for an unknown file, argument or node, NodeError if a node fails.
+        """
+        self.drives_ros = True
+        self._starter.launch(file, arguments or {}, only, replace or {}, parameters or {})
 
     def step(self, dt: float) -> None:
         """Run the nodes and advance virtual time by `dt` seconds, until every node waits again.

@@ -10,7 +10,7 @@ import inspect
 import signal
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType
@@ -27,6 +27,7 @@ from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
+from pytest_tarl.starting import node_files
 
 if TYPE_CHECKING:
     from pytest_tarl.bags.replay import Replay
@@ -77,7 +78,8 @@ def designated(item: pytest.Item) -> Designation | None:
     if marker is None:
         return None
     marked = designation(item.nodeid, marker.args, marker.kwargs, said(item.nodeid, item.config.rootpath))
-    return replace(marked, purpose=_first_paragraph(inspect.getdoc(getattr(item, "function", None))))
+    purpose = _first_paragraph(inspect.getdoc(getattr(item, "function", None)))
+    return replace(marked, purpose=purpose, nodes=node_files(marked.nodes, item.path.parent, item.nodeid))
 
 
 def _first_paragraph(docstring: str | None) -> str:
@@ -121,7 +123,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
-        with reading(data):
+        with reading(data), _launch_files_replaced(data):
             yield tarl
     finally:
         try:
@@ -133,6 +135,15 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         finally:
             tarl.close()
             episode.notes, episode.older = tarl.notes(), imports.older
+
+
+def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[None]:
+    """Return a context in which parameters of launch files are read anew, if data files have another text."""
+    if not data:
+        return nullcontext()
+    from pytest_tarl.ros.launched import texts_replaced
+
+    return texts_replaced()
 
 
 def _faults(episode: Episode) -> Faults:

@@ -9,7 +9,7 @@ import builtins
 import contextlib
 import sys
 import warnings
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import lru_cache, partial
 from importlib import import_module
 from importlib.machinery import ModuleSpec, SourceFileLoader
@@ -29,6 +29,7 @@ from pytest_tarl.instrumentation.launching import (
     workspace,
 )
 from pytest_tarl.instrumentation.nodecode import NodeCode
+from pytest_tarl.instrumentation.separate_modules import SeparateModules
 from pytest_tarl.instrumentation.sites import Position, Positions
 from pytest_tarl.stale_modules import holders, of_tests, outlived
 
@@ -95,6 +96,23 @@ class NodeImports:
     def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
         """Return the sites, by file, without a statement that can be recorded."""
         return self._code.unrecorded
+
+    def separate(self) -> SeparateModules:
+        """Return a switch that gives every program its own copies of the project's modules."""
+        belonging: dict[str, tuple[ModuleType, bool]] = {}
+
+        def own() -> Iterator[str]:
+            for name in self._imported:
+                module = sys.modules.get(name)
+                if module is None:
+                    continue
+                known = belonging.get(name)
+                if known is None or known[0] is not module:
+                    known = belonging[name] = module, self._belongs(module)
+                if known[1]:
+                    yield name
+
+        return SeparateModules(own)
 
     def compile_file(self, path: Path) -> CodeType:
         """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
@@ -99,10 +100,18 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Set a launch file's parameters for all nodes: on a real ROS a node has no name before it runs."""
+        """Set a launch file's parameters: of a node whose name is not known before it runs, for all nodes."""
         super().launch(given)
-        for name, value in {**given.shared, **{f"~{key}": one for key, one in given.private.items()}}.items():
+        private = {} if given.node else {f"~{key}": one for key, one in given.private.items()}
+        for name, value in {**given.shared, **private}.items():
             self.parameters.setdefault(name, value)
+
+    def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
+        """Run a node's main program until it first waits. Raises NodeError if it raises an exception."""
+        given = self._launched
+        if given.node:
+            argv = (*argv, *_arguments(given.private, ros2="--ros-args" in argv))
+        super().start(run, name=name, argv=argv)
 
     def enter(self, process: Process) -> None:
         """Prepare to resume a task of a process."""
@@ -121,6 +130,13 @@ class RealRos(Ros):
                 yield
         finally:
             sys.setswitchinterval(interval)
+
+
+def _arguments(parameters: Mapping[str, Any], *, ros2: bool) -> Iterator[str]:
+    """Yield the command line that sets private parameters, after remappings of the same generation."""
+    for name, value in parameters.items():
+        text = json.dumps(value)  # JSON is YAML
+        yield from ("-p", f"{name}:={text}") if ros2 else (f"_{name}:={text}",)
 
 
 def refused(topic: str, published: Any, receiver: str, wanted: Any) -> RecordingError:

@@ -82,6 +82,10 @@ class Ros(Network):
         if given.note:
             self._launch_notes.append(given.note)
 
+    def note(self, sentence: str) -> None:
+        """Add a note for the user on how the nodes were started."""
+        self._launch_notes.append(sentence)
+
     def use_definitions_around(self, folder: Path) -> None:
         """Load the message, service and action definitions of the workspace that contains `folder`."""
         workspace.search(folder)
@@ -95,6 +99,13 @@ class Ros(Network):
         self.processes.append(process)
         with command_line(process.argv):
             self._run(process.run, run)
+
+    def spawn(self, process: Process, function: Callable[..., None], *arguments: Any) -> None:
+        """Run a function as a task of a process until it first waits."""
+        if running_task() is not None:
+            self.scheduler.spawn(process, function, *arguments)
+        else:
+            self._run(self.scheduler.spawn, process, function, *arguments)
 
     def interrupt(self, name: str, at: float, outage: float) -> None:
         """Kill the node started as `name` at the moment `at`, and start it anew `outage` seconds later, both in s."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -34,6 +35,7 @@ class Given:
 
 
 NOTHING = Given()
+WITH_TEXTS: list[Callable[[], None]] = []  # functions that empty caches of launch and parameter files
 
 
 @cache
@@ -177,5 +179,18 @@ def _read(file: Path, workspace: Workspace) -> Launch:
     return read_launch(file, workspace)
 
 
+@contextmanager
+def texts_replaced() -> Iterator[None]:
+    """Read launch and parameter files anew within the context, in which their text is another, and after it."""
+    for clear in WITH_TEXTS:
+        clear()
+    try:
+        yield
+    finally:
+        for clear in WITH_TEXTS:
+            clear()
+
+
+WITH_TEXTS.append(given.cache_clear)
 for known in (given, python_files, _bytes):
     on_forget(known.cache_clear)

@@ -124,6 +124,7 @@ class Scheduler:
         self._sequence = 0
         self._running: Task | None = None
         self._idle: list[Worker] = []
+        self.entering: Callable[[Program], None] | None = None  # called before a task of a program resumes
 
     def wait(self, until: int | None = None) -> bool:
         """Suspend the running task until the instant `until` or until woken; return whether it was woken.
@@ -243,6 +244,8 @@ class Scheduler:
         task.ticket += 1
         worker.parent = getcurrent()
         self._running = task
+        if self.entering is not None:
+            self.entering(task.process)
         worker.switch(woken)
 
 

@@ -71,6 +71,11 @@ def _nearest(name: str, importer: Path) -> Path | None:
     return None
 
 
+def candidates(name: str) -> tuple[Path, ...]:
+    """Return the files and folders of all workspaces that could be the top-level module `name`."""
+    return tuple(place for workspace in workspaces() for place in _modules(workspace.root).get(name, ()))
+
+
 @cache
 def _modules(root: Path) -> dict[str, tuple[Path, ...]]:
     """Return the files and folders of a workspace that could be top-level modules, by name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -16,7 +17,9 @@ from tests.examples.driving import EXAMPLES
 FORMULAS = sys.version_info < (3, 13) and find_spec("rtamt") is not None
 
 
-@pytest.mark.parametrize(("example", "tests"), [("shuttle", 4), ("line_follower", 1), ("quadrotor", 1)])
+@pytest.mark.parametrize(
+    ("example", "tests"), [("shuttle", 4), ("line_follower", 1), ("quadrotor", 1), ("workspace", 1)]
+)
 def test_an_example_passes_without_flags_in_its_own_folder(example: str, tests: int) -> None:
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"],
@@ -54,3 +57,32 @@ def test_the_shuttle_has_limits(tmp_path: Path) -> None:
         assert run.returncode == 0, run.stdout + run.stderr
     assert re.search(r"stress, \d+ episodes\n  guarantee .*\n  mud  ", run.stdout)
     assert "The budget of 40 episodes was used up" in run.stdout
+
+
+def ran(folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *flags],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+@pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="half a minute of CPU time; set TARL_SLOW=1")
+def test_a_drift_of_a_whole_launch_file_is_repaired_in_the_package_that_needs_it(tmp_path: Path) -> None:
+    copy = tmp_path / "workspace"
+    shutil.copytree(EXAMPLES / "workspace", copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
+    recorded = ran(copy, "--tarl-record", "--tarl-episodes=30")
+    assert "30 of 30 missions succeeded" in recorded.stdout, recorded.stdout + recorded.stderr
+    repaired = ran(
+        copy, "--tarl-online", "--tarl-drift=worn tyres", "--tarl-repair", "--tarl-episodes=30"
+    ).stdout
+    assert "degraded" in repaired
+    assert re.search(
+        r"repair +accepted: 0\.2 → 0\.\d+ at\s+scout_navigation/scout_navigation/planner\.py", repaired
+    )
+    (patch,) = (copy / ".tarl" / "patches").glob("*.patch")
+    assert re.findall(r"^\+\+\+ b/(.*)$", patch.read_text(), re.M) == [
+        "scout_navigation/scout_navigation/planner.py"
+    ]

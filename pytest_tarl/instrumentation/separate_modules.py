@@ -1,0 +1,35 @@
+"""Each program's own copies of the project's modules, as separate processes have them.
+
+Without it, two nodes in one interpreter would share the module `utils` of whichever was started first, and two nodes
+of one program the globals of its modules.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from types import ModuleType
+
+
+class SeparateModules:
+    """Swaps the modules of programs in `sys.modules`, and their search paths, when another program runs.
+
+    `own` returns the names of loaded modules that belong to a program.
+    """
+
+    def __init__(self, own: Callable[[], Iterable[str]]) -> None:
+        self._own = own
+        self._modules: dict[object, dict[str, ModuleType]] = {}
+        self._paths: dict[object, list[str]] = {}
+        self._running: object = None
+        self._path = list(sys.path)
+
+    def enter(self, program: object) -> None:
+        """Show a program its modules and search path, and hide those of the one that ran before."""
+        if program is self._running:
+            return
+        self._modules[self._running] = {name: sys.modules.pop(name) for name in tuple(self._own())}
+        self._paths[self._running] = list(sys.path)
+        self._running = program
+        sys.modules.update(self._modules.get(program, {}))
+        sys.path[:] = self._paths.get(program, self._path)

@@ -1,0 +1,239 @@
+"""What a launch file starts: Python nodes with names, command lines and parameters, and nodes that are no Python."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import re
+import shlex
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros.launched import WITH_TEXTS, Given, parameters, python_files
+from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
+from tarl_lint.node_names import node_name
+from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode
+from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.programs import Program, program
+from tarl_lint.workspace.ros_names import joined, remapped
+
+SHOWN = 3  # problems of a launch file in one note
+_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
+
+
+@dataclass(frozen=True)
+class Launched:
+    """A node of a launch file. `path` is its Python program; without one, `foreign` is the reason.
+
+    `problem` is why it cannot be started as it is, empty if it can.
+    """
+
+    launch: Launch
+    node: LaunchedNode
+    name: str  # absolute
+    path: Path | None = None
+    entry: str | None = None
+    foreign: str = ""
+    argv: tuple[str, ...] = ()
+    problem: str = ""
+
+    @cached_property
+    def given(self) -> Given:
+        """Return the parameters. Raises SettingsError for YAML that cannot be read."""
+        return replace(parameters(self.launch, self.node, self.name), node=self.name)
+
+    @property
+    def spellings(self) -> frozenset[str]:
+        """Return the names by which a test may name the node."""
+        node = self.node
+        return frozenset(
+            {self.name, self.name.strip("/"), self.name.rpartition("/")[2], node.executable,
+             f"{node.package}/{node.executable}"}
+        )  # fmt: skip
+
+    def resolve(self, name: str) -> str:
+        """Return the launched name of a topic, service or parameter in the node's code."""
+        return remapped(name, self.node.namespace, self.name.rpartition("/")[2], self.node.remaps)
+
+
+@dataclass(frozen=True)
+class LaunchPlan:
+    """The nodes of a launch file in the order of starting, and notes for the user."""
+
+    file: Path
+    nodes: tuple[Launched, ...]
+    notes: tuple[str, ...] = ()
+
+    def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
+        """Return the nodes to start or to replace.
+
+        Raises SettingsError for a name that no node has, and for a node in `only` that can be neither.
+        """
+        for argument, names in (("only", only or ()), ("replace", replaced)):
+            for name in names:
+                self._check(argument, name)
+        wanted = [one for one in self.nodes if only is None or named(one, only)]
+        for one in wanted:
+            if named(one, replaced):
+                continue
+            if one.problem:
+                raise SettingsError(one.problem)
+            if only is not None and one.foreign:
+                raise SettingsError(
+                    f"tarl.launch: only names {one.name}, which is no Python node of the workspace ({one.foreign}). "
+                    f'Replace it by a function of the test: replace={{"{one.name.rpartition("/")[2]}": function}}.'
+                )
+        return tuple(wanted)
+
+    def _check(self, argument: str, name: str) -> None:
+        if any(name in one.spellings for one in self.nodes):
+            return
+        known = [one.name for one in self.nodes]
+        short = [one.rpartition("/")[2] for one in known]
+        close = difflib.get_close_matches(name.rpartition("/")[2], short, 1)
+        hint = f" Did you mean {close[0]!r}?" if close else ""
+        raise SettingsError(
+            f"tarl.launch: {argument} names {name!r}, but {self.file.name} starts no such node.{hint} It starts "
+            f"{', '.join(known)}."
+        )
+
+
+def named(one: Launched, names: Iterable[str]) -> bool:
+    """Return whether one of these names stands for a node."""
+    return not one.spellings.isdisjoint(names)
+
+
+def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
+    """Return a launch file: a path relative to `folder`, or its name in the workspace around it.
+
+    Raises SettingsError, which begins with `where`, if there is none.
+    """
+    path = (folder / file).resolve()
+    if path.is_file():
+        return path
+    root = workspace_root(folder.resolve())
+    if root is None:
+        raise SettingsError(f"{where}: {file}: no such file in {folder}, which is in no ROS workspace.")
+    search(folder)
+    try:
+        return launch_file(file, _around(folder.resolve()) or Workspace(root), str(root))
+    except NoLaunchFileError as problem:
+        raise SettingsError(f"{where}: {problem}") from None
+
+
+def launch_plan(file: Path, arguments: Mapping[str, object]) -> LaunchPlan:
+    """Return what a launch file starts with these launch arguments.
+
+    Raises SettingsError for an unknown argument, and if the file starts nothing.
+    """
+    search(file.parent)
+    return _plan(file, tuple(sorted((str(name), _text(value)) for name, value in arguments.items())))
+
+
+def programs(plan: LaunchPlan) -> tuple[Path, ...]:
+    """Return the files of the Python nodes, each once."""
+    return tuple(dict.fromkeys(one.path for one in plan.nodes if one.path is not None))
+
+
+@lru_cache(maxsize=64)
+def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
+    workspace = _around(file) or Workspace(file.parent)
+    launch = read_launch(file, workspace, dict(arguments))
+    _check_arguments(launch, [name for name, _ in arguments])
+    if not launch.nodes:
+        why = f": {launch.problems[0].reason}" if launch.problems else " with these arguments"
+        raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
+    return LaunchPlan(
+        file, tuple(_launched(launch, one, workspace) for one in launch.nodes), tuple(_notes(launch))
+    )
+
+
+def _around(path: Path) -> Workspace | None:
+    return next((one for one in workspaces() if path.is_relative_to(one.root)), None)
+
+
+def _text(value: object) -> str:
+    """Return an argument as on the command line of `ros2 launch`."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _check_arguments(launch: Launch, names: Iterable[str]) -> None:
+    for name in names:
+        if name not in launch.arguments:
+            close = difflib.get_close_matches(name, launch.arguments, 1)
+            known = f"it has {', '.join(launch.arguments)}" if launch.arguments else "it has none"
+            hint = f"did you mean {close[0]!r}?" if close else f"{known}."
+            raise SettingsError(f"tarl.launch: {launch.file.name} has no argument {name!r}; {hint}")
+
+
+def _launched(launch: Launch, node: LaunchedNode, workspace: Workspace) -> Launched:
+    package = workspace.package(node.package)
+    found = program(node, workspace, python_files(package.folder) if package is not None else ())
+    own = node.name or (_name_in_code(found.path) if isinstance(found, Program) else "")
+    name = joined(node.namespace, own or node.executable.rpartition("::")[2])
+    problem = _symbolic(node, name, launch.arguments)
+    if not isinstance(found, Program):
+        return Launched(launch, node, name, foreign=found, problem=problem)
+    argv = tuple(_command_line(node, ros2=launch.ros2))
+    return Launched(launch, node, name, found.path, found.entry or None, "", argv, problem)
+
+
+def _name_in_code(path: Path) -> str:
+    try:
+        return node_name(ast.parse(path.read_bytes()))
+    except (OSError, SyntaxError, ValueError):
+        return ""  # reported when the file is run
+
+
+def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
+    """Yield the arguments of a node as roslaunch and ros2 launch give them, without its parameters."""
+    try:
+        yield from shlex.split(node.arguments)
+    except ValueError:
+        yield from node.arguments.split()
+    renames = [
+        *([("__node" if ros2 else "__name", node.name)] if node.name else []),
+        ("__ns", node.namespace),
+    ]
+    pairs = [f"{old}:={new}" for old, new in (*renames, *node.remaps)]
+    if ros2:
+        yield "--ros-args"
+    for pair in pairs:
+        yield from ("-r", pair) if ros2 else (pair,)
+
+
+def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
+    """Return why a node cannot be started: part of its description is known only on the robot."""
+    remaps = [side for pair in node.remaps for side in pair]
+    texts = [node.package, node.executable, node.name, node.namespace, node.arguments, *remaps]
+    unknown = next((text for text in texts if "$(" in text), None)
+    if unknown is None:
+        return ""
+    argument = _ARGUMENT.search(unknown)
+    advice = (
+        f'pass arguments={{"{argument[1]}": …}}'
+        if argument and argument[1] in arguments
+        else "leave it out with only=[…], or replace it by a function of the test with replace={…}"
+    )
+    return (
+        f"tarl.launch: the node {name} ({node.file.name}:{node.line}) depends on {unknown!r}, which has no value "
+        f"here: {advice}."
+    )
+
+
+def _notes(launch: Launch) -> Iterator[str]:
+    """Yield one note on what of the launch file is not known."""
+    problems = [f"{one.file.name}:{one.line}: {one.reason}" for one in launch.problems]
+    if problems:
+        more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
+        yield f"not known of {launch.file.name}: {'; '.join(problems[:SHOWN])}{more}."
+
+
+on_forget(_plan.cache_clear)
+WITH_TEXTS.append(_plan.cache_clear)

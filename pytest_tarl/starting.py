@@ -1,0 +1,138 @@
+"""Start the nodes of an episode: single files, and those of a launch file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pytest_tarl.errors import SettingsError
+
+if TYPE_CHECKING:
+    from pytest_tarl.instrumentation.importhook import NodeImports
+    from pytest_tarl.ros import Ros
+    from pytest_tarl.ros.launch_plan import Launched
+    from pytest_tarl.ros.stand_in import StandIn
+
+    Replacement = Callable[[StandIn], object]
+
+
+class Starter:
+    """Starts nodes in the ROS of one episode, which `ros` returns."""
+
+    def __init__(self, folder: Path, imports: NodeImports, ros: Callable[[], Ros]) -> None:
+        self._folder = folder
+        self._imports = imports
+        self._ros = ros
+
+    def start(
+        self,
+        script: str,
+        name: str | None,
+        argv: Sequence[str],
+        parameters: Mapping[str, Any],
+        entry: str | None,
+        launch: str | Literal[False] | None,
+    ) -> None:
+        """Start a file, with the parameters that a launch file gives it.
+
+        Raise SettingsError if there is no such file.
+        """
+        path = (self._folder / script).resolve()
+        if not path.is_file():
+            raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
+        ros = self._ros()
+        ros.use_definitions_around(path.parent)
+        ros.give(parameters)
+        if launch is not False:
+            from pytest_tarl.ros.launched import given
+
+            ros.launch(given(path, None if launch is None else (self._folder / launch).resolve()))
+        ros.start(self._program(path, entry), name=name or path.stem, argv=argv)
+
+    def launch(
+        self,
+        file: str,
+        arguments: Mapping[str, Any],
+        only: Sequence[str] | None,
+        replaced: Mapping[str, Replacement],
+        parameters: Mapping[str, Any],
+    ) -> None:
+        """Call the functions that replace nodes of a launch file, then start its Python nodes in their order."""
+        from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
+        from pytest_tarl.ros.stand_in import StandIn
+
+        _check_names(only)
+        plan = launch_plan(launch_path(file, self._folder), arguments)
+        chosen = plan.chosen(only, replaced)
+        ros = self._ros()
+        ros.use_definitions_around(plan.file.parent)
+        ros.give(parameters)
+        if ros.scheduler.entering is None:
+            ros.scheduler.entering = self._imports.separate().enter
+        for note in (*plan.notes, *_left_out(plan.file, chosen, replaced)):
+            ros.note(note)
+        for one in chosen:
+            if named(one, replaced):
+                function = next(found for name, found in replaced.items() if named(one, [name]))
+                function(StandIn(ros, one))
+        for one in chosen:
+            if one.path is not None and not named(one, replaced):
+                ros.launch(replace(one.given, note=""))
+                ros.start(self._program(one.path, one.entry), name=one.name, argv=one.argv)
+
+    def _program(self, path: Path, entry: str | None) -> Callable[[], None]:
+        imports = self._imports
+
+        def program() -> None:
+            imports.run(path, entry)
+
+        return program
+
+
+def _check_names(only: Sequence[str] | None) -> None:
+    if isinstance(only, str):
+        raise SettingsError(f'tarl.launch: only takes a list of node names, such as only=["{only}"].')
+
+
+def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str]) -> list[str]:
+    """Return one note that names the nodes that are no Python and not replaced."""
+    from pytest_tarl.ros.launch_plan import named
+
+    foreign = [one for one in chosen if one.path is None and not named(one, replaced)]
+    if not foreign:
+        return []
+    told = "; ".join(f"{one.name} ({one.foreign})" for one in foreign)
+    first = foreign[0].name.rpartition("/")[2]
+    note = (
+        f"{file.name} also starts what is no Python node of the workspace and did not run: {told}. A function of the "
+        f'test can replace it: tarl.launch(…, replace={{"{first}": function}}).'
+    )
+    return [note]
+
+
+def node_files(nodes: Sequence[str], folder: Path, where: str) -> tuple[str, ...]:
+    """Return the node files of a marker, with each launch file replaced by the Python programs that it starts.
+
+    Raises SettingsError, which begins with `where`, for an unknown launch file, and for one without Python nodes.
+    """
+    from tarl_lint.workspace.launch_lookup import is_launch_name
+
+    if not any(map(is_launch_name, nodes)):
+        return tuple(nodes)
+    from pytest_tarl.ros.launch_plan import launch_path, launch_plan, programs
+
+    files: dict[str, None] = {}
+    for node in nodes:
+        if not is_launch_name(node):
+            files[node] = None
+            continue
+        found = programs(launch_plan(launch_path(node, folder, f"{where}: nodes"), {}))
+        if not found:
+            raise SettingsError(
+                f"{where}: the launch file {node} in nodes starts no Python node of the workspace."
+            )
+        files.update((os.path.relpath(path, folder), None) for path in found)
+    return tuple(files)
