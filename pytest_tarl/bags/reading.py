@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
@@ -122,6 +122,21 @@ def _of_databases() -> Iterator[type[Exception]]:
             yield import_module(name).Error
 
 
+@contextmanager
+def _reading(path: Path, kind: Kind) -> Iterator[Reader1 | Reader2]:
+    reader = _reader(path, kind)
+    try:
+        reader.open()
+    except BaseException:
+        with suppress(*_unreadable(), AttributeError):  # rosbags 0.11.0 leaves a damaged .mcap file open
+            reader.close()
+        raise
+    try:
+        yield reader
+    finally:
+        reader.close()
+
+
 def _reader(path: Path, kind: Kind) -> Reader1 | Reader2:
     if kind == "ros1":
         from rosbags.rosbag1 import Reader as Reader1
@@ -134,12 +149,12 @@ def _reader(path: Path, kind: Kind) -> Reader1 | Reader2:
 
 def _whole(path: Path, kind: Kind) -> Bag:
     """Open a bag with its index."""
-    with _reader(path, kind) as reader:
+    with _reading(path, kind) as reader:
         channels = {one.topic: _channel(one) for one in reader.connections if one.msgcount}
         start = reader.start_time
 
     def source() -> Iterator[Recorded]:
-        with _reader(path, kind) as reader:
+        with _reading(path, kind) as reader:
             for connection, time, data in reader.messages():
                 yield Recorded(time, connection.topic, bytes(data))
 
