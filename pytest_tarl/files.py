@@ -6,6 +6,7 @@ import errno
 import os
 import re
 import tempfile
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -27,6 +28,15 @@ def advice_on(problem: OSError) -> str:
     return (
         "another kind of file is in its place, or the disk fails: check the path and run the command again."
     )
+
+
+def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
+    """Return one sentence with advice for each reason why files below `root` were not written."""
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for path, problem in failed.items():
+        shown = path.relative_to(root).as_posix()
+        reasons.setdefault((problem.strerror or str(problem), advice_on(problem)), []).append(shown)
+    return [f"not written: {', '.join(paths)} ({why}): {advice}" for (why, advice), paths in reasons.items()]
 
 
 def check_writable(path: Path) -> None:

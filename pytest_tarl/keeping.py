@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pytest_tarl.comparing import Online
 from pytest_tarl.errors import TarlError
-from pytest_tarl.files import advice_on
+from pytest_tarl.files import unwritten
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
@@ -50,7 +50,11 @@ def keep(comparison: Comparison, online: Online, episodes: Mapping[str, int], ro
     missing = tuple(
         f"  no report page: {one}" for path, one in problems.items() if one and path not in failed
     )
-    return Kept(None if problems[page] else page, missing, tuple(_unwritten(failed, root)))
+    return Kept(
+        None if problems[page] else page,
+        missing,
+        tuple(f"  {one} The verdict above stands." for one in unwritten(failed, root)),
+    )
 
 
 def _problem(write: Callable[[], None]) -> TarlError | None:
@@ -59,18 +63,6 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
     except TarlError as problem:
         return problem
     return None
-
-
-def _unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
-    """Return one line for each reason why files were not written, with advice."""
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for path, problem in failed.items():
-        shown = path.relative_to(root).as_posix()
-        reasons.setdefault((problem.strerror or str(problem), advice_on(problem)), []).append(shown)
-    return [
-        f"  not written: {', '.join(paths)} ({why}): {advice} The verdict above stands."
-        for (why, advice), paths in reasons.items()
-    ]
 
 
 def by_hand(repair: Repair | None) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from pytest_tarl.files import advice_on, slug, write_atomically
+from pytest_tarl.files import slug, unwritten, write_atomically
 from pytest_tarl.stressing import json_result, kept, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
@@ -33,8 +33,7 @@ def deliver(request: Request, root: Path) -> Delivered:
             (f"{request.fixture.test}[{request.drift}]: interrupted, nothing is known.",), "", True
         )
     found = stress(request)
-    unwritten = _written(found, root, name, memory)
-    told = (*words.lines(found), *before, *(f"  {line}" for line in unwritten))
+    told = (*words.lines(found), *before, *(f"  {line}" for line in _written(found, root, name, memory)))
     return Delivered(told, _problem(found), found.ended == "interrupted")
 
 
@@ -63,17 +62,19 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
     }
     if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
         jobs[memory] = lambda path: kept.write(found.failures, path)
-    lines = [line for path, write in jobs.items() for line in _unwritten(path, write, root)]
-    return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"] if report.exists() else lines
+    failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
+    lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
+    if report in failed:  # the page that is there, if any, is of an earlier run
+        return lines
+    return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"]
 
 
-def _unwritten(path: Path, write: Callable[[Path], None], root: Path) -> list[str]:
+def _failure(write: Callable[[Path], None], path: Path) -> OSError | None:
     try:
         write(path)
     except OSError as problem:
-        why = problem.strerror or str(problem)
-        return [f"not written: {path.relative_to(root).as_posix()} ({why}): {advice_on(problem)}"]
-    return []
+        return problem
+    return None
 
 
 def _problem(found: Stress) -> str:

@@ -31,12 +31,12 @@ def write(failures: Sequence[Failure], path: Path) -> None:
 
 
 def read(path: Path, space: Space) -> list[Point]:
-    """Return the kept drifts that lie in the space; none if the file is damaged or belongs to another space."""
+    """Return the kept drifts of the space, without the nominal one; none if the file is damaged or of another space."""
     try:
         found = json.loads(path.read_text("utf-8"))
         points = found["failing"] if found["format"] == FORMAT_VERSION else []
         return [point for point in points if _inside(space, point)][:MOST]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError, MemoryError):
         return []
 
 
@@ -68,4 +68,4 @@ def _inside(space: Space, point: Any) -> bool:
                 return False
         elif not extent.low <= number <= extent.high:
             return False
-    return True
+    return bool(point != space.nominal)

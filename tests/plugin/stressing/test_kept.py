@@ -1,0 +1,111 @@
+"""Files of stress runs that are damaged or cannot be written."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl import Drift
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import kept
+from pytest_tarl.stressing.delivering import _written
+from pytest_tarl.stressing.findings import failure
+from pytest_tarl.stressing.words import shown
+from tests.plugin.stressing.worlds import space_of, stressed
+
+MANY = 3000 if os.environ.get("TARL_SLOW") else 100
+SPACE = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
+WHOLE = {"format": kept.FORMAT_VERSION, "failing": [{"mud": 0.5, "camera": 1.0}, {"mud": 0.0, "camera": 0.0}]}
+NUMBERS = st.one_of(st.integers(), st.floats(), st.booleans(), st.none(), st.text(max_size=3))
+LEAVES = st.one_of(NUMBERS, st.fixed_dictionaries({"mud": NUMBERS, "camera": NUMBERS}))
+VALUES = st.one_of(
+    LEAVES, st.lists(LEAVES, max_size=3), st.dictionaries(st.text(max_size=3), LEAVES, max_size=2)
+)
+
+
+def cliff(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+    return point["mud"] > 0.5, float(draws.normal(1.0, 0.01))
+
+
+def check(content: bytes, folder: Path) -> None:
+    """Whatever is read can be printed and simulated: numbers inside the space, and not its nominal point."""
+    path = folder / "failing.json"
+    path.write_bytes(content)
+    for point in kept.read(path, SPACE):
+        assert point != SPACE.nominal
+        assert 0.0 <= point["mud"] <= 1.0
+        assert [shown(extent, point[name]) for name, extent in SPACE.extents.items()]
+        assert SPACE.world(point)["camera"] in ("up", "down")
+
+
+@settings(max_examples=MANY)
+@given(VALUES)
+@example([{"mud": 1.0, "camera": 0.0}])
+@example([{"mud": float("nan"), "camera": 0.0}])
+def test_other_values_in_a_file_of_failures_are_ignored(
+    tmp_path_factory: pytest.TempPathFactory, value: Any
+) -> None:
+    document = json.dumps({"format": kept.FORMAT_VERSION, "failing": value})
+    check(document.encode("utf-8", "surrogatepass"), tmp_path_factory.getbasetemp())
+
+
+@settings(max_examples=MANY)
+@given(st.integers(0, len(json.dumps(WHOLE)) - 1), st.integers(0, 255))
+def test_a_changed_byte_in_a_file_of_failures_is_harmless(
+    tmp_path_factory: pytest.TempPathFactory, place: int, byte: int
+) -> None:
+    content = bytearray(json.dumps(WHOLE).encode())
+    content[place] = byte
+    check(bytes(content), tmp_path_factory.getbasetemp())
+
+
+@pytest.mark.parametrize("content", [b"[" * 100_000, b"9" * 100_000, b"\xff\xfe", b"\0"])
+def test_unusual_files_of_failures_are_ignored(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "failing.json"
+    path.write_bytes(content)
+    assert kept.read(path, SPACE) == []
+
+
+def test_a_folder_in_place_of_the_file_is_ignored(tmp_path: Path) -> None:
+    assert kept.read(tmp_path, SPACE) == []
+
+
+@pytest.mark.parametrize(
+    ("number", "advice"),
+    [
+        (errno.ENOSPC, "free some space"),
+        (errno.EROFS, "make the folder writable"),
+        (errno.EFBIG, "ulimit -f"),
+    ],
+)
+def test_one_line_says_which_files_are_missing_and_no_older_page_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, advice: str
+) -> None:
+    found = stressed(cliff, space_of(mud=Drift.range(0.0, 1.0, nominal=1.0)))
+    memory = tmp_path / ".tarl" / "stress" / "x-failing.json"
+    assert _written(found, tmp_path, "x", memory) == ["report     .tarl/report/x-stress.html"]
+
+    def full(**_: Any) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr("pytest_tarl.files.tempfile.mkstemp", full)
+    (line,) = _written(found, tmp_path, "x", memory)
+    assert line.startswith(
+        "not written: .tarl/stress/x.json, .tarl/report/x-stress.html, .tarl/stress/x-failing.json"
+    )
+    assert advice in line
+    assert line.endswith("The result above stands.")
+
+
+def test_the_nearest_failures_are_kept_in_order(tmp_path: Path) -> None:
+    failures = [failure(SPACE, {"mud": 0.9 - n / 10, "camera": 0.0}) for n in range(kept.MOST + 2)]
+    kept.write(failures, tmp_path / "failing.json")
+    assert kept.read(tmp_path / "failing.json", SPACE) == [one.point for one in failures[: kept.MOST]]
