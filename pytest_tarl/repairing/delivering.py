@@ -26,7 +26,7 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.partial import Best
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import form_words
-from pytest_tarl.report import guarantees, words
+from pytest_tarl.report import amounts, guarantees, next_commands, repair_words, words
 from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
@@ -101,7 +101,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 def partial(mutants: Mutants, found: Best) -> Partial | None:
     """Write a change that helps but is no repair to a quoted file; return None if it cannot be written."""
     order, candidate = mutants.order, found.candidate
-    what = words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
+    what = repair_words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(
         what,
         found.drifted.mean,
@@ -116,12 +116,12 @@ def partial(mutants: Mutants, found: Best) -> Partial | None:
     totals = order.comparison.totals
     header = [
         f"{patch.TITLE}{__version__}: partial, {words.one_line(what)}",
-        f"partial: {words.partial_words(made, order.comparison)}",
+        f"partial: {repair_words.partial_words(made, order.comparison)}",
         f"test: {order.fixture.test}",
         f"drift: {words.one_line(order.drift or 'none, an on-line world without a name')}",
         f"seed: {order.options.seed}",
-        f"designed: {words.average(totals['offline'])}",
-        f"drifted: {words.average(totals['online'])}",
+        f"designed: {amounts.average(totals['offline'])}",
+        f"drifted: {amounts.average(totals['online'])}",
         *_recorded(order),
         f"again: {_again(order)}",
     ]
@@ -140,7 +140,9 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
     """Describe the examined candidates and their results."""
     return tuple(
         Attempt(
-            words.repair_words(Repair(False, _guard(order, one.candidate), _edits(order, one.candidate))),
+            repair_words.repair_words(
+                Repair(False, _guard(order, one.candidate), _edits(order, one.candidate))
+            ),
             one.reason,
             fmean(one.totals) if one.totals else nan,
             len(one.totals),
@@ -166,11 +168,11 @@ def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
 def _edit(order: Order, mutation: Mutation) -> Edit:
     operand = mutation.operand
     if mutation.form is not None:
-        value = words.expected(effective_value(mutation))
+        value = amounts.expected(effective_value(mutation))
         return Edit(
             operand.span.path, operand.span.line, operand.code, value, what=form_words(order, mutation)
         )
-    value = words.expected(effective_value(mutation))
+    value = amounts.expected(effective_value(mutation))
     if mutation.place is not None:
         return Edit(mutation.place.path, mutation.place.line, mutation.place.name, value)
     return Edit(operand.span.path, operand.span.line, operand.code, value, operand.value is None)
@@ -189,15 +191,15 @@ def _evidence(
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
     nominal = [outcome.total for outcome in accepted.acceptance.nominal]
-    change = words.repair_words(Repair(True, guard, _edits(order, accepted.candidate)))
+    change = repair_words.repair_words(Repair(True, guard, _edits(order, accepted.candidate)))
     return [
         f"{patch.TITLE}{__version__}: {words.one_line(change)}",
         f"test: {order.fixture.test}",
         f"drift: {words.one_line(order.drift or 'none, an on-line world without a name')}",
         f"seed: {order.options.seed}",
-        f"designed: {words.average(totals['offline'])}",
-        f"drifted: {words.average(totals['online'])}",
-        f"drifted and repaired: {words.average(repaired)}, on held-out seeds",
+        f"designed: {amounts.average(totals['offline'])}",
+        f"drifted: {amounts.average(totals['online'])}",
+        f"drifted and repaired: {amounts.average(repaired)}, on held-out seeds",
         _designed_and_repaired(order, nominal),
         *dict.fromkeys(f"{CONSTANT}: {told}" for told in _constants(accepted.candidate)),
         *remarks(mutants, accepted.candidate),
@@ -205,7 +207,7 @@ def _evidence(
         *_stated(bounds),
         f"episodes spent: search {search}, acceptance {acceptance}",
         *_recorded(order),
-        *([f"record: {words.recording(_in_root(order))}"] if order.permanent else []),
+        *([f"record: {next_commands.recording(_in_root(order))}"] if order.permanent else []),
         f"again: {_again(order)}",
     ]
 
@@ -239,7 +241,7 @@ def _jumps(candidate: Candidate) -> list[str]:
         else:
             times = f" (× {new / value:.3g})" if value else ""
             moved.append(
-                f"{mutation.operand.code} from {words.expected(float(value)):g} to {words.expected(new):g}{times}"
+                f"{mutation.operand.code} from {amounts.expected(float(value)):g} to {amounts.expected(new):g}{times}"
             )
     if not moved:
         return []
@@ -249,11 +251,9 @@ def _jumps(candidate: Candidate) -> list[str]:
 def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:
     """Describe the reward of the repair in the designed world."""
     if order.permanent:
-        return (
-            f"old world and repaired: {words.average(nominal)}; not required, because the drift is permanent"
-        )
+        return f"old world and repaired: {amounts.average(nominal)}; not required, because the drift is permanent"
     if nominal:
-        return f"designed and repaired: {words.average(nominal)}, on held-out seeds"
+        return f"designed and repaired: {amounts.average(nominal)}, on held-out seeds"
     return "designed and repaired: as designed, because the condition never holds there"
 
 
@@ -277,7 +277,7 @@ def _recorded(order: Order) -> list[str]:
 
 def _again(order: Order) -> str:
     """Return the command that repeats the comparison, for use in the root."""
-    return words.command(replace(_in_root(order), flags=order.options.flags))
+    return next_commands.command(replace(_in_root(order), flags=order.options.flags))
 
 
 def _in_root(order: Order) -> Comparison:

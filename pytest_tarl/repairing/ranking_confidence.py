@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.repairing.accepting import Accepted
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.searching.race import CONFIDENCE
 from pytest_tarl.searching.ranking import Ranking
@@ -49,7 +49,7 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     if found.by is None:
         return told
     low, high = found.by
-    by = f"{words.signed(low)} to {words.signed(high)} per episode"
+    by = f"{amounts.signed(low)} to {amounts.signed(high)} per episode"
     span = f"{by}, about {percent(CONFIDENCE)}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from pytest_tarl.model import Comparison, Culprit
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts, repair_words, words
 
 LEVELS = {"degraded": "error", "drifted": "warning"}
 _IN_TEXT = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
@@ -20,7 +20,7 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
         "tarl_verdict": verdict.result,
         "tarl_p_drift": f"{verdict.p_drift:.3g}",
         "tarl_p_loss": f"{verdict.p_loss:.3g}",
-        "tarl_loss": words.amount(verdict.loss),
+        "tarl_loss": amounts.amount(verdict.loss),
         "tarl_loss_interval": words.loss_interval(comparison),
         "tarl_region": words.region_words(comparison) if verdict.result != "no difference" else "",
         "tarl_culprit": _blamed(comparison.culprits[0]) if _guilty(comparison) else "",
@@ -51,7 +51,7 @@ def _message(comparison: Comparison) -> str:
     lines.append(f"{words.one_line(culprit.site.code)} is {blamed}.")
     if repair and repair.accepted:
         where = f" ({repair.patch})" if repair.patch else ""
-        lines.append(f"Accepted repair: {words.repair_words(repair)}{where}.")
+        lines.append(f"Accepted repair: {repair_words.repair_words(repair)}{where}.")
     return "\n".join(line for line in lines if line)
 
 

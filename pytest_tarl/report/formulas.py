@@ -7,7 +7,7 @@ from typing import Any
 
 from pytest_tarl.formulas.judging import NEGLIGIBLE
 from pytest_tarl.model import Comparison, FormulaRow, FormulaWorld
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts
 
 WORLDS = {
     "offline": "designed",
@@ -43,7 +43,7 @@ def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 def margin(value: float) -> str:
     """Format a robustness; infinitesimal values from strict comparisons are shown as 0."""
-    return words.amount(0.0 if abs(value) < NEGLIGIBLE else value)
+    return amounts.amount(0.0 if abs(value) < NEGLIGIBLE else value)
 
 
 def _worlds(row: FormulaRow) -> Iterator[str]:

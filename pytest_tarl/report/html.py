@@ -17,7 +17,7 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.extras import install_command
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
-from pytest_tarl.report import formulas, guarantees, sizes, words
+from pytest_tarl.report import amounts, formulas, guarantees, next_commands, repair_words, sizes, words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
 
@@ -54,11 +54,11 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
         undefined=jinja2.StrictUndefined,
     )  # fmt: skip
     environment.filters |= {
-        "amount": lambda value: typeset(words.amount(value)),
-        "signed": lambda value: typeset(words.signed(value)),
+        "amount": lambda value: typeset(amounts.amount(value)),
+        "signed": lambda value: typeset(amounts.signed(value)),
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "plain": lambda value: typeset(f"{value:.6g}"),
-        "p": words.p_value,
+        "p": amounts.p_value,
         "margin": lambda value: typeset(formulas.margin(value)),
         "typeset": typeset,
         "parts": parts,
@@ -116,7 +116,7 @@ def _data(comparison: Comparison) -> dict[str, Any]:
         "world": comparison.drift or "deployed",
         "utility": [utility_figure(comparison, compared) for compared in comparison.lists],
         "curves": reward_curves(comparison),
-        "offline": words.atr(comparison, "offline"),
+        "offline": amounts.atr(comparison, "offline"),
         "tolerance": comparison.verdict.tolerance,
     }
 
@@ -133,7 +133,9 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "stated": [(name, list(guarantees.sentences(one))) for name, one in guarantees.worlds(comparison)],
         "region": words.region_words(comparison),
         "paper_region": words.paper_region_words(comparison),
-        "atr": {world: words.atr(comparison, world) for world, totals in comparison.totals.items() if totals},
+        "atr": {
+            world: amounts.atr(comparison, world) for world, totals in comparison.totals.items() if totals
+        },
         "share": _share(comparison),
         "lists": [
             _list(comparison, compared, figure)
@@ -142,19 +144,19 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "sizes": sizes.plots(comparison),
         "curves": _curves_in_words(drawn["curves"]),
         "clipped": _clipped(drawn["curves"]),
-        "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
-        "best_words": words.best_words(comparison.repair) if comparison.repair else "",
-        "history": [words.attempt_words(one) for one in comparison.repair.history]
+        "repair_words": repair_words.repair_words(comparison.repair) if comparison.repair else "",
+        "best_words": repair_words.best_words(comparison.repair) if comparison.repair else "",
+        "history": [repair_words.attempt_words(one) for one in comparison.repair.history]
         if comparison.repair
         else [],
-        "refusal": words.refusal(comparison.repair) if comparison.repair else "",
-        "partial": words.partial_words(comparison.repair.partial, comparison)
+        "refusal": repair_words.refusal(comparison.repair) if comparison.repair else "",
+        "partial": repair_words.partial_words(comparison.repair.partial, comparison)
         if comparison.repair and comparison.repair.partial
         else "",
-        "ways_out": words.ways_out(comparison),
+        "ways_out": repair_words.ways_out(comparison),
         "designed_world": words.designed_world(comparison),
-        "command": words.repeat(comparison),
-        "next_steps": list(words.next_steps(comparison)),
+        "command": next_commands.repeat(comparison),
+        "next_steps": list(next_commands.next_steps(comparison)),
         "lost": lambda part: words.lost_words(comparison, part),
         "formulas": formulas.page_rows(comparison),
         "place": lambda site: f"{site.path}:{site.line}",
@@ -170,7 +172,7 @@ def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
 
 def _share(comparison: Comparison) -> float | None:
     """Return the share of the lost reward that the repair restored, in per cent."""
-    worlds = [words.atr(comparison, world) for world in ("offline", "online", "repaired")]
+    worlds = [amounts.atr(comparison, world) for world in ("offline", "online", "repaired")]
     offline, online, repaired = worlds
     if offline is None or online is None or repaired is None or offline <= online:
         return None
@@ -214,7 +216,7 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
         return "No cell was visited in both worlds."
     change, title, (line, code, _), name = max(found, key=lambda one: abs(one[0]))
     where = typeset(f"{name}, {title}" if title else name)
-    amount = typeset(words.signed(change))
+    amount = typeset(amounts.signed(change))
     return f"The largest change, {amount}, is at {where}, in line {line} (“{words.one_line(code)}”)."
 
 
@@ -222,6 +224,6 @@ def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
     """Describe the end of each curve in the reward figure."""
     ends = []
     for curve in curves:
-        end = typeset(words.amount(curve["mean"][-1]))
+        end = typeset(amounts.amount(curve["mean"][-1]))
         ends.append(f"{curve['name']} {end} after {len(curve['mean'])} episodes")
     return "; ".join(ends)

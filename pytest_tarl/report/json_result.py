@@ -23,9 +23,9 @@ from pytest_tarl.model import (
     SitePlace,
     Slice,
 )
+from pytest_tarl.report.amounts import atr, expected
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.sizes import rows as size_rows
-from pytest_tarl.report.words import atr, expected
 from pytest_tarl.sensors import Cell, Sensor
 
 FORMAT_VERSION = 1  # 1: first version

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from pytest_tarl.model import Band, Comparison, Sizes
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts
 
 WORLDS = ("online", "repaired")  # before and after the repair
 WIDTH, HEIGHT = 640, 240  # pixels of the drawing, without its margins
@@ -48,8 +48,8 @@ def lines(comparison: Comparison) -> Iterator[str]:
     """Yield the mean reward in each interval of the range, `before → after`."""
     repaired = bool(comparison.totals.get("repaired"))
     for row in rows(comparison):
-        after = f" → {words.amount(row.after)} repaired" if repaired else ""
-        yield f"{row.band}: {words.amount(row.before)}{after}"
+        after = f" → {amounts.amount(row.after)} repaired" if repaired else ""
+        yield f"{row.band}: {amounts.amount(row.before)}{after}"
 
 
 def plots(comparison: Comparison) -> list[Plot]:
@@ -68,7 +68,7 @@ def _within(comparison: Comparison, one: Sizes, band: Band, world: str) -> list[
 
 
 def _plot(comparison: Comparison, one: Sizes, found: tuple[Row, ...]) -> Plot:
-    offline = words.atr(comparison, "offline") or 0.0
+    offline = amounts.atr(comparison, "offline") or 0.0
     totals = [offline, *(total for world in WORLDS for total in comparison.totals.get(world, ()))]
     low, high = min(totals), max(totals)
     room = (high - low) or 1.0
@@ -91,7 +91,7 @@ def _plot(comparison: Comparison, one: Sizes, found: tuple[Row, ...]) -> Plot:
         one.part,
         points,
         tuple((across(end), f"{end:.3g}") for end in ends),
-        tuple((height(value), words.amount(value)) for value in sorted({low, offline, high})),
+        tuple((height(value), amounts.amount(value)) for value in sorted({low, offline, high})),
         height(offline),
         found,
     )

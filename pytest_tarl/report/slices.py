@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from pytest_tarl.model import SitePlace, Slice
-from pytest_tarl.report.words import peak
 
 MARGIN = 0.05  # share of the width left free on either side
 TICKS = 4  # approximate number per scale
@@ -84,3 +83,9 @@ def _round_step(step: float) -> float:
     """Return the next larger of 1, 2, 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))
+
+
+def peak(slices: Iterable[Slice]) -> Slice | None:
+    """Return the slice that differs most between the worlds; None if none differs."""
+    known = [one for one in slices if one.difference and not math.isnan(one.difference)]
+    return max(known, key=lambda one: abs(one.difference), default=None)

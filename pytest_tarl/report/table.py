@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pytest_tarl.model import Comparison
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts, words
 
 Row = tuple[str, ...]  # test, drift, designed reward, deployed reward, loss, verdict, where
 HEAD = ("", "designed", "deployed", "loss", "verdict", "where")
@@ -18,9 +18,9 @@ def row(comparison: Comparison) -> Row:
     return (
         comparison.test,
         comparison.drift or "online",
-        words.amount(words.atr(comparison, "offline")),
-        words.amount(words.atr(comparison, "online")),
-        words.amount(verdict.loss),
+        amounts.amount(amounts.atr(comparison, "offline")),
+        amounts.amount(amounts.atr(comparison, "online")),
+        amounts.amount(verdict.loss),
         verdict.result,
         words.region_words(comparison) if verdict.result != "no difference" else "",
     )

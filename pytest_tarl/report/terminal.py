@@ -7,7 +7,16 @@ from pathlib import Path
 from textwrap import wrap
 
 from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
-from pytest_tarl.report import formulas, guarantees, sizes, words
+from pytest_tarl.report import (
+    amounts,
+    formulas,
+    guarantees,
+    next_commands,
+    repair_words,
+    sizes,
+    slices,
+    words,
+)
 
 SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
@@ -55,8 +64,8 @@ def _entries(
     yield "repair", list(_repair(comparison))
     yield "note", list(_some([words.one_line(note) for note in comparison.notes]))
     yield "page", [_shown(page, root)] if page else []
-    yield "again", [words.repeat(comparison)]
-    yield "next", list(words.next_steps(comparison))
+    yield "again", [next_commands.repeat(comparison)]
+    yield "next", list(next_commands.next_steps(comparison))
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
@@ -77,7 +86,7 @@ def _rewards(comparison: Comparison) -> str:
         "nominal_repaired": f"{words.designed_world(comparison)} repaired",
     }
     figures = [
-        f"{name} {words.amount(words.atr(comparison, world))}"
+        f"{name} {amounts.amount(amounts.atr(comparison, world))}"
         for world, name in named.items()
         if comparison.totals.get(world)
     ]
@@ -87,14 +96,14 @@ def _rewards(comparison: Comparison) -> str:
 def _loss(comparison: Comparison) -> Iterator[str]:
     sure = words.loss_words(comparison)
     if sure and comparison.verdict.result != "no difference":
-        yield f"{words.amount(comparison.verdict.loss)} per episode, {sure}"
+        yield f"{amounts.amount(comparison.verdict.loss)} per episode, {sure}"
 
 
 def _parts(comparison: Comparison) -> Iterator[str]:
     lines = []
     for name, by in words.lost_parts(comparison):
         where = words.lost_words(comparison, name)
-        lines.append(f"{name} {words.signed(by)}{' where ' if where else ''}{where}")
+        lines.append(f"{name} {amounts.signed(by)}{' where ' if where else ''}{where}")
     return _some(lines)
 
 
@@ -108,7 +117,7 @@ def _culprit(rank: str, culprit: Culprit, width: int, root: Path) -> str:
     evidence = "by its slice" if culprit.method == "slices" else "no operand helps"
     if culprit.operands:
         best = culprit.operands[0]
-        evidence = f"{words.operand_words(best)}: {words.signed(best.effect)}"
+        evidence = f"{repair_words.operand_words(best)}: {amounts.signed(best.effect)}"
     where = f"{rank} {words.place(site.path, site.line, root)}"
     room = width - len(where) - len(evidence) - 6
     if room < LEGIBLE and room < len(words.one_line(site.code)):
@@ -117,12 +126,12 @@ def _culprit(rank: str, culprit: Culprit, width: int, root: Path) -> str:
 
 
 def _slices(comparison: Comparison, root: Path) -> Iterator[str]:
-    peaks = ((one, words.peak(one.slices)) for one in comparison.lists)
+    peaks = ((one, slices.peak(one.slices)) for one in comparison.lists)
     return _some([_slice_summary(one, peak, root) for one, peak in peaks if peak])
 
 
 def _slice_summary(compared: ListComparison, peak: Slice, root: Path) -> str:
-    change = f"{words.amount(peak.offline)} to {words.amount(peak.online)}"
+    change = f"{amounts.amount(peak.offline)} to {amounts.amount(peak.online)}"
     where = words.place(peak.site.path, peak.site.line, root)
     return f"{compared.taint_list.name}: utility changes most at {where}, {change}"
 
@@ -132,21 +141,21 @@ def _repair(comparison: Comparison) -> Iterator[str]:
     if repair is None:
         return
     if repair.accepted:
-        yield f"accepted: {words.repair_words(repair)}"
+        yield f"accepted: {repair_words.repair_words(repair)}"
     else:
-        yield f"none accepted: {words.refusal(repair)}"
+        yield f"none accepted: {repair_words.refusal(repair)}"
         if repair.edits:
-            yield f"best so far: {words.best_words(repair)}"
+            yield f"best so far: {repair_words.best_words(repair)}"
     if repair.partial is not None:
         part = repair.partial
-        yield f"partial: {part.what}: {words.partial_words(part, comparison)}; tarl apply --partial {part.patch}"
-    if ways_out := words.ways_out(comparison):
+        yield f"partial: {part.what}: {repair_words.partial_words(part, comparison)}; tarl apply --partial {part.patch}"
+    if ways_out := repair_words.ways_out(comparison):
         yield ways_out
     dropped = [one for one in repair.history if one.reason]
     if dropped and repair.accepted:
-        yield f"{len(dropped)} tried before; the last: {words.attempt_words(dropped[-1])}"
+        yield f"{len(dropped)} tried before; the last: {repair_words.attempt_words(dropped[-1])}"
     elif dropped:
-        yield from _some([f"tried {words.attempt_words(one)}" for one in dropped[::-1]])
+        yield from _some([f"tried {repair_words.attempt_words(one)}" for one in dropped[::-1]])
 
 
 def _some(texts: list[str]) -> Iterator[str]:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pytest_tarl.model import Edit, OperandEffect, Verdict
-from pytest_tarl.report import words
+from pytest_tarl.report import amounts, repair_words, words
 
 
 @pytest.mark.parametrize(("value", "text"), [
@@ -13,25 +13,25 @@ from pytest_tarl.report import words
     (1.5e7, "1.5e+07"), (math.nan, "n/a"), (None, "n/a"),
 ])  # fmt: skip
 def test_amounts_have_about_three_digits(value, text):
-    assert words.amount(value) == text
+    assert amounts.amount(value) == text
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(2.0, "+2.00"), (-2.0, "-2.00"), (0.0, "+0.00"), (math.nan, "n/a")]
 )
 def test_differences_have_a_sign(value, text):
-    assert words.signed(value) == text
+    assert amounts.signed(value) == text
 
 
 @pytest.mark.parametrize(("value", "text"), [
     (0.0004, "p < 0.001"), (0.001, "p = 0.001"), (0.0213, "p = 0.021"), (1.0, "p = 1"), (math.nan, "p unknown"),
 ])  # fmt: skip
 def test_p_values_are_written_as_equations(value, text):
-    assert words.p_value(value) == text
+    assert amounts.p_value(value) == text
 
 
 def test_a_running_mean_averages_the_values_so_far():
-    assert words.running_mean([1.0, 3.0, -1.0]) == [1.0, 2.0, 1.0]
+    assert amounts.running_mean([1.0, 3.0, -1.0]) == [1.0, 2.0, 1.0]
 
 
 SENTENCES = {
@@ -64,10 +64,10 @@ def test_a_loss_that_could_not_have_been_detected_is_stated(varied):
 
 
 def test_literals_are_replaced_and_named_constants_are_multiplied():
-    assert words.edit_words(Edit("a.py", 3, "5", 12.0)) == "5 → 12"
-    assert words.edit_words(Edit("a.py", 3, "self.kp", 2.2, factor=True)) == "self.kp × 2.2"
-    assert words.operand_words(OperandEffect("5", 5, 12.0, 1.0)) == "5 → 12"
-    assert words.operand_words(OperandEffect("KP", None, 2.2, 1.0)) == "KP × 2.2"
+    assert repair_words.edit_words(Edit("a.py", 3, "5", 12.0)) == "5 → 12"
+    assert repair_words.edit_words(Edit("a.py", 3, "self.kp", 2.2, factor=True)) == "self.kp × 2.2"
+    assert repair_words.operand_words(OperandEffect("5", 5, 12.0, 1.0)) == "5 → 12"
+    assert repair_words.operand_words(OperandEffect("KP", None, 2.2, 1.0)) == "KP × 2.2"
 
 
 def test_a_statement_over_several_lines_is_joined_and_shortened():

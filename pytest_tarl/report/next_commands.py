@@ -1,0 +1,50 @@
+"""Commands for the developer: those that repeat a comparison, and the next ones."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+
+from pytest_tarl.model import Comparison
+
+
+def command(comparison: Comparison, *flags: str) -> str:
+    """Return the command that repeats the comparison with the same seed."""
+    drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
+    seed = ["--tarl-seed", str(comparison.seed)] if comparison.seed else []
+    options = [*drift, *seed, *comparison.flags, *flags]
+    return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-online", *options])
+
+
+def recording(comparison: Comparison) -> str:
+    """Return the command that makes a permanent drift part of the design after its repair is applied."""
+    drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
+    return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
+
+
+def repeat(comparison: Comparison) -> str:
+    """Return the command that repeats the run, including searches."""
+    searches = [search.method for search in comparison.searches if search.method != "structure"]
+    methods = [method for method in searches if method != "ranking"]
+    full = ["--tarl-localize", "full"] if len(methods) < len(searches) else []
+    chosen = (
+        [flag for method in methods for flag in ("--tarl-search", method)] if methods != ["sweep"] else []
+    )
+    return command(comparison, *(["--tarl-repair", *chosen, *full] if comparison.repair else []))
+
+
+def next_steps(comparison: Comparison) -> Iterator[str]:
+    """Yield the next command for the developer, if there is one."""
+    if not comparison.lists:
+        yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
+    elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
+        yield shlex.join(["git", "apply", comparison.repair.patch])
+        if comparison.permanent:
+            yield recording(comparison)
+    elif comparison.verdict.result == "degraded" and comparison.repair is None and not _happened(comparison):
+        yield command(comparison, "--tarl-repair")
+
+
+def _happened(comparison: Comparison) -> bool:
+    """Return whether the compared missions were recorded and cannot be run again."""
+    return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})

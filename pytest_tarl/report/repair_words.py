@@ -1,0 +1,109 @@
+"""Sentences on repairs: edits, candidates and why they were dropped, ways out."""
+
+from __future__ import annotations
+
+from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair
+from pytest_tarl.report.amounts import amount, signed
+from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.words import designed_world, world_name
+
+REASONS: dict[Reason, str] = {
+    "": "no reason was recorded",
+    "no operand helps": "no change of a single constant restores the reward",
+    "gain too small": "the best change found gains too little",
+    "nominal gets worse": "the best change found makes the designed world worse",
+    "budget": "the search reached its limit of episodes",
+    "time": "the search reached its time limit",
+    "interrupted": "the search was interrupted",
+    "not confirmed": "its gain was not confirmed on further seeds",
+    "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
+    "another test gets worse": "the best change found makes another recorded test of the node worse",
+    "not over the whole range": "the best change found works only in a part of the drift's range",
+    "not at its definition": "the best change found works only at a use, but --tarl-edit=definition was given",
+    "fails too often": "with the best change found, missions still fail too often",
+    "not shown": "the best change found may be sufficient, but 200 episodes are too few to show it",
+    "cannot be written": "the best change found cannot be written to the source",
+    "never tested": "the best change found was not tested, because other candidates used all acceptance tests",
+    "a smaller step breaks it": "even a smaller step of the best change found makes the designed world worse",
+}
+ENDS: dict[Reason, str] = {
+    "": "accepted",
+    "gain too small": "dropped, it gains too little",
+    "nominal gets worse": "dropped, the designed world gets worse",
+    "not confirmed": "dropped, not confirmed on further seeds",
+    "worse than unrepaired": "dropped, earns less than no repair",
+    "another test gets worse": "dropped, another test of the node gets worse",
+    "not over the whole range": "dropped, it works only in a part of the drift's range",
+    "not at its definition": "dropped, it works only at a use of the constant",
+    "fails too often": "dropped, missions fail too often",
+    "not shown": "dropped, 200 episodes are too few to show that it is sufficient",
+    "cannot be written": "dropped, it cannot be written to the source",
+    "never tested": "not tested, because other candidates used all acceptance tests",
+    "a smaller step breaks it": "not run, a smaller step already makes the designed world worse",
+}
+
+
+def edit_words(edit: Edit) -> str:
+    """Describe an edit: `→` replaces a number, `×` multiplies a named constant."""
+    return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
+
+
+def operand_words(operand: OperandEffect) -> str:
+    """Describe the best change of an operand: a new value, or a factor if its own value is unknown."""
+    return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
+
+
+def repair_words(repair: Repair) -> str:
+    """Describe the repair and its condition: `5 → 12 at traveller.py:30 where terrain`."""
+    edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
+    return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
+
+
+def partial_words(partial: Partial, comparison: Comparison) -> str:
+    """Describe the gain of a partial repair and its effect on the designed world."""
+    sure = f"about {percent(partial.confidence)} confidence"
+    gained = f"{signed(partial.gain)} per episode, at least {signed(partial.low)} ({sure})"
+    return (
+        f"{gained}, of {amount(partial.lost)} lost; {designed_world(comparison)} "
+        f"{signed(partial.designed)}, at least {signed(partial.designed_low)}"
+    )
+
+
+def refusal(repair: Repair) -> str:
+    """Return why no repair was accepted."""
+    return REASONS.get(repair.reason, repair.reason)
+
+
+def best_words(repair: Repair) -> str:
+    """Describe the best rejected candidate and its reward."""
+    if repair.mean is None:
+        return repair_words(repair)
+    earned = f"{amount(repair.mean)} per episode, mean of {repair.episodes}"
+    return f"{repair_words(repair)} ({earned})"
+
+
+def attempt_words(attempt: Attempt) -> str:
+    """Describe an attempt, its reward and its outcome."""
+    outcome = ENDS.get(attempt.reason, attempt.reason)
+    if not attempt.episodes:
+        return f"{attempt.what}: {outcome}"
+    kind = "fresh" if attempt.fresh else "known"
+    return f"{attempt.what}: {outcome}, {amount(attempt.mean)} in {attempt.episodes} {kind} episodes"
+
+
+def ways_out(comparison: Comparison) -> str:
+    """Return advice for a repair that fails only in the designed world; empty without one."""
+    repair = comparison.repair
+    if repair is None or repair.accepted or comparison.permanent:
+        return ""
+    against = [one.what for one in repair.history if one.reason == "nominal gets worse"]
+    if repair.reason != "nominal gets worse" and not against:
+        return ""
+    what = against[-1] if against else repair_words(repair)
+    name = comparison.drift or "worn"
+    return (
+        f"{what} restores the reward in {world_name(comparison)} but makes the designed world worse. Declare a "
+        "sensor that distinguishes the two worlds, so that the repair can be conditional; or, if the drift is "
+        "permanent, declare it so: "
+        f'drifts={{"{name}": Drift(…, permanent=True)}}'
+    )
