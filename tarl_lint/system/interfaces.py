@@ -14,6 +14,7 @@ from tarl_lint import engine
 from tarl_lint.evidence import Outline
 from tarl_lint.fingerprints import of_finding
 from tarl_lint.flows.reachability import Tracer
+from tarl_lint.flows.statement_text import Texts
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.ir.lower_expressions import position
 from tarl_lint.model import Finding, Flow
@@ -50,7 +51,10 @@ def interface(
     machine, flows = engine.trace(modules, plain, thorough=False)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
-    endpoints = tuple(sorted(_endpoints(machine, tracer, modules, outlines), key=lambda e: (e.span, e.role)))
+    texts = Texts({module.path: module for module in modules})  # also of modules in which nothing runs
+    calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
+    ends = (*_endpoints(machine, tracer, outlines), *calls)
+    endpoints = tuple(sorted(ends, key=lambda e: (e.span, e.role)))
     found = tuple(
         _marked(finding, flow, package, config)
         for finding, flow in zip(engine.findings(flows), flows, strict=True)
@@ -69,7 +73,7 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         stale=stale(found, modules),
-        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], tracer.texts)),
+        misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts)),
     )
 
 
@@ -109,9 +113,7 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
     return replace(finding, fingerprint=print_.digest(), package=print_.package)
 
 
-def _endpoints(
-    machine: Linker, tracer: Tracer, modules: Sequence[Module], outlines: Mapping[str, Outline]
-) -> Iterator[Endpoint]:
+def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:
     for record in machine.sources.values():
         source = tracer.source(record)
         if record.kind == "topic":
@@ -120,17 +122,15 @@ def _endpoints(
         elif record.kind == "service":
             yield Endpoint("serves", source.topics, source.type, source.span, None, source.qualname)
     yield from _publishers(machine, tracer, outlines)
-    for module in modules:
-        yield from _clients(machine, tracer, module, outlines[module.path])
 
 
-def _clients(machine: Linker, tracer: Tracer, module: Module, outline: Outline) -> Iterator[Endpoint]:
+def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
     """Yield the services that a module calls, as far as its functions run."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     for call, name, kind in called_services(outline):
         place = outline.qualname(call.lineno)
         if not ran or place in ran or not place:
-            span = tracer.texts[module.path].stretch(position(call))
+            span = texts[module.path].stretch(position(call))
             yield Endpoint("calls", (name,), kind, span, None, place)
 
 
