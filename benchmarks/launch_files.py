@@ -169,15 +169,19 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
                 yield ("param", *name, key, _value(value))
         else:
             above = joined(node.namespace, node.name)
-            for setting in node.settings:
+            for setting in _known(node):
                 parameters.update(_flat(joined(above, setting.name.lstrip("~")), _content(setting)))
     for key, value in parameters.items():
         yield ("param", _of_environment(key), _of_environment(_value(value)))
 
 
+def _known(node: LaunchedNode) -> list[Setting]:
+    return [one for one in node.settings if not one.unknown]
+
+
 def _of_ros2(node: LaunchedNode) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    for setting in node.settings:
+    for setting in _known(node):
         content = _content(setting)
         if setting.name != "~":
             found[setting.name.lstrip("~")] = content

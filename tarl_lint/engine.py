@@ -11,6 +11,7 @@ from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import RULES, Cut, Finding, Flow
 from tarl_lint.node_names import node_name
+from tarl_lint.parameter_names import ParameterName
 from tarl_lint.prefilter.by_words import groups, relevant
 from tarl_lint.prefilter.one_sided import Rule, one_sided
 from tarl_lint.read.source import Module
@@ -70,12 +71,20 @@ def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
 
 
 def trace(
-    modules: Sequence[Module], config: Config, *, thorough: bool = True
+    modules: Sequence[Module],
+    config: Config,
+    *,
+    thorough: bool = True,
+    parameters: list[ParameterName] | None = None,
 ) -> tuple[Linker, tuple[Flow, ...]]:
-    """Return the flows and the interpreter that found them, which answers further queries if it was thorough."""
+    """Return the flows and the interpreter that found them, which answers further queries if it was thorough.
+
+    With `parameters`, names of topics may contain parameters by their index in this list, which is filled.
+    """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:
         machine = Linker(relevant(modules, config), config, thorough=thorough)
+        machine.parameter_names = parameters
         machine.link()
         return machine, Tracer(machine).flows()
 

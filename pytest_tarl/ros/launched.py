@@ -15,8 +15,9 @@ from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.executables import is_python
 from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
+from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, stated
 from tarl_lint.workspace.model import Workspace
-from tarl_lint.workspace.parameter_yaml import NoYamlError, content, of_node
+from tarl_lint.workspace.parameter_yaml import NoYamlError
 from tarl_lint.workspace.programs import Program, program
 from tarl_lint.workspace.ros_names import joined
 
@@ -111,11 +112,11 @@ def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
     """Return the values of the parameters of a launched node, with YAML parsed."""
     private: dict[str, Any] = {}
     shared: dict[str, Any] = {}
-    files: list[Path] = []
-    for setting in (*launch.settings, *node.settings):
-        values = dict(_values(setting, full_name))
-        (private if setting.name.startswith("~") else shared).update(values)
-        files += [setting.file] if values and setting.file not in files else []
+    files: dict[Path, None] = {}
+    for one in _stated((*launch.settings, *node.settings), full_name):
+        if one.value is not ON_ROBOT:
+            (private if one.name.startswith("~") else shared)[one.name.removeprefix("~")] = one.value
+            files[one.file] = None
     sources = ", ".join(file.name for file in files if file != launch.file)
     note = f"parameters of {node.name or node.executable} come from {launch.file.name}"
     return Given(private, shared, f"{note} ({sources})." if sources else f"{note}.")
@@ -127,29 +128,18 @@ def _rooted(name: str, node: LaunchedNode) -> str:
     return name.removeprefix(node.namespace.rstrip("/")) if inside else name
 
 
-def _values(setting: Setting, full_name: str) -> Iterator[tuple[str, Any]]:
-    """Yield the parameters of a setting, by private or absolute name."""
-    above = setting.name.removeprefix("~").rstrip("/")
-    if setting.yaml is None:
-        yield above, setting.value
-        return
-    parsed = _yaml(setting)
-    if not isinstance(parsed, dict):
-        yield above, parsed
-        return
-    for name, value in of_node(parsed, full_name).items():
-        if "$(" in str(value):  # known on the robot only
-            continue
-        yield f"{above}/{name}" if above or not setting.name.startswith("~") else str(name), value
+def _stated(settings: Sequence[Setting], full_name: str) -> Iterator[Stated]:
+    for setting in settings:
+        yield from _of_setting(setting, full_name)
 
 
-def _yaml(setting: Setting) -> Any:
+def _of_setting(setting: Setting, full_name: str) -> Iterator[Stated]:
     try:
-        return content(setting)
+        yield from stated((setting,), full_name)
     except NoYamlError:
         raise SettingsError(
-            f"{setting.file} has parameters of the node, and reading them needs PyYAML: run pip install PyYAML, or say "
-            "tarl.start(…, launch=False)."
+            f"{setting.file} has parameters of the node, and reading them needs PyYAML: run pip install PyYAML, or "
+            "say tarl.start(…, launch=False)."
         ) from None
     except UnreadableError as reason:
         raise SettingsError(f"{setting.file}: {reason}") from None

@@ -26,8 +26,9 @@ def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | 
     frame.statement = s
     ctx.graph.flow(operators.truth(ctx, value, frame, "test"), node)
     known, constant = value.constant()
-    if value.consts and not value.pts and not known:
-        ways = {bool(c) for c in value.consts}
+    constants = value.keys()
+    if constants and not value.pts and not known:
+        ways = {bool(c) for c in constants}
         return ways.pop() if len(ways) == 1 else None
     return bool(constant) if known else None
 

@@ -137,8 +137,8 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
     for obj in base.pts:
         if obj.kind == "class":
             result = join(result, heap.arrive(ctx, member(ctx, obj, index), base.deps))
-        elif index.consts and not index.pts:
-            for key in index.consts:
+        elif not index.pts and (keys := index.keys()):
+            for key in keys:
                 result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
         else:
             found = heap.read_any(ctx, obj)

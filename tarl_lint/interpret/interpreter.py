@@ -19,6 +19,7 @@ from tarl_lint.memory.store import Root, Shared, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES, Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+from tarl_lint.parameter_names import ParameterName
 from tarl_lint.read.module_names import Index
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -104,6 +105,7 @@ class Interpreter:
             "",
             "0",
         )  # execute calls that could be replayed, and compare
+        self.parameter_names: list[ParameterName] | None = None  # parameters in texts; None: not followed
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 

@@ -12,7 +12,18 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import BOTTOM, BY_CLASS, MAX_CONSTS, MAX_TEXTS, NONE, Nodes, Obj, Value, join
+from tarl_lint.memory.values import (
+    BOTTOM,
+    BY_CLASS,
+    MAX_CONSTS,
+    MAX_TEXTS,
+    NONE,
+    Nodes,
+    Obj,
+    Symbolic,
+    Value,
+    join,
+)
 from tarl_lint.models import sizes
 from tarl_lint.models.sizes import COMBINING
 
@@ -177,6 +188,8 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
         return None
     if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
         return None
+    if any(v.keys() is None for v in values):
+        return _symbolic(results)
     return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
 
 
@@ -188,7 +201,14 @@ def _fold_text(values: list[Value]) -> frozenset[object] | None:
         texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
         if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
             return None
-    return frozenset(texts)
+    return frozenset(texts) if all(v.keys() is not None for v in values) else _symbolic(frozenset(texts))
+
+
+def _symbolic(results: frozenset[object]) -> frozenset[object] | None:
+    """Return results of an operator on texts that the launch of a node determines; None unless they are texts, too."""
+    if not all(isinstance(one, str) for one in results):
+        return None
+    return frozenset(Symbolic(one) for one in results)
 
 
 def _asked(expr: ir.Operation) -> str:

@@ -54,10 +54,11 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
     for obj in base.pts if keys else ():
         if obj.kind == "mapping":
             weaken(ctx, obj, KEYS, Value(keys))
-    if index.consts is None or not index.consts or len(index.consts) > 1:
+    constants = index.keys()
+    if not constants or len(constants) > 1:
         _write_some(ctx, base, index, value)
         return
-    key = next(iter(index.consts))
+    key = next(iter(constants))
     if isinstance(key, int) and key < 0 and any(o.kind == "sequence" for o in base.pts):
         key = from_end(ctx, base, key)
         if key < 0:
@@ -71,7 +72,8 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
     """Store into one of several elements: the known keys of mappings, else any element."""
-    known = sorted(index.consts or (), key=repr) if len(index.consts or ()) <= MAX_KEYS else []
+    constants = index.keys() or ()
+    known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)
     for obj in sorted(mappings, key=lambda o: o.number):
         for key in known:

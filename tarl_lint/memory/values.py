@@ -133,6 +133,12 @@ class Obj:
 Key = tuple[Obj, str]
 
 
+class Symbolic(str):
+    """A text that contains a parameter's value, which only the launch of the node determines."""
+
+    __slots__ = ()
+
+
 class Value:
     """An abstract value: the nodes of its data, the objects that it may be, its constants."""
 
@@ -159,12 +165,17 @@ class Value:
     def constant(self) -> tuple[bool, object]:
         """Return (whether the value is one known constant, the constant)."""
         if self.consts is not None and len(self.consts) == 1 and not self.pts:
-            return True, next(iter(self.consts))
+            constant = next(iter(self.consts))
+            return (False, None) if type(constant) is Symbolic else (True, constant)
         return False, None
 
     def fixed(self) -> bool:
         """Return whether the value is the same constant on all paths."""
-        return self.consts is not None and len(self.consts) == 1 and not self.pts
+        return self.constant()[0]
+
+    def keys(self) -> Consts:
+        """Return its constants; None if it may be anything else, also a text that the launch determines."""
+        return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
 
     def consts_in(self, other: Value) -> bool:
         """Return whether the constants of this value are a subset of another's."""
@@ -172,6 +183,10 @@ class Value:
 
     def texts(self) -> tuple[str, ...]:
         """Return its possible strings, sorted; empty if it may be anything else."""
+        return self.names() if self.keys() is not None else ()
+
+    def names(self) -> tuple[str, ...]:
+        """Return its possible strings, sorted, also those that the launch of the node determines."""
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
         return tuple(sorted(str(c) for c in self.consts))

@@ -66,7 +66,7 @@ def mutate(
     elif name == "setdefault" and len(plain) > 1:
         news = through_statement(ctx, plain[1], frame, call)
         for obj in base.pts:
-            for key in plain[0].consts or (None,):
+            for key in plain[0].keys() or (None,):
                 updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
     elif name == "sort":
         order = iterators.ordered_by(

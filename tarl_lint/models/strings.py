@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
 from tarl_lint.interpret import call_contexts, operators
@@ -12,7 +12,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Value
+from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Symbolic, Value
 from tarl_lint.models import sizes
 
 TEXT_METHODS: Final = frozenset(
@@ -65,7 +65,16 @@ def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Va
         made = [function(*given) for given in itertools.product(*ways) if isinstance(given[0], str)]
     except Exception:  # any error that the program itself would raise
         return None
-    return frozenset(made) if made and all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made) else None
+    if not made or not all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made):
+        return None
+    kind = Symbolic if any(type(one) is Symbolic for way in ways for one in _flat(way)) else str
+    return frozenset(kind(one) for one in made)
+
+
+def _flat(ways: Sequence[Any]) -> Iterator[Any]:
+    """Yield constants, also those in lists."""
+    for one in ways:
+        yield from _flat(one) if isinstance(one, list) else (one,)
 
 
 def _known(ctx: Interpreter, value: Value) -> list[Any]:

@@ -147,4 +147,4 @@ def findings(system: System) -> Iterator[Finding]:
                 " and ".join(f"{node} publishes {other}" for other, node in near)
                 + ", which nobody subscribes to"
             )
-            yield at_end(CODE, who, end, message, topic_text(end.names))
+            yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -94,4 +94,4 @@ def findings(system: System) -> Iterator[Finding]:
         if single(end) and len(end.names) == 1 and others and all(t not in ("", end.type) for _, t in others):
             theirs = " and ".join(f"{node} publishes {kind}" for node, kind in sorted(others))
             message = f"{who.name} subscribes to {name} as {end.type}, but {theirs}"
-            yield at_end(CODE, who, end, message, topic_text(end.names))
+            yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -116,7 +116,7 @@ def findings(system: System) -> Iterator[Finding]:
                     message = (
                         f"{who.name} asks for {policies[0]} on {name}, but {them.name} offers {policies[1]}"
                     )
-                    yield at_end(CODE, who, end, f"{message}: no message arrives", topic_text(end.names))
+                    yield at_end(CODE, who, end, f"{message}: no message arrives", topic_text(end.in_code))
 
 
 def _refused(offered: Endpoint, asked: Endpoint) -> Iterator[tuple[str, str]]:

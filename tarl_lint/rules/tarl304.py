@@ -81,4 +81,4 @@ def findings(system: System) -> Iterator[Finding]:
         if name not in served and near and single(end):
             message = f"{who.name} calls {name} ({end.type}), which nobody offers; "
             message += " and ".join(f"{node} offers {other}" for other, node in near)
-            yield at_end(CODE, who, end, message, topic_text(end.names))
+            yield at_end(CODE, who, end, message, topic_text(end.in_code))

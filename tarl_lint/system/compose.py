@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
+from tarl_lint.system.binding import bound, parameter_values
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.workspace.bounded_files import UnreadableError
@@ -27,7 +28,7 @@ Reader = Callable[[Program], Interface | str]  # returns a program's interface, 
 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
     """Return the system of a launch file. `files` are the Python files of the workspace."""
-    instances = [_instance(node, workspace, files, read) for node in launch.nodes]
+    instances = [_instance(node, launch, workspace, files, read) for node in launch.nodes]
     problems = (*launch.problems, *_unparsed(launch))
     return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), problems)
 
@@ -55,13 +56,15 @@ def _unparsable(setting: Setting) -> str:
     return ""
 
 
-def _instance(node: LaunchedNode, workspace: Workspace, files: Sequence[Path], read: Reader) -> Instance:
+def _instance(
+    node: LaunchedNode, launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader
+) -> Instance:
     found = program(node, workspace, files)
     interface = read(found) if isinstance(found, Program) else found
     own = interface.name if isinstance(interface, Interface) else ""
     name = full_name(node, own)
     if isinstance(interface, Interface):
-        return Instance(node, name, interface)
+        return Instance(node, name, bound(interface, parameter_values(launch, node, name), name))
     package = workspace.package(node.package) if node.kind == "node" else None
     seen = (
         named_topics(package, node.executable)

@@ -20,6 +20,7 @@ from tarl_lint.ir.lower_expressions import position
 from tarl_lint.model import Finding, Flow
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.node_names import node_name
+from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
@@ -48,7 +49,8 @@ def interface(
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
     plain = replace(config, remaps=())  # names as in the code
-    machine, flows = engine.trace(modules, plain, thorough=False)
+    parameters: list[ParameterName] = []
+    machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
     texts = Texts({module.path: module for module in modules})  # also of modules in which nothing runs
@@ -73,6 +75,7 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         stale=stale(found, modules),
+        in_names=tuple(parameters),
         misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts)),
     )
 
@@ -104,6 +107,8 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
     names = config.launched
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
+        if any(MARK in one for one in topics):
+            return ()  # without a launch, a name that contains a parameter is unknown
         return tuple(sorted({names.get(one.lstrip("/"), one) for one in topics}))
 
     source, sink = flow.source, flow.sink

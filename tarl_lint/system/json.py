@@ -57,7 +57,7 @@ def _node(instance: Instance) -> dict[str, Any]:
         "program": interface.path if interface is not None else None,
         "not_read": None if interface is not None else instance.unread,
         "remaps": [{"from": old, "to": new} for old, new in node.remaps],
-        "parameters": [_parameter(one) for one in node.settings],
+        "parameters": [_parameter(one) for one in node.settings if not one.unknown],
         **{role: [_end(name, end) for name, end in instance.named(role)]
            for role in ("subscribes", "publishes", "serves", "calls")},
         "touches": list(instance.touched),
@@ -65,7 +65,7 @@ def _node(instance: Instance) -> dict[str, Any]:
 
 
 def _end(name: str, end: Endpoint) -> dict[str, Any]:
-    return {"name": name, "in_code": list(end.names), "type": end.type, **extent(end.span)}
+    return {"name": name, "in_code": list(end.in_code), "type": end.type, **extent(end.span)}
 
 
 def _parameter(setting: Setting) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from tarl_lint.model import Finding, Kind, Span
+from tarl_lint.parameter_names import ParameterName
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined, remapped
@@ -26,7 +27,10 @@ class Qos:
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """A use of a topic or service in a program. `names` are those in the code, empty if unknown."""
+    """A use of a topic or service in a program. `names` are those in the code, empty if unknown.
+
+    `written` are the names as in the code if they contain parameters, whose values in a launch are in `names`.
+    """
 
     role: Role
     names: tuple[str, ...]
@@ -34,6 +38,12 @@ class Endpoint:
     span: Span
     qos: Qos | None = None
     place: str = ""  # qualified name of the function
+    written: tuple[str, ...] = ()
+
+    @property
+    def in_code(self) -> tuple[str, ...]:
+        """Return the names before any launch."""
+        return self.written or self.names
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +63,8 @@ class Interface:
     `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code, "" if it is computed.
     `words` are all strings of its code. `parameters` says whether they include every parameter that it reads.
     `closed` says that it imports nothing that could use topics on its own, `whole` that besides all topics have
-    constant names and that the analysis was complete. `stale` are publish calls that go on without new messages,
+    constant names and that the analysis was complete.
+    `in_names` are the parameters that names contain. `stale` are publish calls that go on without new messages,
     `misfits` uses of fields that a message type does not have.
     """
 
@@ -68,6 +79,7 @@ class Interface:
     whole: bool = False
     stale: tuple[Finding, ...] = ()
     misfits: tuple[Misfit, ...] = ()
+    in_names: tuple[ParameterName, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,15 @@ Kind = Literal["node", "container", "component"]
 class Setting:
     """A parameter, or several as YAML. `name` is absolute or begins with `~`; for YAML it is their namespace.
 
-    `file` contains the value: the launch file, or the YAML file that it loads.
+    `file` contains the value: the launch file, or the YAML file that it loads. `unknown` says that only the robot knows
+    the value; then both are None.
     """
 
     name: str
     file: Path
     value: Scalar | None = None
     yaml: str | None = None
+    unknown: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -242,8 +242,8 @@ class Runner:
             setting = _setting(f"~{name}", value, context)
             if setting is None:
                 self._problem(context, line, f"the parameter {name} is not constant")
-            else:
-                yield setting
+                setting = Setting(f"~{name}", context.file, unknown=True)
+            yield setting
 
     def _problem(self, context: Context, line: int, reason: str) -> None:
         problem = Problem(context.file, line, reason)

@@ -132,6 +132,9 @@ class _Reader:
                     settings += [setting] if setting is not None else []
             except SymbolicError as reason:
                 self._problem(one, place, f"<{one.tag}> of {name}: {reason}")
+                if one.tag == "param" and "$(" not in one.get("name", ""):
+                    unset = _parameter("~", one.get("name", "").lstrip("/"))
+                    settings.append(Setting(unset, place.scope.file, unknown=True))
         namespace = joined(place.namespace, self._name(element, "ns", place))
         arguments = self._name(element, "args", place)
         line = int(element.get(LINE, "0"))

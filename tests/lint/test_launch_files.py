@@ -30,7 +30,12 @@ def launched(tmp_path: Path, text: str, name: str = "bringup.launch", **argument
 
 
 def settings(found: Launch, number: int = 0) -> list[tuple[str, object]]:
-    return [(one.name, one.yaml if one.value is None else one.value) for one in found.nodes[number].settings]
+    known = [one for one in found.nodes[number].settings if not one.unknown]
+    return [(one.name, one.yaml if one.value is None else one.value) for one in known]
+
+
+def unknown(found: Launch) -> list[str]:
+    return [one.name for node in found.nodes for one in node.settings if one.unknown]
 
 
 ROS1 = """\
@@ -73,6 +78,7 @@ def test_ros1_launch_files_are_read(tmp_path: Path) -> None:
     assert drive.remaps == (("scan", "/front/scan"), ("odom", "odometry"), ("cmd", "/cmd_vel"))
     assert (drive.arguments, drive.line) == ("--fast x", 11)
     assert settings(found) == [("~speed", 1), ("~twice", 1.0), ("~label", "7"), ("~list", "[1, 2]")]
+    assert unknown(found) == ["~model", "~who"]
     assert [(one.name, one.value) for one in found.settings] == [("/use_sim_time", True), ("/shared", None)]
     assert found.settings[1].yaml == "kp: 0.5\nlimits: {top: 3}\n"
     assert settings(found, 2) == [("~rate", 5)]

@@ -12,7 +12,8 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
+from tarl_lint.memory.parameter_names import text_of_parameter
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
 from tarl_lint.models import containers, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions
 
@@ -94,13 +95,27 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
         node = ctx.node(it.frame, ("parameter", it.call.slot), "assign")
         ctx.graph.parameters.add(node)
         ctx.graph.literals[node] = (None, it.call.pos, it.frame.program.path)
-        return Value(ctx.kept(node))
+        return Value(ctx.kept(node), consts=_named(ctx, it, default))
     expr = _default(it)
-    return _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot))
+    return _default_of(
+        ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=_named(ctx, it, default)
+    )
+
+
+def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
+    """Return the text that stands for a parameter in names of topics, if the call names one parameter."""
+    names = it.argument(it.fact.topic).texts()
+    return text_of_parameter(ctx.parameter_names, names[0], default) if len(names) == 1 else None
 
 
 def _default_of(
-    ctx: Interpreter, default: Value, expr: ir.Expr | None, frame: Frame, slot: Hashable
+    ctx: Interpreter,
+    default: Value,
+    expr: ir.Expr | None,
+    frame: Frame,
+    slot: Hashable,
+    *,
+    consts: Consts = None,
 ) -> Value:
     node = ctx.node(frame, slot, "assign")
     ctx.graph.parameters.add(node)
@@ -109,17 +124,18 @@ def _default_of(
     ctx.graph.flow(default.deps, node)
     if ctx.thorough and default.pts:
         return ctx.carry(default, node)  # a mapping with its entries
-    return Value(ctx.kept(node))
+    return Value(ctx.kept(node), consts=consts)
 
 
 def declare(ctx: Interpreter, it: Invocation) -> Value:
     """Record a declared parameter's default by node and name."""
     default = it.argument(it.fact.extra)
     expr = _default(it)
+    name = _named(ctx, it, default)
     value = (
-        UNKNOWN
+        Value(consts=name)
         if default is BOTTOM
-        else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot))
+        else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=name)
     )
     found = _parameters(ctx, it.base, it.argument(it.fact.topic))
     for obj in found.pts:
@@ -139,7 +155,14 @@ def declare_all(ctx: Interpreter, it: Invocation) -> Value:
         ctx.store.put((declared, item_field(number)), found)
         if len(parts) < 2:
             continue
-        value = _default_of(ctx, parts[1], written.get(number), it.frame, ("parameter", it.call.slot, number))
+        value = _default_of(
+            ctx,
+            parts[1],
+            written.get(number),
+            it.frame,
+            ("parameter", it.call.slot, number),
+            consts=text_of_parameter(ctx.parameter_names, names[0], parts[1]) if len(names) == 1 else None,
+        )
         for obj in found.pts:
             ctx.store.put((obj, "value"), value)
     return pointer(declared)

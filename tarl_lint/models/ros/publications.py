@@ -28,7 +28,7 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     """Return the possible topic names of a registration, after remapping."""
     names = ctx.config.launched
-    return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).texts()]
+    return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).names()]
 
 
 def names_of(info: Publisher) -> tuple[int, int]:

@@ -1,0 +1,23 @@
+"""Texts that stand for parameters in the names of topics, until the launch of a node gives their values.
+
+`rospy.Subscriber(rospy.get_param("~scan", "scan") + "/front", …)` has a topic that only the launch determines. In a run
+that follows such names, the call returns a text with a mark, and string operations keep the mark.
+"""
+
+from __future__ import annotations
+
+from tarl_lint.memory.values import Consts, Symbolic, Value
+from tarl_lint.parameter_names import MARK, ParameterName
+
+
+def text_of_parameter(known: list[ParameterName] | None, name: str, default: Value) -> Consts:
+    """Return the text that stands for a parameter; None if `known` is None, or if its default is no text."""
+    if known is None or not name.strip("~/") or default.pts:
+        return None
+    texts = default.names()
+    if default.consts and not texts:
+        return None
+    one = ParameterName(name, texts[0] if len(texts) == 1 else None)
+    if one not in known:
+        known.append(one)
+    return frozenset([Symbolic(f"{MARK}{known.index(one)}{MARK}")])

@@ -1,0 +1,102 @@
+"""Give a program the parameters of one launched node: names of topics that contain parameters become known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from tarl_lint.model import Finding
+from tarl_lint.parameter_names import MARK, ParameterName, substituted
+from tarl_lint.system.model import Endpoint, Interface
+from tarl_lint.workspace.bounded_files import UnreadableError
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
+from tarl_lint.workspace.launch_parameters import leaves, stated
+from tarl_lint.workspace.parameter_yaml import NoYamlError
+from tarl_lint.workspace.ros_names import resolved
+
+DEEPEST = 8  # levels of parameters whose defaults contain parameters
+
+
+def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
+    """Return the parameters that a launch file gives a node, by absolute name; dots of ROS 2 names stay."""
+    found: dict[str, Any] = {}
+    for setting in (*launch.settings, *node.settings):
+        for name, value in _stated(setting, full_name):
+            whole = f"{full_name}/{name[1:].lstrip('/')}" if name.startswith("~") else name
+            found.update(leaves({whole: value}))
+    return found
+
+
+def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:
+    try:
+        return [(one.name, one.value) for one in stated((setting,), full_name)]
+    except (NoYamlError, UnreadableError):
+        return ()  # the report says so
+
+
+def bound(interface: Interface, values: Mapping[str, Any], full_name: str) -> Interface:
+    """Return the interface of a program in a launched node, whose parameters have these values."""
+    if not interface.in_names:
+        return interface
+    namer = _Namer(interface.in_names, values, full_name)
+    endpoints = tuple(namer.endpoint(one) for one in interface.endpoints)
+    flows = tuple(namer.finding(one) for one in interface.flows)
+    known = all(one.names for one in endpoints) and all(_has_topics(one) for one in flows)
+    return replace(interface, endpoints=endpoints, flows=flows, whole=interface.whole and known)
+
+
+def _has_topics(finding: Finding) -> bool:
+    flow = finding.flow
+    return flow is None or bool(flow.source.topics and flow.sink.topics)
+
+
+class _Namer:
+    """Replaces parameters in the names of one node."""
+
+    def __init__(
+        self, parameters: Sequence[ParameterName], values: Mapping[str, Any], full_name: str
+    ) -> None:
+        self._parameters = parameters
+        self._values = values
+        self._namespace, _, self._own = full_name.rpartition("/")
+        self._full_name = full_name
+        self._depth = 0
+
+    def endpoint(self, one: Endpoint) -> Endpoint:
+        """Return an endpoint with the names of the launch; without names if one is unknown."""
+        if not any(MARK in name for name in one.names):
+            return one
+        written = tuple(substituted(name, self._written) or "" for name in one.names)
+        return replace(one, names=self._names(one.names), written=written)
+
+    def finding(self, one: Finding) -> Finding:
+        """Return a flow with the names of the launch."""
+        flow = one.flow
+        if flow is None or not any(MARK in name for name in (*flow.source.topics, *flow.sink.topics)):
+            return one
+        source = replace(flow.source, topics=self._names(flow.source.topics))
+        sink = replace(flow.sink, topics=self._names(flow.sink.topics))
+        return replace(one, flow=replace(flow, source=source, sink=sink))
+
+    def _names(self, names: Sequence[str]) -> tuple[str, ...]:
+        found = [substituted(name, self._value) for name in names]
+        return () if None in found else tuple(sorted({one for one in found if one}))
+
+    def _written(self, number: int) -> str:
+        return f"$(param {self._parameters[number].name})"
+
+    def _value(self, number: int) -> str | None:
+        """Return the value of a parameter: from the launch file, else its default; None if it is unknown."""
+        one = self._parameters[number]
+        places = (resolved(one.name, self._namespace or "/", self._own), f"{self._full_name}/{one.name}")
+        given = next((self._values[place] for place in places if place in self._values), None)
+        if given is not None:
+            return str(given) if isinstance(given, str | int | float) else None
+        if one.default is None or self._depth >= DEEPEST:
+            return None
+        self._depth += 1
+        try:
+            return substituted(one.default, self._value)
+        finally:
+            self._depth -= 1

@@ -1,0 +1,154 @@
+"""Topics whose names come from parameters: followed through a program, and known per launched node."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.lint.test_system import MANIFEST, flows, run, write
+
+TOP = """\
+#!/usr/bin/env python3
+import rospy
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Float64
+"""
+DIRECT = """
+rospy.init_node("relay")
+out = rospy.Publisher(rospy.get_param("~out_topic", "out"), Float64, queue_size=1)
+rospy.Subscriber(rospy.get_param("~in_topic"), Float64, lambda msg: out.publish(2.0 * msg.data))
+rospy.spin()
+"""
+IN_A_CLASS = """
+class Relay:
+    def __init__(self):
+        self.prefix = rospy.get_param("~prefix", "/front")
+        names = {"in": rospy.get_param("~in_topic", "scan")}
+        self.out = rospy.Publisher(self.named(rospy.get_param("/robot/out_topic", "out")), Float64, queue_size=1)
+        self.sub = rospy.Subscriber("{}/{}".format(self.prefix.rstrip("/"), names["in"]), Float64, self.on_in)
+
+    def named(self, name):
+        return "%s_%s" % (name, "final")
+
+    def on_in(self, msg):
+        self.out.publish(msg.data)
+
+if __name__ == "__main__":
+    rospy.init_node("relay")
+    Relay()
+    rospy.spin()
+"""
+ROS2 = """
+class Relay(Node):
+    def __init__(self):
+        super().__init__("relay")
+        self.declare_parameter("topics.scan", "scan")
+        self.declare_parameters("", [("gain", 2.0), ("topics.out", "out")])
+        scan = self.get_parameter("topics.scan").get_parameter_value().string_value
+        self.out = self.create_publisher(Float64, self.get_parameter("topics.out").value, 10)
+        self.create_subscription(Float64, f"{scan}_filtered", self.on_in, 10)
+
+    def on_in(self, msg):
+        self.out.publish(Float64(data=msg.data))
+
+def main():
+    rclpy.init()
+    rclpy.spin(Relay())
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.fixture
+def arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return write(tmp_path, {"arm/package.xml": MANIFEST.format("arm", "catkin")})
+
+
+def system(arm: Path, capsys: pytest.CaptureFixture[str], source: str, body: str, *more: str) -> list[str]:
+    files = {"arm/scripts/relay.py": source, "arm/launch/a.launch": f"<launch>{body}</launch>"}
+    write(arm, files)
+    return flows(run(capsys, "--launch", "a.launch", *more)[1])
+
+
+def node(name: str, *inside: str) -> str:
+    return f'<node pkg="arm" type="relay.py" name="{name}">{"".join(inside)}</node>'
+
+
+def param(name: str, value: str) -> str:
+    return f'<param name="{name}" value="{value}"/>'
+
+
+def test_each_node_has_the_topics_of_its_own_parameters(arm, capsys):
+    body = node(
+        "first", param("in_topic", "/scan"), param("out_topic", "middle"), '<remap from="middle" to="/m"/>'
+    )
+    body += node("second", param("in_topic", "m"))
+    assert system(arm, capsys, TOP + DIRECT, body) == ["/scan → /first → /m → /second → /out  explicit"]
+
+
+def test_a_parameter_without_a_value_or_default_stays_unknown(arm, capsys):
+    assert system(arm, capsys, TOP + DIRECT, node("first")) == ["? → /first → /out  explicit"]
+    unset = node("first", '<param name="in_topic" value="$(env SCAN)"/>', param("out_topic", "/a"))
+    assert system(arm, capsys, TOP + DIRECT, unset) == ["? → /first → /a  explicit"]
+    known = node("first", '<param name="in_topic" value="5.5" type="double"/>')
+    assert system(arm, capsys, TOP + DIRECT, known) == ["/5.5 → /first → /out  explicit"]
+
+
+def test_names_pass_through_attributes_tables_functions_and_string_operations(arm, capsys):
+    body = param("/robot/out_topic", "wheels") + node("first", param("in_topic", "lidar"))
+    body += (
+        f'<group ns="left">{node("other", "<rosparam>{prefix: /rear/, in_topic: sonar}</rosparam>")}</group>'
+    )
+    assert system(arm, capsys, TOP + IN_A_CLASS, body) == [
+        "/front/lidar → /first → /wheels_final  explicit",
+        "/rear/sonar → /left/other → /left/wheels_final  explicit",
+    ]
+
+
+def test_declared_parameters_of_ros2(arm, capsys):
+    source = "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import Float64\n" + ROS2
+    write(arm, {"arm/package.xml": MANIFEST.format("arm", "ament_python"), "arm/relay.py": source,
+                "arm/config/p.yaml": "/r1/relay:\n  ros__parameters: {topics: {out: /end}}\n",
+                "arm/launch/b.launch.xml": """
+                    <launch><push-ros-namespace namespace="r1"/>
+                    <node pkg="arm" exec="relay.py">
+                    <param name="topics.scan" value="/front/scan"/>
+                    <param from="$(find-pkg-share arm)/config/p.yaml"/></node></launch>"""})  # fmt: skip
+    out = run(capsys, "--launch", "b.launch.xml")[1]
+    assert flows(out) == ["/front/scan_filtered → /r1/relay → /end  explicit"]
+
+
+def test_decisions_on_a_parameter_stay_open(arm, capsys):
+    source = TOP + """
+rospy.init_node("relay")
+name = rospy.get_param("~out_topic", "out")
+speeds = {"out": 1.0}
+out = rospy.Publisher(name, Float64, queue_size=1)
+def on_in(msg):
+    if name == "out":
+        out.publish(msg.data)
+    elif "fast" in name:
+        out.publish(2.0 * msg.data * speeds[name])
+rospy.Subscriber("in", Float64, on_in)
+rospy.spin()
+"""  # fmt: skip
+    write(arm, {"arm/scripts/relay.py": source, "arm/launch/a.launch": f"<launch>{node('first')}</launch>"})
+    document = json.loads(run(capsys, "--launch", "a.launch", "--format", "json")[1])
+    (hop,) = document["systems"][0]["hops"]
+    assert (hop["from"], hop["to"], len(hop["flows"])) == ("/in", "/out", 2)
+    (end,) = document["systems"][0]["nodes"][0]["publishes"]
+    assert (end["name"], end["in_code"]) == ("/out", ["$(param ~out_topic)"])
+
+
+def test_fingerprints_are_those_of_a_run_without_launch_files(arm, capsys):
+    write(arm, {"arm/scripts/relay.py": TOP + DIRECT})
+    body = node("first", param("in_topic", "/scan"))
+    write(arm, {"arm/launch/a.launch": f"<launch>{body}</launch>"})
+    document = json.loads(run(capsys, "--launch", "a.launch", "--format", "json")[1])
+    launched = {one["fingerprint"] for hop in document["systems"][0]["hops"] for one in hop["flows"]}
+    linted = json.loads(run(capsys, "arm", "--format", "json")[1])
+    assert launched == {one["fingerprint"] for one in linted["diagnostics"] if one["code"] == "TARL101"}
