@@ -1,21 +1,23 @@
 """Boundaries that a stress run finds, against an exhaustive grid, and how often it reports one where nothing breaks.
 
-    python benchmarks/stress.py [TASK ...] [--harmless 25]
+    python benchmarks/stress.py [TASK ...] [--harmless 25] [--results FILE]
 
 Each task of benchmarks/drift, and the examples with one number as drift, has the direction from its nominal value to
 its drift. The grid has 41 values, each with 40 episodes on seeds of its own; its boundary is where the margin first
 crosses zero, interpolated. A line per task: both boundaries in shares of the range, their distance, the episodes of
-both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary.
+both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary. With `--results`,
+each task's result is added to a JSON Lines file, and tasks that it holds are not run again.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -33,7 +35,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcom
 from pytest_tarl.stressing.findings import Curve  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import rays  # noqa: E402
-from pytest_tarl.stressing.search import along_rays  # noqa: E402
+from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 
 GRID, EPISODES = 41, 40  # values, and episodes at each
 RECORDED = 100
@@ -114,6 +116,7 @@ def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: 
     (curve,) = (Curve(ray) for ray in rays(space, {}))
     with suppress(BudgetSpentError):
         along_rays([curve], evaluator, RISK)
+        near_ends([curve], evaluator, RISK)
     return curve, evaluator.spent
 
 
@@ -123,11 +126,28 @@ class Compared:
 
     grid: float | None
     found: float | None
-    near: float
+    near: float | None
     far: float
     episodes: int
     harmless: int
     false: int
+
+    @property
+    def contains(self) -> bool:
+        """Return whether the interval contains the grid's boundary; without one, no boundary is the right answer."""
+        if self.grid is None or self.found is None:
+            return self.grid is None and self.found is None
+        return (self.near or 0.0) <= self.grid <= self.far
+
+    @property
+    def line(self) -> str:
+        """Return the columns of the table, from the grid's boundary on."""
+        grid, found = (f"{one:.3f}" if one is not None else "none" for one in (self.grid, self.found))
+        interval = "none" if self.found is None else f"{self.near or 0.0:.3f}–{self.far:.3f}"
+        return (
+            f"{grid} | {found} | {interval} | {'yes' if self.contains else 'no'} | {self.episodes} "
+            f"| {100 * self.episodes / (GRID * EPISODES):.1f} % | {self.false} of {self.harmless}"
+        )
 
 
 def compare(stage: Stage, harmless: int) -> Compared:
@@ -149,7 +169,7 @@ def compare(stage: Stage, harmless: int) -> Compared:
     return Compared(
         grid,
         found.at if found else None,
-        found.near if found else 0.0,
+        found.near if found else None,
         found.far if found else 1.0,
         episodes,
         harmless,
@@ -164,29 +184,42 @@ def agrees(one: Compared) -> bool:
     return abs(one.grid - one.found) <= NEAR
 
 
+def known(path: Path | None) -> dict[str, Compared]:
+    """Return the results of a file by task."""
+    lines = path.read_text().splitlines() if path is not None and path.exists() else []
+    return {task: Compared(**one) for task, one in map(json.loads, lines)}
+
+
+def keep(path: Path | None, task: str, one: Compared) -> None:
+    """Add a result to a file."""
+    if path is not None:
+        with path.open("a") as out:
+            out.write(f"{json.dumps([task, asdict(one)])}\n")
+
+
 def main() -> None:
     """Print a line per task, and the sums."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--harmless", type=int, default=0, help="runs per task where nothing breaks")
+    parser.add_argument("--results", type=Path, help="JSON Lines file of results to continue")
     arguments = parser.parse_args()
-    print(
-        "| task | grid | stress | interval | episodes | of the grid | false |\n|---|---|---|---|---|---|---|"
-    )
-    every = []
+    print("| task | grid | stress | interval | contains | episodes | of the grid | false |")
+    print("|---|---|---|---|---|---|---|---|")
+    done = known(arguments.results)
     for task in arguments.tasks or (*TASKS, *EXAMPLES):
-        one: Compared = visit(
-            task, lambda stage: compare(stage, arguments.harmless), EXAMPLES.get(task), HERE / "drift"
-        )
-        every.append(one)
-        shown = [f"{value:.3f}" if value is not None else "none" for value in (one.grid, one.found)]
-        print(
-            f"| {task} | {shown[0]} | {shown[1]} | {one.near:.3f}–{one.far:.3f} | {one.episodes} "
-            f"| {one.episodes / (GRID * EPISODES):.1%} | {one.false} of {one.harmless} |",
-            flush=True,
-        )
+        if task not in done:
+            done[task] = visit(
+                task, lambda stage: compare(stage, arguments.harmless), EXAMPLES.get(task), HERE / "drift"
+            )
+            keep(arguments.results, task, done[task])
+        print(f"| {task} | {done[task].line} |", flush=True)
+    every = list(done.values())
     near = sum(map(agrees, every))
     print(f"\nWithin {NEAR:.0%} of the range: {near} of {len(every)}.")
+    print(
+        f"Intervals that contain the grid's boundary: {sum(one.contains for one in every)} of {len(every)}."
+    )
     print(f"False boundaries: {sum(one.false for one in every)} of {sum(one.harmless for one in every)}.")
 
 

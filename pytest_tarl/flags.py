@@ -61,10 +61,10 @@ FLAGS = (
     ),
     Flag(
         "--tarl-stress-budget",
-        "limit of --tarl-stress per test: a number of episodes (default 600)",
+        "limit of --tarl-stress per test: a number of episodes (default 1000)",
         metavar="N",
         type=int,
-        default=600,
+        default=1000,
     ),
     Flag("--tarl-seed", "seed of all random numbers (default 0)", metavar="N", type=int, default=0),
     Flag(

@@ -46,7 +46,7 @@ class Options:
     holm: bool = False  # whether to correct verdicts over all tests of the run
     comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
-    stress_budget: int = 600  # limit of a stress run, in episodes
+    stress_budget: int = 1000  # limit of a stress run, in episodes
 
     ONLINE_EPISODES = 40
     LOOKS = 3

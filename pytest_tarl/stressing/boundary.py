@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from pytest_tarl.stressing.evaluating import Evaluator
+from pytest_tarl.stressing.candidates import Model
+from pytest_tarl.stressing.evaluating import FRESH, RAYS, Evaluator
 from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
 RESOLUTION = 0.01  # share of the declared range at which a bisection ends
+NOISY = 0.04  # the same if the failing end is undecided: noise then hides any finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
@@ -22,7 +25,8 @@ def bisect(curve: Curve, evaluator: Evaluator) -> None:
     _settle(curve, evaluator)
     while curve.ray.continuous and (found := curve.bracket):
         near, far = found
-        if (far - near) * curve.ray.length <= RESOLUTION:
+        decided = curve.evidence[far].result != "open"
+        if (far - near) * curve.ray.length <= (RESOLUTION if decided else NOISY):
             break
         _measure(curve, (near + far) / 2, evaluator)
         _settle(curve, evaluator)
@@ -33,26 +37,31 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 
     All rays share these seeds, since no point was chosen with them.
     """
-    for k, t in enumerate(_candidates(curve), 1):
-        if evaluator.confirm(curve.ray.point(t), "rays", risk / (k * (k + 1))):
+    for k, t in enumerate(_candidates(curve, evaluator.guarantee, risk), 1):
+        if evaluator.confirm(curve.ray.point(t), RAYS, risk / (k * (k + 1))):
             curve.confirmed = t
             return
         curve.rejected = (*curve.rejected, t)
 
 
-def _candidates(curve: Curve) -> list[float]:
-    """Return three nearest points: the failing one, one with half of the lowest margin, and one with the lowest margin.
+def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
+    """Return values to test: the nearest that is expected to be confirmed, then decided ones with lower margins.
 
     Exactly at the boundary, even very many episodes rarely show a failure.
     """
     decided = sorted(t for t, one in curve.evidence.items() if one.result == "fails")
+    if not decided:
+        return []
     margins = [curve.evidence[t].margin for t in decided]
-    lowest = min(margins, default=0.0)
     chosen = [
-        next(t for t, margin in zip(decided, margins, strict=True) if margin <= share * lowest)
-        for share in ((0.0, 0.5, 1.0) if decided else ())
+        next(t for t, margin in zip(decided, margins, strict=True) if margin <= share * min(margins))
+        for share in (0.5, 1.0)
     ]
-    return list(dict.fromkeys(chosen))
+    if curve.ray.continuous:
+        most, share = FRESH[-1], risk / 2 / len(FRESH)
+        nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
+        chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
+    return sorted(set(chosen))
 
 
 def _settle(curve: Curve, evaluator: Evaluator) -> None:

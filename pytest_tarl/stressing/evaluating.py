@@ -12,7 +12,8 @@ from pytest_tarl.spaces import Point, Space
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, refuted
 
 SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
-FRESH = (16, 48)  # episodes on fresh seeds after which a failure is confirmed or not
+FRESH = (16, 32)  # episodes on fresh seeds after which a failure is confirmed or not
+RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
 
@@ -33,6 +34,7 @@ class Evaluator:
     budget: int
     progress: Progress
     spent: int = 0
+    short: bool = False  # whether a result was left out for want of budget
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
 
     def examine(self, point: Point, most: int) -> Evidence:
@@ -65,6 +67,21 @@ class Evaluator:
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes on the search's first seeds. Raise BudgetSpentError if the budget does not cover them."""
         return self._of("search", point, count)
+
+    def fresh(self, point: Point, count: int) -> Sequence[Outcome]:
+        """Return outcomes on the seeds that confirm results of rays. Raise BudgetSpentError."""
+        return self._of(RAYS, point, count)
+
+    def affords(self, point: Point, count: int, paired: int) -> bool:
+        """Return whether the budget covers `count` fresh episodes at a point, `paired` of them with nominal ones.
+
+        If it does not, `short` is set.
+        """
+        wanted = ((point, count), (self.space.nominal, paired))
+        missing = (count - len(self._known.get((RAYS, *at.values()), ())) for at, count in wanted)
+        affordable = self.spent + sum(max(one, 0) for one in missing) <= self.budget
+        self.short |= not affordable
+        return affordable
 
     def _of(self, pool: str, point: Point, count: int) -> Sequence[Outcome]:
         known = self._known.setdefault((pool, *point.values()), [])

@@ -10,6 +10,8 @@ from pytest_tarl.spaces import Point, Space
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
+CONFIDENCE = 0.9  # that a boundary lies in its interval
+
 
 @dataclass
 class Curve:
@@ -22,6 +24,7 @@ class Curve:
     evidence: dict[float, Evidence] = field(default_factory=dict)
     confirmed: float | None = None
     rejected: tuple[float, ...] = ()
+    held: float | None = None  # farthest t at which fresh seeds showed that the guarantee holds
     swept: bool = False  # whether the coarse sweep is complete
 
     @property
@@ -45,15 +48,9 @@ class Curve:
         near, far = self.bracket
         before = self.evidence[near].margin if near in self.evidence else 1.0
         share = before / (before - self.evidence[far].margin) if before > 0.0 else 0.0
-        open_from = min(
-            (t for t, one in self.evidence.items() if t <= self.confirmed and one.result != "holds"),
-            default=far,
-        )
-        shown = max(
-            (t for t, one in self.evidence.items() if t < open_from and one.result == "holds"), default=0.0
-        )
         at = near + (far - near) * share if self.ray.continuous else far
-        return Boundary(min(at, self.confirmed), min(shown, at), self.confirmed, self.monotone)
+        held = self.held if self.held is not None and self.held < self.confirmed else None
+        return Boundary(min(max(at, held or 0.0), self.confirmed), held, self.confirmed, self.monotone)
 
     @property
     def monotone(self) -> bool:
@@ -64,10 +61,14 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """The boundary along a ray: the guarantee held up to `near`, fails at `far`, and `at` is the estimate."""
+    """The boundary along a ray: the guarantee holds up to `near`, fails at `far`, and `at` is the estimate.
+
+    If the margin does not rise with the drift, the boundary lies from `near` to `far` at the confidence CONFIDENCE;
+    `near` is None if no value but the nominal one was shown to hold.
+    """
 
     at: float
-    near: float
+    near: float | None
     far: float
     monotone: bool
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import fmean
+from statistics import fmean, stdev
 from typing import Literal
 
 from pytest_tarl.designation import Designation
@@ -39,6 +39,7 @@ class Evidence:
     episodes: int
     passed: int
     loss: float  # reward per episode, against the nominal drift with the same seeds
+    spread: float  # standard deviation of the loss of an episode
 
     @property
     def failing(self) -> bool:
@@ -94,7 +95,8 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
     failing = _too_few_pass(given, outcomes, SEARCH_RISK) or bound.low > given.tolerance
     holding = count >= LEAST and passed / count >= given.rate and bound.high < given.tolerance
     answer: Answer = "fails" if failing else "holds" if holding else "open"
-    return Evidence(answer, given.margin(passed / count, loss), count, passed, loss)
+    spread = stdev(losses) if count > 1 else 0.0
+    return Evidence(answer, given.margin(passed / count, loss), count, passed, loss, spread)
 
 
 def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:
@@ -105,9 +107,26 @@ def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Out
     """
     if _too_few_pass(given, outcomes, risk / 2):
         return True
-    ends = given.declared
-    differences = None if ends is None else Range(ends.low - ends.high, ends.high - ends.low)
-    return mean_of(_losses(outcomes, nominal), 1.0 - risk / 2, differences).low > given.tolerance
+    return mean_of(_losses(outcomes, nominal), 1.0 - risk / 2, _differences(given)).low > given.tolerance
+
+
+def most_passed(given: Guarantee, count: int, risk: float) -> int:
+    """Return the largest number of passed episodes that refutes the guarantee; -1 if no number does."""
+    refuting = [n for n in range(count + 1) if rate(n, count, 1.0 - risk / 2).high < given.rate]
+    return max(refuting, default=-1)
+
+
+def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
+    """Return whether fresh episodes show at `risk` that the guaranteed share of episodes passes."""
+    count, passed = len(outcomes), sum(one.passed for one in outcomes)
+    return rate(passed, count, 1.0 - risk).low >= given.rate
+
+
+def little_lost(
+    given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float
+) -> bool:
+    """Return whether fresh episodes show at `risk` that the loss is tolerated; the bound is that of `refuted`."""
+    return mean_of(_losses(outcomes, nominal), 1.0 - risk, _differences(given)).high <= given.tolerance
 
 
 def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
@@ -122,6 +141,12 @@ def _too_few_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) ->
     """Return whether outcomes show at `risk` that too few episodes pass (Clopper and Pearson)."""
     passed = sum(one.passed for one in outcomes)
     return rate(passed, len(outcomes), 1.0 - risk).high < given.rate
+
+
+def _differences(given: Guarantee) -> Range | None:
+    """Return the declared range of a loss."""
+    ends = given.declared
+    return None if ends is None else Range(ends.low - ends.high, ends.high - ends.low)
 
 
 def _losses(outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> list[float]:

@@ -7,10 +7,10 @@ from importlib import resources
 from typing import Any
 
 from pytest_tarl.spaces import Choice, value_of
-from pytest_tarl.stressing.findings import Curve, Failure, Stress
+from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-FORMAT_VERSION = 1  # 1: first version
+FORMAT_VERSION = 2  # 1: first version, 2: confidence of the boundary, values shown to hold
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
 
@@ -64,10 +64,12 @@ def _direction(stress: Stress, curve: Curve) -> dict[str, Any]:
         if found is None
         else {
             "estimate": value(found.at),
-            "held_up_to": value(found.near),
+            "held_up_to": None if found.near is None else value(found.near),
             "failed_at": value(found.far),
+            "confidence": CONFIDENCE,
             "monotone": found.monotone,
         },
+        "held_up_to": None if curve.held is None else value(curve.held),
         "suspicious": found is None and bool(curve.failing),
         "margins": [
             {

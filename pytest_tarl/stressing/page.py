@@ -117,7 +117,7 @@ def _band(curve: Curve, x: Callable[[float], float]) -> str:
     boundary = curve.boundary
     if boundary is None:
         return ""
-    left, right = sorted((x(curve.ray.value(boundary.near)), x(curve.ray.value(boundary.far))))
+    left, right = sorted((x(curve.ray.value(boundary.near or 0.0)), x(curve.ray.value(boundary.far))))
     return f'<rect x="{left:.1f}" y="10" width="{max(right - left, 1):.1f}" height="{HEIGHT - 40}" fill="#b3261e22"/>'
 
 

@@ -7,14 +7,15 @@ from itertools import groupby
 from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
-from pytest_tarl.stressing.findings import Boundary, Curve, Stress
+from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Stress
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # combinations
+SURE = f"{100 * CONFIDENCE:.3g} %"
 ROUNDING = 1e-9  # tolerance for rounding errors of values on a ray
 
 ENDED = {
-    "budget": "The budget of {budget} episodes was used up before the search ended: raise --tarl-stress-budget.",
+    "budget": "The budget of {budget} episodes did not suffice for the whole search: raise --tarl-stress-budget.",
     "interrupted": "Interrupted after {episodes} episodes: this is what was known by then.",
 }
 
@@ -60,7 +61,7 @@ def directions(stress: Stress) -> Iterator[tuple[str, list[str]]]:
         if isinstance(extent, Choice):
             yield name, [_option(curve) for curve in own]
         else:
-            yield name, _range(name, extent, own)
+            yield name, [*_range(name, extent, own), *_held(name, own)]
 
 
 def together(stress: Stress) -> Iterator[str]:
@@ -113,10 +114,24 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
     return [_side(name, curve) for curve in curves]
 
 
+def _held(name: str, curves: list[Curve]) -> list[str]:
+    """Return the sentence on values at which the guarantee was shown to hold, on sides without a boundary."""
+    limits = [
+        f"{name} {_sign(curve.ray)} {_number(curve.ray, curve.held)}"
+        for curve in curves
+        if curve.held is not None and curve.confirmed is None
+    ]
+    return [f"The guarantee holds while {' and '.join(limits)} ({SURE} each)."] if limits else []
+
+
+def _sign(ray: Ray) -> str:
+    return "≤" if ray.value(1.0) > nominal(ray.space.extents[ray.names[0]]) else "≥"
+
+
 def _side(name: str, curve: Curve) -> str:
     """Return the sentence on one ray along a range."""
     ray, boundary = curve.ray, curve.boundary
-    sign = "≤" if ray.value(1.0) > nominal(ray.space.extents[name]) else "≥"
+    sign = _sign(ray)
     if boundary is not None:
         return f"No failure found while {name} {sign} {_number(ray, boundary.at)} ({_uncertainty(ray, boundary)})."
     if curve.failing:
@@ -130,9 +145,11 @@ def _side(name: str, curve: Curve) -> str:
 
 
 def _uncertainty(ray: Ray, boundary: Boundary) -> str:
-    low, high = sorted((ray.value(boundary.near), ray.value(boundary.far)))
     monotone = "monotone: checked" if boundary.monotone else "not monotone: it holds again beyond"
-    return f"boundary {low:.3g} to {high:.3g}, {monotone}"
+    if boundary.near is None:
+        return f"boundary not beyond {_number(ray, boundary.far)}, {monotone}"
+    low, high = sorted((ray.value(boundary.near), ray.value(boundary.far)))
+    return f"boundary {low:.3g} to {high:.3g} at {SURE}, {monotone}"
 
 
 def _option(curve: Curve) -> str:
@@ -142,6 +159,8 @@ def _option(curve: Curve) -> str:
         return f"Fails with {name}={option!r}."
     if curve.failing:
         return f"No failure confirmed with {name}={option!r}, which is suspicious."
+    if curve.held is not None:
+        return f"No failure found with {name}={option!r}; the guarantee holds ({SURE})."
     return f"{'No failure found' if curve.swept else 'Not examined'} with {name}={option!r}."
 
 

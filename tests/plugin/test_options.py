@@ -35,7 +35,7 @@ FLAGS: dict[str, Any] = {
     "looks": None,
     "strict": False,
     "stress": False,
-    "stress-budget": 600,
+    "stress-budget": 1000,
 }
 
 

@@ -19,7 +19,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator
 from pytest_tarl.stressing.findings import Curve, Stress
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import along_rays
+from pytest_tarl.stressing.search import along_rays, near_ends
 
 World = Callable[[Point, np.random.Generator], tuple[bool, float]]  # → passed, total reward
 
@@ -72,8 +72,12 @@ def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -
     try:
         along_rays(curves, evaluator, 0.01)
         pairs(evaluator, together)
+        near_ends([curve for curve in curves if curve.failing], evaluator, 0.01)
         search(evaluator, together)
+        near_ends([curve for curve in curves if not curve.failing], evaluator, 0.01)
     except BudgetSpentError:
+        ended = "budget"
+    if evaluator.short:
         ended = "budget"
     return Stress(
         test="t",

@@ -1,0 +1,88 @@
+"""Choose values of a ray at which fresh episodes can show that the guarantee holds or fails.
+
+The choice rests on the episodes of a search and is approximate: it decides how narrow an interval gets, not whether it
+holds.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import comb, sqrt
+
+import numpy as np
+
+from pytest_tarl.learning.tables import Floats
+from pytest_tarl.stressing.guarantee import Evidence
+
+HOPE = 0.8  # expected probability that a test at a chosen value succeeds
+HOLDING = 3.0  # standard errors between the loss and the tolerated one for a bound at 4 % to be met four times in five
+FAILING = 4.0  # the same at 0.4 %
+PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
+CENTRES = np.linspace(0.0, 1.25, 251)  # of the drifts at which an episode begins to fail, as shares of a ray
+SCALES = np.geomspace(0.002, 0.3, 16)  # of their logistic distribution
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a search's episodes tell of the ray: each fails beyond a drift of its own, and loses reward on the way.
+
+    The drifts at which episodes begin to fail have a logistic distribution, with a uniform prior over CENTRES and
+    SCALES. The loss is linear between the measured values, and its spread is that of the next measured value.
+    """
+
+    evidence: Mapping[float, Evidence]
+    tolerance: float
+
+    def holding(self, episodes: int, paired: int) -> float:
+        """Return the farthest t at which all of `episodes` pass, and `paired` of them lose little; else 0."""
+
+        def beyond(t: float) -> bool:
+            return (
+                self._passing(t, episodes, episodes) < HOPE or self._loss(t, HOLDING, paired) > self.tolerance
+            )
+
+        at = bisect_left(PLACES, True, key=beyond)
+        return PLACES[at - 1] if at else 0.0
+
+    def failing(self, episodes: int, passed: int) -> float | None:
+        """Return the nearest t at which at most `passed` of `episodes` pass, or much is lost; else None."""
+        few = bisect_left(PLACES, HOPE, key=lambda t: 1.0 - self._passing(t, episodes, passed + 1))
+        lost = (t for t in PLACES[:few] if self._loss(t, -FAILING, episodes) > self.tolerance)
+        return next(lost, PLACES[few] if few < len(PLACES) else None)
+
+    def _passing(self, t: float, episodes: int, least: int) -> float:
+        """Return the expected probability that at least `least` episodes pass at t."""
+        exponent = (t - CENTRES[:, None]) / SCALES
+        passes, fails = -np.logaddexp(0.0, exponent), -np.logaddexp(0.0, -exponent)
+        chance = sum(
+            comb(episodes, failed) * np.exp((episodes - failed) * passes + failed * fails)
+            for failed in range(episodes - least + 1)
+        )
+        return float((self._weights * chance).sum())
+
+    def _loss(self, t: float, errors: float, episodes: int) -> float:
+        """Return the expected loss at t plus some standard errors, of the search and of `episodes` fresh episodes."""
+        ts = sorted(self.evidence)
+        every = [self.evidence[one] for one in ts]
+        loss = np.maximum.accumulate([0.0, *(one.loss for one in every)])
+        there = every[min(int(np.searchsorted(ts, t)), len(ts) - 1)]
+        return float(
+            np.interp(t, [0.0, *ts], loss)
+            + errors * there.spread * sqrt(1.0 / there.episodes + 1.0 / episodes)
+        )
+
+    @cached_property
+    def _weights(self) -> Floats:
+        """Return the posterior of each centre and scale, shape (centres, scales)."""
+        ts = np.array(sorted(self.evidence))
+        passed = np.array([self.evidence[t].passed for t in ts])
+        failed = np.array([self.evidence[t].episodes for t in ts]) - passed
+        exponent = (ts[:, None, None] - CENTRES[:, None]) / SCALES
+        found = -np.tensordot(passed, np.logaddexp(0.0, exponent), 1)
+        found -= np.tensordot(failed, np.logaddexp(0.0, -exponent), 1)
+        weights = np.exp(found - found.max())
+        shares: Floats = weights / weights.sum()
+        return shares
