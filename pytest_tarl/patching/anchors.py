@@ -76,10 +76,10 @@ def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
     statement = source.statement(call)
     within = [statement, *_until_function(source, statement)]
     loops = [each for each in within if isinstance(each, Loop)]
-    statement, looped = (loops[-1], True) if loops else (statement, False)
+    statement = loops[-1] if loops else statement
     text = source.source(call)
     quote = "'" if "'" in text and '"' not in text else '"'
-    if looped or hasattr(statement, "body") or isinstance(statement, ast.Return | ast.Raise):
+    if hasattr(statement, "body") or isinstance(statement, ast.Return | ast.Raise):
         return Anchor(source, statement, False, node, quote) if source.leads(statement) else None
     if source.alone(statement):
         return Anchor(source, statement, True, node, quote)

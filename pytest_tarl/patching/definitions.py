@@ -203,7 +203,7 @@ def _kind(path: Path) -> str:
         return "yaml"
     if path.suffix == ".toml":
         return "toml"
-    if path.suffix in (".launch", ".xml") and (path.suffix == ".launch" or path.name.endswith(".launch.xml")):
+    if path.name.endswith((".launch", ".launch.xml")):
         return "launch"
     if path.name.endswith((".launch.py", "_launch.py")):
         return "yaml"  # node parameters are a dictionary in such a file

@@ -200,7 +200,7 @@ def test_changeable_sites_come_first_and_ranks_follow_scores(
 EFFECTS = st.dictionaries(SITES, st.floats(-5, 5), max_size=6)
 
 
-@given(LISTS, st.frozensets(SITES), EFFECTS, st.frozensets(SITES), st.floats(0.1, 4))
+@given(LISTS, st.frozensets(SITES), EFFECTS, st.frozensets(SITES), st.just(0.0) | st.floats(-1, 4))
 @settings(max_examples=TIMES, deadline=None)
 def test_a_repaired_line_comes_first_after_the_search(
     lists: list[dict[int, tuple[float, float]]],

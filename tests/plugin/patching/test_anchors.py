@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.patching.anchors import anchors
+from pytest_tarl.patching.anchors import anchors, beside
+from pytest_tarl.patching.document import document
 
 CLASS = """\
 import rclpy
@@ -70,3 +71,43 @@ def test_the_first_place_is_the_call_that_starts_the_node(text: str, beside: str
     site: Any = None
     first, *_ = anchors(analysis, site, "pilot.py")
     assert (ast.unparse(first.statement), first.node, first.after) == (beside, node, True)
+
+
+BESIDE = """\
+import rospy
+
+def main():
+    rospy.init_node("pilot")
+    {}
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "statement", "after"),
+    [
+        ("sub = subscribe('/a')", "sub = subscribe('/a')", True),
+        ("if subscribe('/a'): pass", "if subscribe('/a'):\n    pass", False),
+        ("with subscribe('/a'): pass", "with subscribe('/a'):\n    pass", False),
+        ("return subscribe('/a')", "return subscribe('/a')", False),
+        ("for _ in range(3): subscribe('/a')", "for _ in range(3):\n    subscribe('/a')", False),
+        (
+            "while True:\n        if True: subscribe('/a')",
+            "while True:\n    if True:\n        subscribe('/a')",
+            False,
+        ),
+        ("print(); subscribe('/a'); print()", "print()", False),
+    ],
+)
+def test_another_registration_stands_outside_loops_and_always_runs(
+    code: str, statement: str, after: bool
+) -> None:
+    source = document("pilot.py", BESIDE.format(code))
+    (call,) = (
+        node
+        for node in ast.walk(source.tree)
+        if isinstance(node, ast.Call) and ast.unparse(node) == "subscribe('/a')"
+    )
+    found = beside(source, call, "node")
+    assert found is not None
+    assert (ast.unparse(found.statement), found.after, found.node) == (statement, after, "node")

@@ -86,3 +86,41 @@ def test_a_file_outside_the_analysis_is_read_when_it_is_changed(tmp_path: Path) 
     )
     written = Mutants(order).source(Candidate((Mutation(operand, 2.0, place),), Guard()))
     assert written == {file: "mast:\n  ki: 1.0  # per second\n"}
+
+
+LAUNCH = '<launch><node pkg="a" type="b"><param name="~ki" value="0.5"/></node></launch>'
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("mast.yaml", "mast: {ki: 0.5}"),
+        ("mast.yml", "ki: 0.5"),
+        ("mast.json", '{"ki": 0.5}'),
+        ("mast.toml", "ki = 0.5"),
+        ("mast.launch", LAUNCH),
+        ("mast.launch.xml", LAUNCH),
+        ("mast.launch.py", "Node(parameters=[{'ki': 0.5}])"),
+        ("mast_launch.py", "Node(parameters=[{'ki': 0.5}])"),
+        ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
+    ],
+)
+def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None:
+    (place,) = configured("/arm/ki", {path: text})
+    assert (place.path, place.value, text[place.start : place.end]) == (path, 0.5, "0.5")
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("mast.xml", LAUNCH),
+        ("mast.yaml", "other_ki: 0.5"),
+        ("mast.yaml", "ki: 0.5 m"),
+        ("mast.launch", LAUNCH.replace("~ki", "~other_ki")),
+        ("Mast.cfg", "gen.remove('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
+        ("Mast.cfg", "gen.add('kp', double_t, 0, 'gain', 0.5, 0, 1)"),
+        ("Mast.cfg", "gen.add("),
+    ],
+)
+def test_other_files_and_other_parameters_are_left_alone(path: str, text: str) -> None:
+    assert list(configured("ki", {path: text})) == []

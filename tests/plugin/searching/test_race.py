@@ -112,3 +112,16 @@ def test_a_ranking_whose_budget_ends_is_incomplete() -> None:
     ranking.run()
     assert not ranking.whole
     assert ranking.effects()
+
+
+def test_the_full_ranking_runs_units_without_effect_on_the_first_seed_only() -> None:
+    ran: dict[str, set[int]] = {}
+
+    def noted(candidate: Candidate, seed: int) -> object:
+        for one in candidate.mutations:
+            ran.setdefault(one.operand.code, set()).add(seed)
+        return run(candidate, seed)
+
+    Ranking(OPERANDS, mutations, ALWAYS, Trials(noted, 300), GOAL).run()  # type: ignore[arg-type]
+    assert ran[LIMIT.code] == {PAIRS[0].seed}
+    assert len(ran[GAIN.code]) > 3

@@ -11,6 +11,8 @@ import pytest
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import Template
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
@@ -22,6 +24,7 @@ from pytest_tarl.searching.search import (
     Pair,
     Trials,
     confirmed,
+    effective_value,
     label,
 )
 from pytest_tarl.searching.sweep import Sweep
@@ -37,6 +40,7 @@ def operand(line: int, code: str, value: float) -> Operand:
     return Operand(SiteId("node", "run", f"x = {code}"), span, code, value, span)
 
 
+ELSEWHERE = Span("node.py", 1, 1, 1, 4)
 GAIN, BIAS, LIMIT = operand(3, "2.0", 2.0), operand(4, "0.0", 0.0), operand(5, "40", 40)
 OPERANDS = (BIAS, LIMIT, GAIN)
 
@@ -287,3 +291,23 @@ def test_a_failed_mission_ends_the_confirmation_if_designed_missions_succeed() -
         trials = Trials(once, 300)
         found = confirmed(Candidate((), ALWAYS), trials, replace(goal, passing=passing), 0)
         assert (found, trials.spent) == (not passing, runs)
+
+
+@pytest.mark.parametrize(
+    ("operand_", "value", "effective"),
+    [
+        (GAIN, 3.0, 3.0),  # the new value of a literal
+        (replace(GAIN, code="K", definition=ELSEWHERE), 3.0, 6.0),  # a factor for a constant
+        (replace(GAIN, code="K", value=0.0, definition=ELSEWHERE), 3.0, 3.0),  # a summand if it is zero
+        (replace(GAIN, code="K", value=None, definition=ELSEWHERE), 3.0, 3.0),  # a factor if it is not known
+    ],
+)
+def test_the_effective_value_is_that_of_the_use(operand_: Operand, value: float, effective: float) -> None:
+    assert effective_value(Mutation(operand_, value)) == effective
+
+
+def test_the_effective_value_of_a_structure_is_its_parameter_or_one() -> None:
+    template = Template("limit", "limits a value", "any", 1, "min($x, $most)")
+    scaled = Form(template, "most", (("least", 1.0), ("most", 4.0)))
+    assert effective_value(Mutation(GAIN, 0.5, form=scaled)) == 2.0
+    assert effective_value(Mutation(GAIN, True, form=Form(template, defaults=(("most", 4.0),)))) == 1.0

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl import Drift
+from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import json_result, page, words
-from pytest_tarl.stressing.guarantee import Outcome, examined, refuted
+from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refuted
 from pytest_tarl.stressing.rays import distance, rays
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
 
@@ -191,6 +192,19 @@ def test_one_failure_in_few_episodes_does_not_refute_the_guarantee() -> None:
     assert refuted(given_, [Outcome(True, 9.0)] * 16, [fine] * 16, 0.01)
     wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, but from a few episodes
     assert not refuted(given_, wild, [fine] * 16, 0.01)
+
+
+@pytest.mark.parametrize("zero", [0.0, 8.0, -10.0, 1000.0])
+def test_the_power_depends_on_the_width_of_a_declared_range_and_not_on_its_place(zero: float) -> None:
+    def found(width: float, loss: float) -> bool:
+        declared = Range(zero, zero + width)
+        given_ = Guarantee(0.8, 0.5, (zero,) * 50, 1.0, declared)
+        best = zero + width
+        return refuted(given_, [Outcome(True, best - loss)] * 32, [Outcome(True, best)] * 32, 0.01)
+
+    assert found(2.0, 1.5)
+    assert not found(2.0, 0.5)
+    assert not found(10.0, 1.5)
 
 
 def test_distances_are_in_units_of_the_declared_ranges() -> None:

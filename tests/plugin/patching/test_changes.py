@@ -1,0 +1,61 @@
+"""Patches on files whose lines have moved."""
+
+from __future__ import annotations
+
+import pytest
+
+from pytest_tarl.patching.changes import FilePatch, Hunk, MisfitError, Replacement
+from pytest_tarl.patching.patch import blob_id
+
+TWIN = b"x = 1\ny = 2\n"
+ABOVE, BETWEEN = b"a\nb\nc\nd\ne\n", b"g\nh\n"
+BEFORE = (
+    ABOVE + b"f\n" + BETWEEN.join((b"k\n", TWIN, TWIN, TWIN, b"z\n"))
+)  # TWIN stands at lines 9, 13 and 17
+AFTER = ABOVE + b"F\n" + BETWEEN.join((b"k\n", TWIN, b"x = 7\ny = 2\n", TWIN, b"z\n"))
+PATCH = FilePatch(
+    "node.py",
+    blob_id(BEFORE),
+    blob_id(AFTER),
+    (
+        Hunk(5, (("-", b"f\n"), ("+", b"F\n"), (" ", b"k\n"))),
+        Hunk(13, (("-", b"x = 1\n"), ("+", b"x = 7\n"), (" ", b"y = 2\n"))),
+    ),
+)
+
+
+def test_a_patch_on_its_own_file_gives_its_result_and_is_undone() -> None:
+    assert PATCH.exact(BEFORE) == PATCH.applied(BEFORE) == AFTER
+    assert PATCH.reverse.exact(AFTER) == PATCH.reverse.applied(AFTER) == BEFORE
+    assert PATCH.exact(BEFORE + b"\n") is None
+
+
+@pytest.mark.parametrize("lines", range(3, 12))
+def test_of_two_places_that_match_the_one_that_moved_as_far_as_the_hunk_before_is_changed(lines: int) -> None:
+    above = b"".join(b"# %d\n" % n for n in range(lines))
+    assert PATCH.applied(above + BEFORE) == above + AFTER
+
+
+def test_lines_that_were_removed_move_the_next_hunk_up() -> None:
+    moved = FilePatch("node.py", "", "", tuple(Hunk(hunk.start + 20, hunk.lines) for hunk in PATCH.hunks))
+    assert moved.applied(BEFORE) == AFTER
+
+
+def test_a_hunk_that_fits_nowhere_is_named_by_its_line() -> None:
+    with pytest.raises(MisfitError) as raised:
+        PATCH.applied(BEFORE.replace(b"x = 1", b"x = 3"))
+    assert raised.value.args == (14,)
+
+
+def test_a_hunk_is_not_placed_before_the_end_of_the_one_before() -> None:
+    both = FilePatch("node.py", "", "", (PATCH.hunks[1], PATCH.hunks[0]))
+    with pytest.raises(MisfitError):
+        both.applied(BEFORE)
+
+
+def test_replacements_name_changed_lines_without_context() -> None:
+    assert PATCH.replacements == (
+        Replacement(5, (b"f\n",), (b"F\n",)),
+        Replacement(13, (b"x = 1\n",), (b"x = 7\n",)),
+    )
+    assert PATCH.replacements[1].end == 14
