@@ -100,7 +100,14 @@ METHODS: Final[Mapping[str, Fact]] = {
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
 }
 
-OTHER_KINDS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.", "tf2.")
+OTHER_KINDS: Final = (
+    "rospy.Service",
+    "rclpy.create_service",
+    "rclpy.create_client",
+    "actionlib.",
+    "rclpy.action.",
+    "tf2.",
+)
 
 FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # handlers receive a response to fill
 

@@ -54,6 +54,10 @@ class Operations(Protocol[Ctx]):
         """Evaluate a call expression."""
         ...
 
+    def use_client(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value | None:
+        """Make or use a client of a service or action; None if the call does neither."""
+        ...
+
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:
         """Queue a function as root; its other arguments are unknown."""
         ...

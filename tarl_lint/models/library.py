@@ -63,6 +63,10 @@ def call_library(
         return ctx.ops.send(
             ctx, Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified)
         )
+    if ctx.parameter_names is not None:  # for a launch file
+        client = ctx.ops.use_client(ctx, None, Invocation(qualified, BOTTOM, arguments, frame, call))
+        if client is not None:
+            return client
     fact = _configured(ctx, qualified) or catalog.fact(qualified)
     if fact is not None:
         return ctx.ops.ros_call(ctx, Invocation(qualified, BOTTOM, arguments, frame, call, fact))
@@ -173,6 +177,22 @@ def call_method(
     call: ir.Call,
 ) -> Value:
     """Call a method of an object whose class is not analysed."""
+    if ctx.parameter_names is not None and target is not None:  # for a launch file
+        client = ctx.ops.use_client(ctx, target, Invocation(name, base, arguments, frame, call))
+        if client is not None:
+            return client
+    return _call_method(ctx, base, target, name, arguments, frame, call)
+
+
+def _call_method(
+    ctx: Interpreter,
+    base: Value,
+    target: Obj | None,
+    name: str,
+    arguments: Arguments,
+    frame: Frame,
+    call: ir.Call,
+) -> Value:
     kind = target.kind if target is not None else ""
     if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)

@@ -67,24 +67,24 @@ class _Namer:
         """Return an endpoint with the names of the launch; without names if one is unknown."""
         if not any(MARK in name for name in one.names):
             return one
-        written = tuple(substituted(name, self._written) or "" for name in one.names)
-        return replace(one, names=self._names(one.names), written=written)
+        return replace(one, names=self._names(one.names), written=tuple(map(self._in_code, one.names)))
 
     def finding(self, one: Finding) -> Finding:
         """Return a flow with the names of the launch."""
         flow = one.flow
         if flow is None or not any(MARK in name for name in (*flow.source.topics, *flow.sink.topics)):
             return one
-        source = replace(flow.source, topics=self._names(flow.source.topics))
-        sink = replace(flow.sink, topics=self._names(flow.sink.topics))
+        source, sink = flow.source, flow.sink
+        source = replace(source, topics=self._names(source.topics), id=self._in_code(source.id))
+        sink = replace(sink, topics=self._names(sink.topics), id=self._in_code(sink.id))
         return replace(one, flow=replace(flow, source=source, sink=sink))
 
     def _names(self, names: Sequence[str]) -> tuple[str, ...]:
         found = [substituted(name, self._value) for name in names]
         return () if None in found else tuple(sorted({one for one in found if one}))
 
-    def _written(self, number: int) -> str:
-        return f"$(param {self._parameters[number].name})"
+    def _in_code(self, text: str) -> str:
+        return substituted(text, lambda number: f"$(param {self._parameters[number].name})") or ""
 
     def _value(self, number: int) -> str | None:
         """Return the value of a parameter: from the launch file, else its default; None if it is unknown."""

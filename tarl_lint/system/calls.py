@@ -11,6 +11,29 @@ from tarl_lint.trees import last_name
 
 _PROXIES: Final = frozenset(["ServiceProxy"])
 _CLIENTS: Final = frozenset(["create_client"])
+CLIENTS: Final = (
+    "rospy.ServiceProxy",
+    "rclpy.create_client",
+    "actionlib.SimpleActionClient",
+    "actionlib.ActionClient",
+    "rclpy.action.ActionClient",
+)
+_SERVERS: Final = (
+    "rospy.Service",
+    "rclpy.create_service",
+    "actionlib.SimpleActionServer",
+    "actionlib.ActionServer",
+    "rclpy.action.ActionServer",
+)
+
+
+def part(api: str, *, sent: bool) -> str:
+    """Return which part of a service or action an end of a flow is, such as ` (request)`; empty for a topic."""
+    client = api.startswith(CLIENTS)
+    if not client and not api.startswith(_SERVERS):
+        return ""
+    parts = (" (goal)", " (result)") if "action" in api else (" (request)", " (response)")
+    return parts[0] if client is sent else parts[1]
 
 
 def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:

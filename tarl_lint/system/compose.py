@@ -8,6 +8,7 @@ from typing import Final
 
 from tarl_lint.model import Finding, Kind
 from tarl_lint.system.binding import bound, parameter_values
+from tarl_lint.system.calls import part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.workspace.bounded_files import UnreadableError
@@ -99,12 +100,13 @@ def _flows(instance: Instance) -> Iterator[tuple[Finding, str, str]]:
         flow = finding.flow
         if flow is None:
             continue
+        arriving, sent = part(flow.source.api, sent=False), part(flow.sink.api, sent=True)
         for source in flow.source.topics or (UNKNOWN,):
             for sink in flow.sink.topics or (UNKNOWN,):
                 yield (
                     finding,
-                    UNKNOWN if source == UNKNOWN else instance.resolve(source),
-                    UNKNOWN if sink == UNKNOWN else instance.resolve(sink),
+                    UNKNOWN if source == UNKNOWN else instance.resolve(source) + arriving,
+                    UNKNOWN if sink == UNKNOWN else instance.resolve(sink) + sent,
                 )
 
 

@@ -24,7 +24,7 @@ from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
-from tarl_lint.system.calls import called_services
+from tarl_lint.system.calls import CLIENTS, called_services
 from tarl_lint.system.fields import misfits
 from tarl_lint.system.imports import closed
 from tarl_lint.system.model import Endpoint, Interface
@@ -60,7 +60,7 @@ def interface(
     found = tuple(
         _marked(finding, flow, package, config)
         for finding, flow in zip(engine.findings(flows), flows, strict=True)
-        if _of_topics(flow)
+        if not {"tf2", ""} & {flow.source.api.partition(".")[0], flow.sink.api.partition(".")[0]}
     )
     quiet = closed(modules) and len(imported) == len(modules) - 1
     named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
@@ -124,7 +124,7 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
         if record.kind == "topic":
             qos = of_call(outlines[record.path], record.pos) if record.api.startswith("rclpy") else None
             yield Endpoint("subscribes", source.topics, source.type, source.span, qos, source.qualname)
-        elif record.kind == "service":
+        elif record.kind == "service" and not record.api.startswith(CLIENTS):
             yield Endpoint("serves", source.topics, source.type, source.span, None, source.qualname)
     yield from _publishers(machine, tracer, outlines)
 

@@ -98,7 +98,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     if it.name in catalog.GOAL_READERS:
         if server.handle:
             return heap.read(ctx, pointer(target), catalog.GOAL_FIELD)
-        return _accepted(ctx, server.record, it)
+        return arrived(ctx, server.record, it)
     if it.name in catalog.GOAL_REGISTERS:
         for callback in (*it.arguments[0], *it.arguments[1].values()):
             for function in callback.pts:
@@ -108,8 +108,8 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     return UNKNOWN
 
 
-def _accepted(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
-    """Return the goal that a server returns from `accept_new_goal`."""
+def arrived(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
+    """Return the message that a call returns, such as the goal from `accept_new_goal`."""
     key = (it.frame.id, it.call.slot)
     obj = record.messages.get(key)
     if obj is None:
@@ -129,5 +129,5 @@ def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
         return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)
     record.topics.add("/tf")
-    message = _accepted(ctx, record, it)
+    message = arrived(ctx, record, it)
     return Value(message.deps | call_contexts.all_used(ctx, it.arguments), message.pts)

@@ -1,0 +1,89 @@
+"""Models of clients of services and actions: requests and goals are sinks, responses and results are sources.
+
+Only runs for launch files follow them: there, the server is another node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from tarl_lint.catalog import Fact
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import recency
+from tarl_lint.memory.values import Obj, Value, pointer
+from tarl_lint.models.ros import publications, services
+from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
+
+MADE: Final[Mapping[str, Fact]] = {
+    "rospy.ServiceProxy": Fact("client", "rospy.ServiceProxy", (0, "name"), (1, "service_class")),
+    "actionlib.SimpleActionClient": Fact(
+        "client", "actionlib.SimpleActionClient", (0, "ns"), (1, "ActionSpec")
+    ),
+    "actionlib.ActionClient": Fact("client", "actionlib.ActionClient", (0, "ns"), (1, "ActionSpec")),
+    "rclpy.action.ActionClient": Fact(
+        "client", "rclpy.action.ActionClient", (2, "action_name"), (1, "action_type")
+    ),
+    "rclpy.action.client.ActionClient": Fact(
+        "client", "rclpy.action.ActionClient", (2, "action_name"), (1, "action_type")
+    ),
+}
+BY_METHOD: Final[Mapping[str, Fact]] = {
+    "create_client": Fact("client", "rclpy.create_client", (1, "srv_name"), (0, "srv_type"))
+}
+SENDING: Final = frozenset(
+    ["__call__", "call", "call_async", "send_goal", "send_goal_and_wait", "send_goal_async"]
+)
+READING: Final = frozenset(["get_result"])
+
+
+def use_client(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value | None:
+    """Make a client, or call one of its methods or the client itself; None if the call is none of these."""
+    table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
+    if name in table:
+        return _made(ctx, Invocation(name, it.base, it.arguments, it.frame, it.call, table[name]))
+    return _used(ctx, target, it) if target is not None else None
+
+
+def _made(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new client."""
+    obj = recency.intern(ctx, "lib", (it.frame.id, it.statement, "client", it.call.slot, *it.frame.turn))
+    kind: Kind = "action" if "action" in it.fact.api else "service"
+    if not isinstance(obj.info, Publisher):
+        obj.info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)
+        obj.info.kind, obj.info.methods = kind, SENDING
+    obj.info.topics.update(publications.topics(ctx, it))
+    obj.info.types.update(publications.type_names(it.argument(it.fact.type)))
+    return pointer(obj)
+
+
+def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
+    info = target.info
+    if not isinstance(info, Publisher) or info.methods is not SENDING:
+        return None
+    if it.name in READING:
+        return _answer(ctx, info, it)
+    if it.name not in SENDING:
+        return None
+    publications.send(ctx, it, info)
+    return _answer(ctx, info, it)
+
+
+def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
+    """Return the response of a service, or the result of an action; it also depends on the request."""
+    frame, key = it.frame, (it.frame.program.path, it.call.pos)
+    record = ctx.sources.get(key)
+    if record is None and frame.statement is not None:
+        module = ctx.modules[key[0]].name
+        record = SourceRecord(*key, info.api, module, publications.qualname(frame), frame.statement, frame)
+        record.kind = info.kind
+        ctx.sources[key] = record
+    asked = call_contexts.all_used(ctx, it.arguments)
+    if record is None:
+        return Value(asked)
+    record.topics.update(info.topics)
+    record.types.update(info.types)
+    answer = services.arrived(ctx, record, it)
+    return Value(answer.deps | asked, answer.pts)

@@ -1,0 +1,150 @@
+"""Flows across nodes through services and actions: requests, responses, goals and results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.lint.test_parameter_names import arm, node  # noqa: F401 - `arm` is a fixture
+from tests.lint.test_system import flows, run, write
+
+CLIENT = """\
+#!/usr/bin/env python3
+import rospy
+from geometry_msgs.msg import Twist
+from robot.srv import Plan
+from sensor_msgs.msg import LaserScan
+
+class Pilot:
+    def __init__(self):
+        self.plan = rospy.ServiceProxy(rospy.get_param("~planner", "plan"), Plan)
+        self.out = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        rospy.Subscriber("scan", LaserScan, self.on_scan)
+
+    def on_scan(self, scan):
+        answer = self.plan(min(scan.ranges))
+        command = Twist()
+        command.linear.x = answer.speed
+        self.out.publish(command)
+
+rospy.init_node("pilot")
+Pilot()
+rospy.spin()
+"""
+SERVER = """\
+#!/usr/bin/env python3
+import rospy
+from nav_msgs.msg import Odometry
+from robot.srv import Plan, PlanResponse
+from std_msgs.msg import Float64
+
+speed = 0.0
+def on_odom(odom):
+    global speed
+    speed = odom.twist.twist.linear.x
+
+def plan(request):
+    debug.publish(request.distance)
+    return PlanResponse(speed=speed)
+
+rospy.init_node("planner")
+debug = rospy.Publisher("debug", Float64, queue_size=1)
+rospy.Subscriber("odom", Odometry, on_odom)
+rospy.Service("plan", Plan, plan)
+rospy.spin()
+"""
+ACTIONS = """\
+#!/usr/bin/env python3
+import rclpy
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import NavigateToPose
+
+class Sender(Node):
+    def __init__(self):
+        super().__init__("sender")
+        self.client = ActionClient(self, NavigateToPose, "navigate")
+        self.create_subscription(PoseStamped, "goal_pose", self.on_pose, 10)
+
+    def on_pose(self, pose):
+        goal = NavigateToPose.Goal()
+        goal.pose = pose
+        self.client.send_goal_async(goal)
+
+def main():
+    rclpy.init()
+    rclpy.spin(Sender())
+
+if __name__ == "__main__":
+    main()
+"""
+ACTION_SERVER = """\
+#!/usr/bin/env python3
+import rclpy
+from rclpy.action import ActionServer
+from rclpy.node import Node
+from geometry_msgs.msg import Twist
+from nav2_msgs.action import NavigateToPose
+
+class Navigator(Node):
+    def __init__(self):
+        super().__init__("navigator")
+        self.out = self.create_publisher(Twist, "cmd_vel", 10)
+        self.server = ActionServer(self, NavigateToPose, "navigate", self.execute)
+
+    def execute(self, handle):
+        command = Twist()
+        command.linear.x = handle.request.pose.pose.position.x
+        self.out.publish(command)
+        handle.succeed()
+        return NavigateToPose.Result()
+
+def main():
+    rclpy.init()
+    rclpy.spin(Navigator())
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+def services(arm: Path, body: str) -> None:  # noqa: F811
+    files = {"arm/scripts/relay.py": CLIENT, "arm/scripts/server.py": SERVER, "arm/scripts/send.py": ACTIONS,
+             "arm/scripts/navigate.py": ACTION_SERVER, "arm/launch/a.launch": f"<launch>{body}</launch>"}  # fmt: skip
+    write(arm, files)
+
+
+def server(name: str, script: str = "server.py") -> str:
+    return f'<node pkg="arm" type="{script}" name="{name}"><remap from="plan" to="better"/></node>'
+
+
+def test_a_chain_passes_through_a_service(arm, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
+    services(arm, node("pilot", '<param name="planner" value="better"/>') + server("planner"))
+    assert flows(run(capsys, "--launch", "a.launch")[1]) == [
+        "/odom → /planner → /better (response) → /pilot → /cmd_vel  explicit",
+        "/scan → /pilot → /better (request) → /planner → /debug  explicit",
+        "/scan → /pilot → /cmd_vel  explicit",
+    ]
+    out = run(capsys, "--launch", "a.launch", "--from", "/odom", "--to", "/cmd_vel", "--show-paths")[1]
+    assert "answer = self.plan(min(scan.ranges))" in out
+    assert "return PlanResponse(speed=speed)" in out
+
+
+def test_a_service_with_another_name_is_another_service(arm, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
+    services(arm, node("pilot") + server("planner"))
+    assert flows(run(capsys, "--launch", "a.launch", "--from", "/odom", "--to", "/cmd_vel")[1]) == []
+
+
+def test_a_chain_passes_through_an_action(arm, capsys: pytest.CaptureFixture[str]) -> None:  # noqa: F811
+    services(arm, server("sender", "send.py") + server("navigator", "navigate.py"))
+    assert flows(run(capsys, "--launch", "a.launch")[1]) == [
+        "/goal_pose → /sender → /navigate (goal) → /navigator → /cmd_vel  explicit"
+    ]
+
+
+@pytest.mark.parametrize("form", ["svg", "mermaid", "json"])
+def test_pictures_and_json_show_services(arm, capsys: pytest.CaptureFixture[str], form: str) -> None:  # noqa: F811
+    services(arm, node("pilot", '<param name="planner" value="better"/>') + server("planner"))
+    assert "/better (request)" in run(capsys, "--launch", "a.launch", "--format", form)[1]
