@@ -1,12 +1,12 @@
 """Boundaries that a stress run finds, against an exhaustive grid, and how often it reports one where nothing breaks.
 
-    python benchmarks/stress.py [TASK ...] [--harmless 25] [--results FILE]
+    python benchmarks/stress.py [TASK ...] [--harmless 25] [--grids FILE]
 
 Each task of benchmarks/drift, and the examples with one number as drift, has the direction from its nominal value to
 its drift. The grid has 41 values, each with 40 episodes on seeds of its own; its boundary is where the margin first
 crosses zero, interpolated. A line per task: both boundaries in shares of the range, their distance, the episodes of
-both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary. With `--results`,
-each task's result is added to a JSON Lines file, and tasks that it holds are not run again.
+both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary. With `--grids`,
+each task's boundary of the grid is added to a JSON Lines file, and those that it holds are not measured again.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -150,7 +150,26 @@ class Compared:
         )
 
 
-def compare(stage: Stage, harmless: int) -> Compared:
+@dataclass(frozen=True)
+class Grids:
+    """The grids' boundaries by task, kept in a JSON Lines file."""
+
+    path: Path | None
+
+    def boundary(self, task: str, measure: Callable[[], float | None]) -> float | None:
+        """Return a task's boundary; measure it if the file does not hold it."""
+        lines = self.path.read_text().splitlines() if self.path is not None and self.path.exists() else []
+        known = dict(map(json.loads, lines))
+        if task not in known:
+            known[task] = measure()
+            if self.path is not None:
+                with self.path.open("a") as out:
+                    out.write(f"{json.dumps([task, known[task]])}\n")
+        found: float | None = known[task]
+        return found
+
+
+def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
     """Compare a stress run of one task with the grid."""
     text = nominal_of(stage)
     nominal, far = float(text), float(stage.marked.drifts[stage.drift].value)
@@ -158,7 +177,7 @@ def compare(stage: Stage, harmless: int) -> Compared:
     given = recorded(rollout, nominal)
     budget = round(SHARE * GRID * EPISODES)
     curve, episodes = stressed(rollout, given, span_of(nominal, far), 1, budget)
-    grid = exhaustive(rollout, given, nominal, far)
+    grid = grids.boundary(stage.task, lambda: exhaustive(rollout, given, nominal, far))
     found = curve.boundary
     false = 0
     if harmless:
@@ -184,37 +203,22 @@ def agrees(one: Compared) -> bool:
     return abs(one.grid - one.found) <= NEAR
 
 
-def known(path: Path | None) -> dict[str, Compared]:
-    """Return the results of a file by task."""
-    lines = path.read_text().splitlines() if path is not None and path.exists() else []
-    return {task: Compared(**one) for task, one in map(json.loads, lines)}
-
-
-def keep(path: Path | None, task: str, one: Compared) -> None:
-    """Add a result to a file."""
-    if path is not None:
-        with path.open("a") as out:
-            out.write(f"{json.dumps([task, asdict(one)])}\n")
-
-
 def main() -> None:
     """Print a line per task, and the sums."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--harmless", type=int, default=0, help="runs per task where nothing breaks")
-    parser.add_argument("--results", type=Path, help="JSON Lines file of results to continue")
+    parser.add_argument("--grids", type=Path, help="JSON Lines file of the grids' boundaries")
     arguments = parser.parse_args()
     print("| task | grid | stress | interval | contains | episodes | of the grid | false |")
     print("|---|---|---|---|---|---|---|---|")
-    done = known(arguments.results)
+    every, grids = [], Grids(arguments.grids)
     for task in arguments.tasks or (*TASKS, *EXAMPLES):
-        if task not in done:
-            done[task] = visit(
-                task, lambda stage: compare(stage, arguments.harmless), EXAMPLES.get(task), HERE / "drift"
-            )
-            keep(arguments.results, task, done[task])
-        print(f"| {task} | {done[task].line} |", flush=True)
-    every = list(done.values())
+        one: Compared = visit(
+            task, lambda stage: compare(stage, arguments.harmless, grids), EXAMPLES.get(task), HERE / "drift"
+        )
+        every.append(one)
+        print(f"| {task} | {one.line} |", flush=True)
     near = sum(map(agrees, every))
     print(f"\nWithin {NEAR:.0%} of the range: {near} of {len(every)}.")
     print(

@@ -17,10 +17,10 @@ from pytest_tarl.stressing.findings import CONFIDENCE, Curve
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
-SHARES = (0.7, 0.3)  # of the risk: of the first and second value, and of the tests at each, see `holds`
+SHARES = (0.85, 0.15)  # of the risk: of the first and second value, and of the tests at each, see `holds`
 SECOND = 0.5  # the second value, as a share of the first
 BATCH = 8  # episodes after which a test that cannot succeed any more ends
-PAIRED = 32  # episodes that bound the loss, unless the marker declares total_range
+PAIRED = (16, 32)  # numbers of episodes that bound the loss, unless the marker declares total_range
 
 
 def hold(curve: Curve, evaluator: Evaluator, confirmed_at: float) -> None:
@@ -30,21 +30,23 @@ def hold(curve: Curve, evaluator: Evaluator, confirmed_at: float) -> None:
     the budget does not suffice are left out.
     """
     risk = 1.0 - CONFIDENCE - confirmed_at
-    for t, share in zip(_values(curve, evaluator, risk), SHARES, strict=True):
-        if t > 0.0 and holds(curve.ray, t, evaluator, share * risk):
+    values, paired = _values(curve, evaluator, risk)
+    for t, share in zip(values, SHARES, strict=True):
+        if t > 0.0 and holds(curve.ray, t, evaluator, share * risk, paired):
             curve.held = t
             return
 
 
-def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float) -> bool:
+def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) -> bool:
     """Return whether fresh seeds show at `risk` that the guarantee holds at a value of a ray.
 
-    The first test allows no failed episode; if there is one, a second and longer test allows it.
+    The first test allows no failed episode; if there is one, a second and longer test allows it. `paired` episodes
+    bound the loss, or all if the marker declares total_range.
     """
     given, point, nominal = evaluator.guarantee, ray.point(t), evaluator.space.nominal
     for allowed, share in enumerate(SHARES):
         episodes = least(given.rate, allowed, share * risk)
-        paired = episodes if given.declared else min(episodes, PAIRED)
+        paired = episodes if given.declared else min(episodes, paired)
         if not evaluator.affords(point, episodes, paired):
             return False
         for size in sorted({*range(BATCH, episodes, BATCH), paired, episodes}):
@@ -68,14 +70,15 @@ def least(share: float, failed: int, risk: float) -> int:
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]
 
 
-def _values(curve: Curve, evaluator: Evaluator, risk: float) -> tuple[float, float]:
-    """Return the values to test, chosen from the search's episodes only."""
+def _values(curve: Curve, evaluator: Evaluator, risk: float) -> tuple[tuple[float, float], int]:
+    """Return the values to test and how many episodes bound the loss, chosen from the search's episodes only."""
     if not curve.ray.continuous:
-        return 1.0, 0.0
+        return (1.0, 0.0), PAIRED[0]
     given = evaluator.guarantee
     first = SHARES[0] ** 2 * risk
     if curve.bracket is None:
-        return 1.0, SECOND
+        return (1.0, SECOND), PAIRED[-1]
     near, model = curve.bracket[0], Model(curve.evidence, given.tolerance)
-    t = min(near, model.holding(least(given.rate, 0, first), PAIRED))
-    return (t, SECOND * t) if t > 0.0 else (SECOND * near, 0.0)
+    few, many = (min(near, model.holding(least(given.rate, 0, first), one)) for one in PAIRED)
+    paired = PAIRED[0] if few >= many else PAIRED[-1]
+    return ((many, SECOND * many) if many > 0.0 else (SECOND * near, 0.0)), paired

@@ -125,7 +125,7 @@ def test_values_at_which_the_guarantee_fails_are_rarely_shown_to_hold() -> None:
     shown = 0
     for seed in range(20):
         evaluator = evaluator_of(rare_failures(0.5, 0.05), SPACE, seed=seed)
-        shown += holds(rays(SPACE, {})[0], 0.51, evaluator, 0.05)
+        shown += holds(rays(SPACE, {})[0], 0.51, evaluator, 0.05, 16)
     assert shown <= 4  # exceeded with probability 0.003 if each is shown at 5 %
 
 
