@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-JUDGING = ("drift_judging", "drift_judging_2", "drift_judging_3", "drift_structure")
+JUDGING = ("drift_judging", "drift_judging_2", "drift_judging_3", "drift_judging_4", "drift_structure")
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 TASKS = sorted(
     test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
@@ -111,20 +111,55 @@ def test_the_third_set_has_every_kind_and_says_where_drifts_occur() -> None:
     assert all(known["practice"] for known in third)
 
 
-def rates(by_hand: bool) -> dict[str, tuple[float, float]]:
-    """Return the success of each task of the third set in the designed and in the drifted world."""
-    command = [sys.executable, BENCHMARKS / "drift" / "worlds.py", "--folder", BENCHMARKS / "drift_judging_3"]
-    command += ["--by-hand"] if by_hand else []
+def test_the_fourth_set_has_every_kind_and_says_where_drifts_occur() -> None:
+    fourth = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_4"]
+    assert sorted(known["kind"] for known in fourth) == [
+        "helper",
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "structure",
+        "two constants",
+        "unrepairable",
+    ]
+    assert all(known["practice"] for known in fourth)
+
+
+Rates = dict[str, tuple[float, float]]
+
+
+def worlds(folder: str, *options: str) -> tuple[Rates, Rates]:
+    """Return success and average total reward of a set's tasks, each in the designed and in the drifted world."""
+    command = [sys.executable, BENCHMARKS / "drift" / "worlds.py", "--folder", BENCHMARKS / folder, *options]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=BENCHMARKS.parent)
     rows = [[cell.strip() for cell in line.split("|")] for line in done.stdout.splitlines() if " / " in line]
-    found = {row[1]: row[5].split(" / ") for row in rows[1:]}
-    return {task: (float(designed), float(drifted)) for task, (designed, drifted) in found.items()}
+    success, reward = (
+        {row[1]: (float(pair[0]), float(pair[1])) for row in rows[1:] for pair in [row[column].split(" / ")]}
+        for column in (5, 6)
+    )
+    return success, reward
+
+
+def test_a_repair_by_hand_restores_a_task_of_the_fourth_set() -> None:
+    success, _ = worlds("drift_judging_4", "press_brake", "--by-hand", "--episodes", "2")
+    assert success == {"press_brake": (1.0, 1.0)}
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it() -> None:
-    tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
-    before, after = rates(by_hand=False), rates(by_hand=True)
+def test_worlds_of_the_fourth_set_are_deterministic() -> None:
+    once, again = (worlds("drift_judging_4", "--episodes", "5") for _ in range(2))
+    assert once == again
+    assert len(once[0]) == 10
+
+
+@pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
+@pytest.mark.parametrize("folder", ["drift_judging_3", "drift_judging_4"])
+def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
+    tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == folder]
+    before, after = worlds(folder)[0], worlds(folder, "--by-hand")[0]
     assert set(before) == set(after) == {task.name for task in tasks}
     for task in tasks:
         designed, drifted = before[task.name]
