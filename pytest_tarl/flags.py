@@ -66,6 +66,11 @@ FLAGS = (
         type=int,
         default=1000,
     ),
+    Flag(
+        "--tarl-resume",
+        "continue an interrupted run: take its finished episodes, and run the others",
+        asks=True,
+    ),
     Flag("--tarl-seed", "seed of all random numbers (default 0)", metavar="N", type=int, default=0),
     Flag(
         "--tarl-episodes",

@@ -24,6 +24,7 @@ MODES = ("record", "online", "repair", "stress")
 # Options of some modes only: runs in other modes ignore them in the ini file
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online", "stress"),
+    "resume": ("record", "online", "stress"),
     "search": ("repair",),
     "localize": ("repair",),
     "strict": ("online", "stress"),

@@ -100,11 +100,13 @@ class Mission:
         """Return the folder that everything is written to."""
         return self.root / ".tarl"
 
-    def interrupted(self, done: int, total: int) -> str:
-        """Return one line on what an interrupted recording left on disk."""
+    def interrupted(self, done: int, total: int, kept: str) -> str:
+        """Return one line on what an interrupted run left on disk; `kept` is a sentence on its episodes."""
+        if self.options.mode != "record":
+            return f"Interrupted in episode {done + 1} of {total}. {kept}".rstrip()
         path = self.fixture_path
-        left = f"{path.relative_to(self.root)} is unchanged" if path.exists() else "nothing was written"
-        return f"Interrupted in episode {done + 1} of {total}: {left}."
+        left = f"{path.relative_to(self.root)} is unchanged" if path.exists() else "no recording was written"
+        return f"Interrupted in episode {done + 1} of {total}: {left}. {kept}".rstrip()
 
     def _analysis(self) -> Analysis:
         paths = [(self.folder / node).resolve() for node in self.designation.nodes]

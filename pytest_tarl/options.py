@@ -47,6 +47,7 @@ class Options:
     comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
     stress_budget: int = 1000  # limit of a stress run, in episodes
+    resume: bool = False  # whether to take the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
     LOOKS = 3
@@ -131,6 +132,7 @@ def options(given: Mapping[str, Any]) -> Options:
         stress_budget=number_within(
             "--tarl-stress-budget", "it", given["stress-budget"], int, 32, MOST_EPISODES
         ),
+        resume=given["resume"],
     )
 
 
@@ -140,11 +142,23 @@ def _check_modes(given: Mapping[str, Any]) -> None:
         _check_stress(given)
     elif not (given["record"] or given["online"] or given["repair"]):
         stray = next(
-            (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
+            (
+                name
+                for name in ("drift", "search", "localize", "strict", "log", "bag", "holm", "resume")
+                if given[name]
+            ),
             "drift",
         )
-        also = ", or --tarl-record for a permanent drift" if stray == "drift" else ""
+        also = {"drift": ", or --tarl-record for a permanent drift", "resume": " or --tarl-record"}.get(
+            stray, ""
+        )
         raise SettingsError(f"--tarl-{stray} needs --tarl-online{also}.")
+    recorded = next((one for one in ("log", "bag") if given[one]), None)
+    if given["resume"] and recorded is not None:
+        raise SettingsError(
+            f"--tarl-resume continues simulated episodes, but --tarl-{recorded} reads recorded missions: remove "
+            "--tarl-resume."
+        )
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not given["online"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -66,6 +66,9 @@ class Pending(Protocol):
     def cancel(self) -> bool:
         """Cancel the episode; return whether it will not run."""
 
+    def then(self, call: Callable[[EpisodeRun], None]) -> None:
+        """Call a function with the result as soon as there is one, perhaps in another thread; without one, never."""
+
 
 class Rollout(Protocol):
     """Run episodes of one test, `workers` in parallel."""
@@ -87,10 +90,18 @@ class Deferred:
 
     rollout: Rollout
     plan: EpisodePlan
+    _calls: list[Callable[[EpisodeRun], None]] = field(default_factory=list, repr=False, compare=False)
 
     def result(self) -> EpisodeRun:
         """Run the episode and return its result."""
-        return self.rollout(self.plan)
+        run = self.rollout(self.plan)
+        for call in self._calls:
+            call(run)
+        return run
+
+    def then(self, call: Callable[[EpisodeRun], None]) -> None:
+        """Call a function with the result once the episode has run."""
+        self._calls.append(call)
 
     def cancel(self) -> bool:
         """Cancel the episode, which has not run."""

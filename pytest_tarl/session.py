@@ -34,8 +34,10 @@ if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
     from pytest_tarl.accounts import Account, Compared
+    from pytest_tarl.designation import Designation
     from pytest_tarl.missions import Other
     from pytest_tarl.repairing.merge_patches import Joined
+    from pytest_tarl.resuming.run import ResumableRun
     from pytest_tarl.rollout import Rollout
 
 PLAIN_WIDTH = 80  # columns if there is no terminal, as under `-p no:terminal`
@@ -61,6 +63,7 @@ class TarlSession:
         self._ended: list[_Ended] = []  # tests that have run but are not reported yet
         self._designated: tuple[pytest.Item, ...] = ()
         self._unmarked = False  # whether tests were collected, but none with the marker
+        self._resumable: ResumableRun | None = None
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Parametrize by drift scenario: `test_delivers[mud]`; `[online]` without one."""
@@ -168,6 +171,11 @@ class TarlSession:
         """Write the reports in one section."""
         self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
+    def pytest_sessionfinish(self, exitstatus: int) -> None:
+        """Remove the kept episodes of tests that are finished, unless the run was interrupted."""
+        if self._resumable is not None:
+            self._resumable.ended(exitstatus)
+
     def pytest_unconfigure(self) -> None:
         """End the output with the commands that apply the patches, or with a warning that nothing was compared."""
         if not self._has_terminal():
@@ -191,6 +199,7 @@ class TarlSession:
     def _run(self, item: pytest.Function) -> Account | Compared:
         from pytest_tarl.accounts import Account
         from pytest_tarl.missions import Mission, NoFixtureError
+        from pytest_tarl.resuming.run import ResumableRun
 
         marked = designated(item)
         if marked is None:
@@ -215,26 +224,38 @@ class TarlSession:
             tell=self._say,
             others=self._others(item),
         )
+        self._resumable = self._resumable or ResumableRun()
+        kept = self._resumable.test(item, marked, self.options, self._say)
         try:
-            with ExitStack() as executors:
+            with ExitStack() as opened:
+                opened.callback(kept.close)
 
                 def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
-                    if self.options.workers == 1 and self.options.cluster is None:
-                        return ItemRollout(item, replace(marked, sensors=sensors), instruments)
-                    from pytest_tarl.workers.executor import opened
-
-                    return executors.enter_context(opened(item, instruments, sensors, self.options))
+                    rollout = self._rollout(item, replace(marked, sensors=sensors), instruments, opened)
+                    return kept.keeping(rollout, instruments, sensors)
 
                 outcome = mission.run(rollout_with)
+                kept.finished = True
+                if outcome.interrupted:
+                    self._say(kept.interrupted())
                 return outcome if isinstance(outcome, Account) or self.options.holm else outcome.told()
         except NoFixtureError as missing:
             if self.options.strict:
                 raise
             pytest.skip(str(missing))
         except KeyboardInterrupt:
-            if self.options.mode == "record":
-                self._say(mission.interrupted(progress.done, progress.total))
+            self._say(mission.interrupted(progress.done, progress.total, kept.interrupted()))
             raise
+
+    def _rollout(
+        self, item: pytest.Function, marked: Designation, instruments: Instruments, opened: ExitStack
+    ) -> Rollout:
+        """Return what runs the episodes: this process, or workers that end with the test."""
+        if self.options.workers == 1 and self.options.cluster is None:
+            return ItemRollout(item, marked, instruments)
+        from pytest_tarl.workers import executor
+
+        return opened.enter_context(executor.opened(item, instruments, marked.sensors, self.options))
 
     def _others(self, item: pytest.Function) -> tuple[Other, ...]:
         """Return the other designated tests of the run, each once regardless of its drifts."""

@@ -8,7 +8,8 @@ import zlib
 from collections.abc import Iterator
 from typing import BinaryIO
 
-from pytest_tarl.observing.frames import HEAD, LARGEST, Record, unpack_head
+from pytest_tarl.framed import HEAD, unpack_head
+from pytest_tarl.observing.frames import LARGEST, Record
 
 BLOCK = 1 << 15  # bytes read at once, about 200 records
 _DECODED = json.JSONDecoder().raw_decode

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from pytest_tarl.framed import HEAD
 from pytest_tarl.monitoring.assembling import Assembly, Expected
 from pytest_tarl.monitoring.blocks import end_of, next_block
 from pytest_tarl.monitoring.mission import Mission, Progress, mark
-from pytest_tarl.observing.frames import HEAD, MAGIC, next_record
+from pytest_tarl.observing.frames import MAGIC, next_record
 
 
 @dataclass

@@ -14,19 +14,16 @@ import fcntl
 import glob
 import json
 import os
-import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from pytest_tarl.errors import LogError
+from pytest_tarl.framed import framed, next_payload
 
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
-_HEAD = struct.Struct("<II")
-HEAD = _HEAD.size  # bytes before a record's payload
-unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
 LARGEST = 1 << 26  # maximum size in bytes of a record; a larger length is damaged
 
 Record = dict[str, Any]
@@ -100,8 +97,7 @@ class LogFile:
 
 def encoded(record: Record) -> bytes:
     """Return the bytes of a record in the file."""
-    payload = zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1)
-    return _HEAD.pack(len(payload), zlib.crc32(payload)) + payload
+    return framed(zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1))
 
 
 def set_aside(path: Path) -> list[Path]:
@@ -145,14 +141,7 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
 
 def next_record(file: BinaryIO) -> bytes | None:
     """Return the payload of the record at the file's position, None if it is incomplete."""
-    head = file.read(HEAD)
-    if len(head) < HEAD:
-        return None
-    length, checksum = _HEAD.unpack(head)
-    if length > LARGEST:
-        return None
-    payload = file.read(length)
-    return payload if len(payload) == length and zlib.crc32(payload) == checksum else None
+    return next_payload(file, LARGEST)
 
 
 def _foreign(path: Path) -> LogError:

@@ -6,14 +6,14 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from pytest_tarl.errors import RecordingError
+from pytest_tarl.errors import RecordingError, TarlError
 from pytest_tarl.options import Options
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
@@ -104,6 +104,17 @@ class Answer:
     def cancel(self) -> bool:
         """Cancel the episode unless a worker has begun it."""
         return self.future.cancel()
+
+    def then(self, call: Callable[[EpisodeRun], None]) -> None:
+        """Call a function with the result when the episode ends, in the thread that receives it."""
+
+        def ended(future: Future[bytes]) -> None:
+            if future.cancelled() or future.exception() is not None:
+                return
+            with suppress(TarlError):  # `result` raises it
+                call(protocol.answered(self.plan, future.result()))
+
+        self.future.add_done_callback(ended)
 
 
 @contextmanager

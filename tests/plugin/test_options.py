@@ -36,6 +36,7 @@ FLAGS: dict[str, Any] = {
     "strict": False,
     "stress": False,
     "stress-budget": 1000,
+    "resume": False,
 }
 
 

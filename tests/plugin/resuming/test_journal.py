@@ -1,0 +1,116 @@
+"""The file of kept episodes: whatever an interruption leaves of it, all whole episodes can be taken."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl.resuming.journal import KEY, Journal, TakenError, conditions_of
+
+CONDITIONS = {"keeper.py": "a1", "--tarl-seed": "0"}
+
+
+def key(number: int) -> bytes:
+    return number.to_bytes(KEY, "big")
+
+
+def written(path: Path, episodes: list[tuple[int, bytes]]) -> Path:
+    path.unlink(missing_ok=True)
+    journal = Journal(path, CONDITIONS)
+    for number, episode in episodes:
+        journal.keep(key(number), episode)
+    journal.close()
+    return path
+
+
+def continued(path: Path) -> Journal:
+    journal = Journal(path, CONDITIONS)
+    journal.resume()
+    return journal
+
+
+@settings(max_examples=25)
+@given(
+    episodes=st.lists(st.tuples(st.integers(0, 3), st.binary(max_size=40)), min_size=1, max_size=6),
+    kept=st.floats(0, 1),
+    rest=st.binary(max_size=12),
+)
+def test_a_file_cut_off_anywhere_keeps_its_whole_episodes_and_is_continued(
+    tmp_path_factory: pytest.TempPathFactory, episodes: list[tuple[int, bytes]], kept: float, rest: bytes
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "cut.episodes"
+    whole = written(path, episodes).read_bytes()
+    ends = [len(written(path, episodes[:n]).read_bytes()) for n in range(1, len(episodes) + 1)]
+    cut = ends[0] + int(kept * (len(whole) - ends[0]))
+    path.write_bytes(whole[:cut] + (rest if cut < len(whole) else b""))
+    survivors = sum(end <= cut for end in ends)
+    assert conditions_of(path) == (CONDITIONS, survivors)
+    journal = continued(path)
+    journal.keep(key(9), b"new")
+    journal.close()
+    again = continued(path)
+    counts: dict[int, int] = {}
+    for number, episode in [*episodes[:survivors], (9, b"new")]:
+        assert again.taken(key(number), counts.get(number, 0)) == episode
+        counts[number] = counts.get(number, 0) + 1
+    assert all(again.taken(key(number), count) is None for number, count in counts.items())
+    assert again.episodes == survivors + 1
+    again.close()
+
+
+@pytest.mark.parametrize("content", [b"", b"tarl epis", b"something else\n", b"tarl episodes 1\n"])
+def test_a_file_without_episodes_keeps_none(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "a.episodes"
+    path.write_bytes(content)
+    assert conditions_of(path) is None
+
+
+def test_a_new_run_replaces_the_file_at_its_first_episode(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.episodes", [(1, b"old"), (2, b"old")])
+    journal = Journal(path, {"keeper.py": "b2"})
+    assert conditions_of(path) == (CONDITIONS, 2)
+    journal.keep(key(1), b"new")
+    journal.close()
+    assert conditions_of(path) == ({"keeper.py": "b2"}, 1)
+
+
+def test_two_runs_do_not_write_one_file(tmp_path: Path) -> None:
+    pytest.importorskip("fcntl")
+    path = written(tmp_path / "a.episodes", [(1, b"x")])
+    first = continued(path)
+    with pytest.raises(TakenError):
+        continued(path)
+    second = Journal(path, CONDITIONS)
+    second.keep(key(2), b"y")
+    assert isinstance(second.problem, TakenError)
+    first.close()
+    assert conditions_of(path) == (CONDITIONS, 1)
+
+
+def test_a_full_disk_stops_keeping_but_not_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    journal = Journal(tmp_path / "a.episodes", CONDITIONS)
+    monkeypatch.setattr("pytest_tarl.resuming.journal.os.fsync", full)
+    journal.keep(key(1), b"x")
+    journal.keep(key(2), b"y")
+    assert journal.problem is not None
+    assert journal.problem.errno == errno.ENOSPC
+    journal.close()
+
+
+def test_a_removed_file_takes_its_empty_folder_along(tmp_path: Path) -> None:
+    first, second = (
+        Journal(tmp_path / "unfinished" / name, CONDITIONS) for name in ("a.episodes", "b.episodes")
+    )
+    first.keep(key(1), b"x")
+    second.keep(key(1), b"x")
+    first.remove()
+    assert second.path.exists()
+    second.remove()
+    assert not second.path.parent.exists()
