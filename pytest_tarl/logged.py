@@ -28,9 +28,10 @@ _COLUMNS = {"site": "int32", "flow": "float64", "cell": "int32", "step": "int32"
 
 @dataclass
 class Mission:
-    """A mission while its chunks are being read."""
+    """A mission while its chunks are being read; `time` is its start in seconds since 1970."""
 
     sites: Sequence[str]
+    time: float = 0.0
     chunks: list[Record] = field(default_factory=list)
     passed: bool = True
     failure: str = ""
@@ -51,7 +52,7 @@ def missions(path: Path, fixture: Fixture) -> list[Mission]:
             sites = record["sites"]
             _check(record, path, fixture)
         elif kind == "mission":
-            found.append(Mission(sites))
+            found.append(Mission(sites, record["time"]))
         elif kind == "steps" and found:
             found[-1].chunks.append(record)
             found[-1].followed.add(record)

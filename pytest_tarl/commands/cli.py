@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from pytest_tarl.commands.fleet import add_merge
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.commands.robots import add_observe, add_watch
 from pytest_tarl.errors import RefusedError, TarlError
@@ -86,6 +87,7 @@ def parser() -> Parser:
     summary.set_defaults(run=_summary)
     add_observe(commands)
     add_watch(commands)
+    add_merge(commands)
     _add_patches(commands)
     for command in commands.choices.values():
         command.set_defaults(parser=command, needs=missing_extra)

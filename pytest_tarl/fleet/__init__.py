@@ -1,0 +1,1 @@
+"""Missions of many robots: recordings and logs merged into one recording."""

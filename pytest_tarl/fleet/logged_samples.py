@@ -1,0 +1,60 @@
+"""Missions of logs as samples, each identified by its content."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+from pytest_tarl.errors import LogError
+from pytest_tarl.instrumentation.sites import Plan
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.logged import Mission, missions, trace
+
+BYTES = 8  # of a mission's identity, which takes the place of an episode's seed
+
+
+def logged_samples(log: Path, fixture: Fixture) -> Iterator[Sample]:
+    """Yield the statistics of each finished mission with rewards of a log and of its rotated parts.
+
+    Raise LogError if the log does not belong to the recording, or holds no rewards.
+    """
+    plan = plan_of(fixture)
+    number = {place.id: n for n, place in enumerate(plan.places)}
+    for mission in missions(log, fixture):
+        if mission.ended and any(chunk["step_cell"] for chunk in mission.chunks):
+            yield sample(
+                trace(mission, number, fixture, None), identity(mission), mission.passed, plan.members
+            )
+
+
+def plan_of(fixture: Fixture) -> Plan:
+    """Return the sites of a recording as a plan, without their positions in the source."""
+    places = {place.id: place for one in fixture.lists for place in one.sites}
+    number = {site: n for n, site in enumerate(places)}
+    members = tuple(tuple(number[place.id] for place in one.sites) for one in fixture.lists)
+    return Plan(fixture.lists, tuple(places.values()), members, {})
+
+
+def identity(mission: Mission) -> int:
+    """Return a number that only copies of the mission share, whatever file they are in."""
+    content = json.dumps(
+        [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
+        ensure_ascii=False,
+        sort_keys=True,
+    )
+    return int.from_bytes(hashlib.sha256(content.encode()).digest()[:BYTES], "big")
+
+
+def checked(log: Path, fixture: Fixture) -> list[Sample]:
+    """Return the missions of a log. Raise LogError if there are none."""
+    found = list(logged_samples(log, fixture))
+    if not found:
+        raise LogError(
+            f"{log} holds no finished mission with rewards: separate the missions with --mission-topic or --idle, and "
+            "check that the reward arrives."
+        )
+    return found

@@ -1,0 +1,145 @@
+"""`tarl merge`: one recording from several ones and from logs of robots.
+
+Every row of a recording belongs to one episode, so the union of the rows is the recording of all episodes together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pytest_tarl.errors import FixtureError
+from pytest_tarl.fleet.logged_samples import checked
+from pytest_tarl.learning.bounds import Range
+from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.learning.guarantees import stated, varies
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.tables import Floats, Sample
+from pytest_tarl.learning.utility import batch
+from pytest_tarl.model import Guarantee
+from pytest_tarl.observing.frames import MAGIC
+
+
+@dataclass(frozen=True)
+class Part:
+    """A file, its episodes or missions, and how many of them an earlier file had already."""
+
+    path: Path
+    episodes: int
+    known: int
+
+
+def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture, tuple[Part, ...]]:
+    """Return the recording of all episodes and missions, and what each file added.
+
+    A log is read with the sensors and statements of the first recording, or of `fixture`, whose own episodes do not
+    count. An episode that occurs twice counts once. Raise FixtureError or LogError if a file cannot be read or does not
+    fit the others.
+    """
+    recordings = {path: load(path) for path in files if not _is_log(path)}
+    first = fixture or next(iter(recordings), None)
+    if first is None:
+        raise FixtureError(
+            "A log does not state the bins of the sensors.",
+            "Name the recording that the robots observed with --fixture FILE.",
+        )
+    design = recordings.get(first) or load(first)
+    for path, one in recordings.items():
+        _check(first, design, path, one)
+    samples = [[recordings[path].sample] if path in recordings else checked(path, design) for path in files]
+    parts = tuple(_parts(files, samples))
+    whole = merge([one for some in samples for one in some])
+    return _recording(design, [*recordings.values()], whole), parts
+
+
+def _is_log(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False  # reading it as a recording gives the reason
+
+
+def _parts(files: Sequence[Path], samples: Sequence[Sequence[Sample]]) -> Iterator[Part]:
+    seen: set[int] = set()
+    for path, some in zip(files, samples, strict=True):
+        seeds = [seed for one in some for seed in one.seeds]
+        yield Part(path, len(seeds), len(seeds) - len({*seeds} - seen))
+        seen |= {*seeds}
+
+
+def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
+    """Raise FixtureError if two recordings cannot be merged."""
+    differing = {
+        "test": (design.test, other.test),
+        "sensors or bins": (design.sensors, other.sensors),
+        "statements": (_sites(design), _sites(other)),
+        "signals": (design.signals, other.signals),
+        "permanent drifts": (design.design, other.design),
+    }
+    found = [name for name, (one, another) in differing.items() if one != another]
+    if found:
+        raise FixtureError(
+            f"{path} and {first} cannot be merged: they differ in their {' and '.join(found)}.",
+            "Merge recordings of the same test, node and sensors; record the older one again.",
+        )
+
+
+def _sites(fixture: Fixture) -> list[tuple[str, str, list[str]]]:
+    return [(one.source, one.sink, [place.id for place in one.sites]) for one in fixture.lists]
+
+
+def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
+    """Return the recording of the episodes; digests of modules that changed in between are left out."""
+    worlds = [one.world for one in recordings] or [design.world]
+    world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
+    return replace(
+        design,
+        sample=whole,
+        sarsa=utilities(whole),
+        topics={key: value for one in recordings or [design] for key, value in one.topics.items()},
+        stated=_stated(design.stated, whole),
+        world=world,
+    )
+
+
+def utilities(whole: Sample) -> tuple[Floats, ...]:
+    """Return the utility of each taint list, shape (cells, sites): the fixed point of SARSA.
+
+    Several robots have no common order of episodes, so nothing can be learned step by step.
+    """
+    return tuple(batch(one, len(whole.cells), one.mean_flow) for one in whole.lists)
+
+
+def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
+    """Return the bounds for all episodes together, at the confidence of the recording.
+
+    Raise FixtureError if a total lies outside the declared range.
+    """
+    if before is None:
+        return None
+    least, most = float(whole.total.min()), float(whole.total.max())
+    if before.declared and not before.declared[0] <= least <= most <= before.declared[1]:
+        low, high = before.declared
+        raise FixtureError(
+            f"The episodes earn {least:g} to {most:g}, but the recording states total_range=({low:g}, {high:g}).",
+            "Correct total_range on the marker and record again.",
+        )
+    return stated(
+        whole.passed.tolist(),
+        whole.total.tolist(),
+        confidence=before.success.confidence,
+        declared=Range(*before.declared) if before.declared else None,
+        anytime=before.needed == 0,
+        varied=varies(whole),
+    )
+
+
+def lines(to: Path, recording: Fixture, parts: Sequence[Part]) -> Iterator[str]:
+    """Yield what was merged."""
+    for one in parts:
+        known = f", {one.known} of them counted before" if one.known else ""
+        yield f"  {one.path}: {one.episodes} episodes{known}"
+    sample = recording.sample
+    yield f"{to}: {sample.episodes} episodes of {recording.test}, {len(sample.cells)} cells"
