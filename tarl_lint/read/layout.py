@@ -89,6 +89,6 @@ def _package_dirs(directory: Path) -> dict[str, str]:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text("utf-8", errors="replace")
+        return path.read_text("utf-8", errors="replace") if path.is_file() else ""
     except OSError:
         return ""

@@ -187,6 +187,8 @@ def find_settings(start: Path) -> Path | None:
 
 def _mentions_us(path: Path) -> bool:
     """Return whether the bytes mention the table: most files then need no TOML parser, which is slow to import."""
+    if not path.is_file():  # opening a named pipe would block
+        return False
     try:
         data = path.read_bytes()
     except OSError:

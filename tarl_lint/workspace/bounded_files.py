@@ -10,8 +10,13 @@ class UnreadableError(Exception):
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """Return the content of a file. Raises UnreadableError if it has more than `most` bytes or cannot be read."""
+    """Return the content of a file. Raises UnreadableError if it has more than `most` bytes or cannot be read.
+
+    A named pipe or a device is not opened: reading it can block or never end.
+    """
     try:
+        if path.exists() and not path.is_file():
+            raise UnreadableError("it is a folder, a named pipe or a device, not a file")
         with path.open("rb") as file:
             data = file.read(most + 1)
     except OSError as error:

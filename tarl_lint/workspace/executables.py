@@ -100,6 +100,8 @@ def is_python(path: Path) -> bool:
 
 def has_shebang(path: Path) -> bool:
     """Return whether a file's first line is a Python shebang."""
+    if not path.is_file():  # opening a named pipe would block
+        return False
     try:
         with path.open("rb") as file:
             first = file.read(120).split(b"\n", 1)[0]

@@ -96,6 +96,8 @@ def _is_launch_file(path: Path) -> bool:
 
 
 def _mentions(path: Path, word: bytes) -> bool:
+    if not path.is_file():  # opening a named pipe would block
+        return False
     try:
         with path.open("rb") as file:
             return word in file.read(200_000)

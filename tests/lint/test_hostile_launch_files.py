@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -78,6 +82,47 @@ PARTS = (
         "\0",
     ),
 )
+
+
+SPECIAL = (
+    "p/setup.py", "p/setup.cfg", "p/CMakeLists.txt", "p/pyproject.toml", "p/scripts/run", "p/scripts/run.py",
+    "p/launch/a.launch", "p/launch/b.launch.xml", "p/launch/c.launch.py", "p/launch/d.launch.yaml", "p/launch/e.xml",
+    "p/config/f.yaml", "p/msg/G.msg", "p/src/h.cpp", "q/package.xml", "q/r.py", "pyproject.toml",
+)  # fmt: skip
+
+
+RUN = """
+import sys
+from pathlib import Path
+from tarl_lint.cli import main
+from tarl_lint.workspace.read import read
+
+read(Path.cwd())
+print(*(main(arguments) for arguments in (["."], *(["--launch", one] for one in sys.argv[1:]))))
+"""
+
+
+@pytest.mark.parametrize("kind", ["pipes", "devices"])
+def test_pipes_and_devices_in_place_of_files_do_not_block(tmp_path, kind):
+    for name in SPECIAL:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        if kind == "pipes":
+            os.mkfifo(tmp_path / name, 0o755)
+        else:
+            (tmp_path / name).symlink_to("/dev/zero")
+    (tmp_path / "p" / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / "plain.py").write_text("x = 1\n")
+    launched = [name for name in SPECIAL if "/launch/" in name]
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, "all", *launched],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert "Traceback" not in done.stdout + done.stderr
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "0 0 2 2 2 2 2", done.stdout
 
 
 @settings(max_examples=60, deadline=None)
