@@ -51,6 +51,7 @@ class Sized:
     """Episodes of a task whose drift is a single number, taken from the plan's point."""
 
     stage: Stage
+    name: str  # of the drift
     whole: bool  # whether the task counts in whole numbers
     workers = 1
 
@@ -58,10 +59,9 @@ class Sized:
         """Run one episode."""
         size = (plan.point or {})[SIZE]
         value: Any = round(size) if self.whole else size
-        name = self.stage.drift
-        marked = replace(self.stage.marked, drifts={name: Drift(value)})
+        marked = replace(self.stage.marked, drifts={self.name: Drift(value)})
         rollout = replace(self.stage.rollout, designation=marked)
-        return rollout(EpisodePlan(plan.seed, name))
+        return rollout(EpisodePlan(plan.seed, self.name))
 
     def begin(self, plan: EpisodePlan) -> Pending:
         """Return an episode that runs when its result is requested."""
@@ -75,6 +75,12 @@ def nominal_of(stage: Stage) -> str:
     if found is None:
         raise SystemExit(f"{stage.task}: no nominal value in {path.name}")
     return found[1].rstrip(".")
+
+
+def sized(stage: Stage, name: str) -> tuple[Sized, float, float]:
+    """Return a rollout by the size of a drift, its nominal size, and the size that the test declares."""
+    text, value = nominal_of(stage), stage.marked.drifts[name].value
+    return Sized(stage, name, isinstance(value, int) and "." not in text), float(text), float(value)
 
 
 def span_of(low: float, high: float) -> Space:
@@ -171,9 +177,7 @@ class Grids:
 
 def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
     """Compare a stress run of one task with the grid."""
-    text = nominal_of(stage)
-    nominal, far = float(text), float(stage.marked.drifts[stage.drift].value)
-    rollout = Sized(stage, isinstance(stage.marked.drifts[stage.drift].value, int) and "." not in text)
+    rollout, nominal, far = sized(stage, stage.drift)
     given = recorded(rollout, nominal)
     budget = round(SHARE * GRID * EPISODES)
     curve, episodes = stressed(rollout, given, span_of(nominal, far), 1, budget)
