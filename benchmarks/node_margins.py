@@ -38,7 +38,7 @@ def margins(stage: Stage) -> Stress:
     ended = ""
     try:
         along_rays(curves, evaluator, RISK)
-        near_ends(curves, evaluator, RISK)
+        near_ends(curves, evaluator)
     except BudgetSpentError:
         ended = "budget"
     return Stress(stage.task, name, SEED, space, given, BUDGET, evaluator.spent, tuple(curves), ended=ended)

@@ -122,7 +122,7 @@ def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: 
     (curve,) = (Curve(ray) for ray in rays(space, {}))
     with suppress(BudgetSpentError):
         along_rays([curve], evaluator, RISK)
-        near_ends([curve], evaluator, RISK)
+        near_ends([curve], evaluator)
     return curve, evaluator.spent
 
 

@@ -35,7 +35,11 @@ from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
-IGNORED = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
+EARLIER = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
+IGNORED = (
+    "# Commit only the recorded utility and the margins.\n*\n!.gitignore\n"
+    "!utility/\n!utility/**\nutility/.*\n!margins/\n!margins/**\nmargins/.*\n"
+)
 
 
 @dataclass(frozen=True)
@@ -313,8 +317,8 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        if not ignore.exists():
-            with suppress(OSError):  # writing the other files reports the same problem
+        with suppress(OSError, UnicodeDecodeError):  # writing the other files reports the same problem
+            if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())
 
 

@@ -41,11 +41,17 @@ def _limits(where: str, name: str, limits: Any, extents: Mapping[str, Span | Cho
                 f"{limits!r}."
             )
         return given
-    numbers = [as_number(one) for one in given]
-    low, high = numbers if len(numbers) == 2 else (None, None)
+    low, high = (
+        [
+            as_number(end if one is None else one)
+            for one, end in zip(given, (extent.low, extent.high), strict=True)
+        ]
+        if len(given) == 2
+        else (None, None)
+    )
     if low is None or high is None or not extent.low <= low <= nominal(extent) <= high <= extent.high:
         raise SettingsError(
             f"{where}: must_hold of {name!r} must be two numbers from {extent.low:g} to {extent.high:g} around the "
-            f"nominal {nominal(extent):g}, got {limits!r}."
+            f"nominal {nominal(extent):g}, or None for an end of the range, got {limits!r}."
         )
     return low, high

@@ -56,13 +56,15 @@ def parser() -> Parser:
         "--sites", action="store_true", help="list the statements of every taint list, even if there are many"
     )
     show.set_defaults(run=_show)
-    diff = commands.add_parser("diff", help="compare two recordings")
-    diff.add_argument("first", type=Path)
-    diff.add_argument("second", type=Path)
+    diff = commands.add_parser("diff", help="compare two recordings, or the margins of two revisions")
+    diff.add_argument("first", help="a recording; margins, as a file or a folder; or a revision of git")
+    diff.add_argument(
+        "second", nargs="?", help="the same; without it, .tarl/margins is compared with that of the revision"
+    )
     diff.add_argument(
         "--fail-if-worse",
         action="store_true",
-        help="exit with 1 if the second one earns significantly less",
+        help="exit with 1 if the second one earns significantly less, or fails significantly nearer to nominal",
     )
     diff.add_argument(
         "--max-loss",
@@ -79,10 +81,21 @@ def parser() -> Parser:
         action="store_true",
         help="exit with 1 if a recorded statement was edited or the sensors differ",
     )
+    diff.add_argument(
+        "--format",
+        choices=("text", "markdown"),
+        default="text",
+        help="of margins: text (default) or Markdown",
+    )
     diff.set_defaults(run=_diff)
     summary = commands.add_parser("summary", help="print the results of the last comparisons as Markdown")
     summary.add_argument(
         "results", type=Path, nargs="?", default=Path(".tarl/results"), help="default .tarl/results"
+    )
+    summary.add_argument(
+        "--since",
+        metavar="REVISION",
+        help="compare .tarl/margins beside the results with those of a revision",
     )
     summary.set_defaults(run=_summary)
     add_observe(commands)
@@ -107,7 +120,7 @@ def parser() -> Parser:
 def _summary(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands.summary import markdown
 
-    sys.stdout.write(printable(markdown(arguments.results)))
+    sys.stdout.write(printable(markdown(arguments.results, arguments.since)))
     return 0
 
 
@@ -215,11 +228,31 @@ def _show(arguments: argparse.Namespace) -> int:
 
 def _diff(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import diff
+    from pytest_tarl.commands.margins_files import is_recording
     from pytest_tarl.learning.fixture import load
 
-    first, second = load(arguments.first), load(arguments.second)
+    if arguments.second is None and is_recording(arguments.first):
+        arguments.parser.error(f"name a second recording beside {arguments.first}")
+    if arguments.second is None or not is_recording(arguments.first):
+        return _diff_margins(arguments)
+    first, second = load(Path(arguments.first)), load(Path(arguments.second))
     found = diff.compared(first, second)
     _print(diff.lines(first, second, found))
     alpha = diff.SIGNIFICANT if arguments.alpha is None else arguments.alpha
     worse = arguments.fail_if_worse and found.worse(alpha, arguments.max_loss)
     return int(worse or (arguments.fail_if_changed and found.changed))
+
+
+def _diff_margins(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import margins_diff
+    from pytest_tarl.commands.margins_files import FOLDER, margins_in
+
+    given: tuple[str, str | None] = (arguments.first, arguments.second)
+    places = (given[0], given[1]) if given[1] is not None else (f"{given[0]}:{FOLDER}", FOLDER)
+    before, after = margins_in(places[0]), margins_in(places[1])
+    rows = margins_diff.compared(before, after)
+    if arguments.format == "markdown":
+        _print(margins_diff.markdown(rows, "before"))
+    else:
+        _print([*margins_diff.lines(rows), *margins_diff.guarantees_changed(before, after)])
+    return int(arguments.fail_if_worse and any(row.change == "more fragile" for row in rows))

@@ -1,4 +1,7 @@
-"""`tarl summary`: the results of the last comparisons as Markdown, for a comment on a pull request or a job's page."""
+"""`tarl summary`: the results of the last comparisons and stress runs as Markdown.
+
+It is meant for a comment on a pull request or a job's page.
+"""
 
 from __future__ import annotations
 
@@ -7,21 +10,43 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pytest_tarl.commands import margins_diff
+from pytest_tarl.commands.margins_files import margins_in
 from pytest_tarl.errors import FixtureError
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
 BARS = 8  # maximum number of statements in a chart
 
 
-def markdown(folder: Path) -> str:
-    """Return the results in a folder, `.tarl/results`, as Markdown.
+def markdown(folder: Path, since: str | None = None) -> str:
+    """Return the results in a folder, `.tarl/results`, and the margins beside it, as Markdown.
 
-    Raise FixtureError if there are none, or one of them cannot be read.
+    With `since`, the margins are compared with those of a revision of git. Raise FixtureError if there is nothing, or
+    a file cannot be read.
     """
     paths = sorted(folder.glob("*.json"))
-    if not paths:
-        raise FixtureError(f"{folder}: no result found. Run pytest --tarl-online first.")
-    documents = [_read(path) for path in paths]
+    margins = folder.parent / "margins"
+    tables = [
+        *([_comparisons([_read(path) for path in paths])] if paths else []),
+        *([_margins(margins, since)] if any(margins.glob("*.json")) else []),
+    ]
+    if not tables:
+        raise FixtureError(f"{folder}: no result found. Run pytest --tarl-online or --tarl-stress first.")
+    return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
+
+
+def _margins(folder: Path, since: str | None) -> list[str]:
+    """Return the table of the margins, beside those of a revision if one is given."""
+    now = margins_in(str(folder))
+    before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
+    rows = margins_diff.compared(before, now)
+    if since is None:
+        return list(margins_diff.table(rows))
+    notes = margins_diff.guarantees_changed(before, now)
+    return [*margins_diff.markdown(rows, f"at {_plain(since)}"), *(f"\n{_plain(note)}" for note in notes)]
+
+
+def _comparisons(documents: Sequence[Mapping[str, Any]]) -> list[str]:
     lines = [
         "| test | drift | verdict | loss per episode | where | first statement | repair |",
         "|---|---|---|---|---|---|---|",
@@ -30,7 +55,7 @@ def markdown(folder: Path) -> str:
     for document in documents:
         if document["verdict"]["result"] == "degraded" and document["sites"]:
             lines += ["", *_picture(document)]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _read(path: Path) -> Mapping[str, Any]:

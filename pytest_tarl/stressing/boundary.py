@@ -61,6 +61,7 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         most, share = FRESH[-1], risk / 2 / len(FRESH)
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
+        chosen += [t for t in decided if t in curve.ray.extra]  # ends of must_hold
     return sorted(set(chosen))
 
 

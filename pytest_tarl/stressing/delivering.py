@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytest_tarl.files import slug, unwritten, write_atomically
-from pytest_tarl.stressing import json_result, kept, page, words
+from pytest_tarl.stressing import json_result, kept, margins, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
 from pytest_tarl.stressing.search import Request, stress
@@ -60,6 +60,10 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         folder / "stress" / f"{name}.json": as_text(json_result.text(found)),
         report: as_text(page.render(found)),
     }
+    if found.ended in ("", "budget"):
+        jobs[folder / "margins" / f"{name}.json"] = lambda path: write_atomically(
+            path, margins.text(margins.margins(found)).encode()
+        )
     if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
         jobs[memory] = lambda path: kept.write(found.failures, path)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}

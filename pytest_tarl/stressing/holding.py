@@ -13,7 +13,7 @@ from bisect import bisect_left
 from pytest_tarl.learning.bounds import episodes_for_quantile, rate
 from pytest_tarl.stressing.candidates import Model
 from pytest_tarl.stressing.evaluating import Evaluator
-from pytest_tarl.stressing.findings import CONFIDENCE, Curve
+from pytest_tarl.stressing.findings import NEAR_RISK, Curve
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
@@ -23,16 +23,14 @@ BATCH = 8  # episodes after which a test that cannot succeed any more ends
 PAIRED = (16, 32)  # numbers of episodes that bound the loss, unless the marker declares total_range
 
 
-def hold(curve: Curve, evaluator: Evaluator, confirmed_at: float) -> None:
+def hold(curve: Curve, evaluator: Evaluator) -> None:
     """Set `curve.held` to a value at which fresh seeds show that the guarantee holds, as far from nominal as possible.
 
-    Its risk and that with which a failure was confirmed, `confirmed_at`, are 1 - CONFIDENCE together. Values for which
-    the budget does not suffice are left out.
+    This is wrong with a probability of at most NEAR_RISK. Values for which the budget does not suffice are left out.
     """
-    risk = 1.0 - CONFIDENCE - confirmed_at
-    values, paired = _values(curve, evaluator, risk)
+    values, paired = _values(curve, evaluator)
     for t, share in zip(values, SHARES, strict=True):
-        if t > 0.0 and holds(curve.ray, t, evaluator, share * risk, paired):
+        if t > 0.0 and holds(curve.ray, t, evaluator, share * NEAR_RISK, paired):
             curve.held = t
             return
 
@@ -70,12 +68,12 @@ def least(share: float, failed: int, risk: float) -> int:
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]
 
 
-def _values(curve: Curve, evaluator: Evaluator, risk: float) -> tuple[tuple[float, float], int]:
+def _values(curve: Curve, evaluator: Evaluator) -> tuple[tuple[float, float], int]:
     """Return the values to test and how many episodes bound the loss, chosen from the search's episodes only."""
     if not curve.ray.continuous:
         return (1.0, 0.0), PAIRED[0]
     given = evaluator.guarantee
-    first = SHARES[0] ** 2 * risk
+    first = SHARES[0] ** 2 * NEAR_RISK
     if curve.bracket is None:
         return (1.0, SECOND), PAIRED[-1]
     near, model = curve.bracket[0], Model(curve.evidence, given.tolerance)

@@ -14,7 +14,7 @@ from pytest_tarl.spaces import Space
 from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
 from pytest_tarl.stressing.combinations import Together, pairs, search
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
-from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Stress
+from pytest_tarl.stressing.findings import FAR_RISK, Curve, Stress
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
 from pytest_tarl.stressing.holding import hold
 from pytest_tarl.stressing.rays import rays
@@ -45,7 +45,7 @@ def stress(request: Request) -> Stress:
     }
     curves = [Curve(ray) for ray in rays(space, must_hold)]
     share = request.options.alpha / (len(curves) + 2)  # for each ray, all combinations, and nominal
-    share = min(share, (1.0 - CONFIDENCE) / 2)
+    share = min(share, FAR_RISK)
     together = Together(share, curves)
     ended = ""
     try:
@@ -54,9 +54,9 @@ def stress(request: Request) -> Stress:
         else:
             along_rays(curves, evaluator, share)
             pairs(evaluator, together)
-            near_ends([curve for curve in curves if curve.failing], evaluator, share)
+            near_ends([curve for curve in curves if curve.failing], evaluator)
             search(evaluator, together)
-            near_ends([curve for curve in curves if not curve.failing], evaluator, share)
+            near_ends([curve for curve in curves if not curve.failing], evaluator)
     except BudgetSpentError:
         ended = "budget"
     except KeyboardInterrupt:
@@ -102,8 +102,8 @@ def along_rays(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> N
         confirm(curve, evaluator, share)
 
 
-def near_ends(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> None:
+def near_ends(curves: Sequence[Curve], evaluator: Evaluator) -> None:
     """Show how far the guarantee holds, along rays with a boundary or without any failure. Raise BudgetSpentError."""
     for curve in curves:
         if curve.confirmed is not None or not curve.failing:
-            hold(curve, evaluator, share)
+            hold(curve, evaluator)

@@ -77,4 +77,4 @@ def test_a_folder_without_results_gives_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["summary", str(tmp_path)]) == 2
-    assert "no result found. Run pytest --tarl-online first." in capsys.readouterr().err
+    assert "no result found. Run pytest --tarl-online or --tarl-stress first." in capsys.readouterr().err

@@ -66,7 +66,7 @@ def run(world: World, seed: int) -> Curve:
     (curve,) = (Curve(ray) for ray in rays(SPACE, {}))
     with suppress(BudgetSpentError):
         along_rays([curve], evaluator, CONFIRMED_AT)
-        near_ends([curve], evaluator, CONFIRMED_AT)
+        near_ends([curve], evaluator)
     return curve
 
 

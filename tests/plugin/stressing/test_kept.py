@@ -99,7 +99,8 @@ def test_one_line_says_which_files_are_missing_and_no_older_page_is_named(
     monkeypatch.setattr("pytest_tarl.files.tempfile.mkstemp", full)
     (line,) = _written(found, tmp_path, "x", memory)
     assert line.startswith(
-        "not written: .tarl/stress/x.json, .tarl/report/x-stress.html, .tarl/stress/x-failing.json"
+        "not written: .tarl/stress/x.json, .tarl/report/x-stress.html, "
+        ".tarl/margins/x.json, .tarl/stress/x-failing.json"
     )
     assert advice in line
     assert line.endswith("The result above stands.")

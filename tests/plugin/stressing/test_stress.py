@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 
 from pytest_tarl import Drift, faults
 from pytest_tarl.drifts import drift
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.promises import must_hold
-from pytest_tarl.stressing import json_result, kept
-from pytest_tarl.stressing.findings import failure
-from tests.plugin.stressing.worlds import space_of
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import json_result, kept, words
+from pytest_tarl.stressing import margins as margins_file
+from pytest_tarl.stressing.findings import Curve, failure
+from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.search import along_rays
+from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
 from tests.plugin.tank import RECORD, changed
 
 STRESS = ("--tarl-stress", "--tarl-stress-budget=150")
@@ -58,6 +64,9 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     (pump,) = found["directions"]
     # the reward is about -3.6 / pump, and 5 % less than -3.6 is tolerated: 1 / 1.05 = 0.952
     assert 0.93 < pump["boundary"]["estimate"] < 0.98
+    (margins,) = spaced.path.glob(".tarl/margins/*.json")
+    assert margins_file.read(margins.read_bytes(), "it").sides[0].fails_at == pump["boundary"]["failed_at"]
+    assert "!margins/**" in (spaced.path / ".tarl" / ".gitignore").read_text("utf-8")
     again = spaced.runpytest(*STRESS, "--tarl-workers=2")
     assert "still fails." in again.stdout.str()
     assert written(spaced) == first
@@ -129,6 +138,37 @@ DRIFTS = {
 def test_must_hold_takes_ranges_or_options_of_a_direction() -> None:
     given = {"mud": (0.4, 1), "camera": ["up", "down"], "late": (0, 0.1)}
     assert must_hold("t", given, DRIFTS) == {"mud": (0.4, 1.0), "camera": ("up", "down"), "late": (0.0, 0.1)}
+    assert must_hold("t", {"mud": (0.4, None)}, DRIFTS) == {"mud": (0.4, 1.0)}
+    assert must_hold("t", {"late": (None, 0.1)}, DRIFTS) == {"late": (0.0, 0.1)}
+
+
+def test_failures_break_must_hold_of_one_end_and_of_options() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return point["slope"] < 0.1 and point["camera"] != 1.0, 1.0
+
+    space = space_of(slope=Drift.range(-0.5, 0.5, nominal=0.0), camera=Drift.choice("up", "down", "left"))
+    found = stressed(world, space)
+    drifts = {"world": drift("t", "world", Drift.space(**space.directions))}
+
+    def broken(**given: object) -> list[str]:
+        return words.broken_promises(replace(found, must_hold=must_hold("t", given, drifts)))
+
+    assert broken(slope=(None, 0.05), camera=("up", "left")) == []
+    assert "but must_hold is 0 to 0.5" in broken(slope=(0.0, None))[0]
+    assert broken(camera=("up", "down")) == [
+        "The guarantee fails with camera='down', but must_hold includes 'down'."
+    ]
+
+
+def test_a_failing_end_of_must_hold_is_tested_itself() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(draws.random() < 1.0 - 1.5 * point["slope"]), 1.0  # 30 % fail at 0.2, 5 % at 0.033
+
+    space = space_of(slope=Drift.range(0.0, 0.5, nominal=0.0))
+    curve = Curve(rays(space, {"slope": (0.0, 0.2)})[0])
+    along_rays([curve], evaluator_of(world, space), 0.01)
+    assert curve.confirmed is not None
+    assert curve.ray.value(curve.confirmed) <= 0.2
 
 
 @pytest.mark.parametrize(

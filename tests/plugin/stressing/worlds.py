@@ -72,9 +72,9 @@ def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -
     try:
         along_rays(curves, evaluator, 0.01)
         pairs(evaluator, together)
-        near_ends([curve for curve in curves if curve.failing], evaluator, 0.01)
+        near_ends([curve for curve in curves if curve.failing], evaluator)
         search(evaluator, together)
-        near_ends([curve for curve in curves if not curve.failing], evaluator, 0.01)
+        near_ends([curve for curve in curves if not curve.failing], evaluator)
     except BudgetSpentError:
         ended = "budget"
     if evaluator.short:
