@@ -37,6 +37,9 @@ class Reads:
     held: dict[int, int] = field(
         default_factory=dict
     )  # carrier → number of nodes that it has passed on inside objects
+    arrivals: set[object] = field(
+        default_factory=set
+    )  # results about carriers whose `consulted` are in `held`
     facts: dict[Fact, object] = field(default_factory=dict)
     whole: bool = True  # False if a budget limit cut the call short
     waits: bool = False
@@ -81,10 +84,10 @@ class Reads:
     def _add_rest(self, inner: Reads) -> None:
         """Merge the reads that do not depend on the current path; once is enough."""
         self.unreached |= inner.unreached
-        _complete(self.objects, inner.objects)
-        _complete(self.holders, inner.holders)
-        _complete(self.held, inner.held)
-        _complete(self.facts, inner.facts)
+        complete(self.objects, inner.objects)
+        complete(self.holders, inner.holders)
+        complete(self.held, inner.held)
+        complete(self.facts, inner.facts)
         self.whole = self.whole and inner.whole
         if inner.waits:
             self.wait(inner.heard, inner.own)
@@ -92,7 +95,7 @@ class Reads:
                 self.admit(key, value)
 
 
-def _complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
+def complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
     """Add missing entries, in time proportional to `theirs`, which is usually the smaller one."""
     for key, value in theirs.items():
         if key not in mine:

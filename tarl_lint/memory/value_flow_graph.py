@@ -6,22 +6,23 @@ set of branches that selected a value; a node is live if a source reaches it.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Set
+from collections.abc import Callable, Hashable, Iterable, Set
 from dataclasses import dataclass, field
 from itertools import islice
 
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.reads import Reads
+from tarl_lint.memory.reads import Reads, complete
 from tarl_lint.memory.values import Branches, Nodes
 
-MAX_NODES = 6_000  # nodes of a program; beyond that, content arrives without carriers
+MAX_NODES = 12_000  # nodes of a program; beyond that, content arrives without carriers
 MAX_EDGES = 200_000  # data edges of a program; then only FEW of a value's dependencies get edges
 FEW = 8
 MANY = 16  # separate nodes in a field with weak updates; more are merged
 MANY_CARRIERS = 64  # the same for pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
+CARRIED = 5  # carriers, or items passed on by them, that cost as much as a graph operation
 MAX_CARRIED = 500  # content × carriers; beyond that, content arrives without carriers
 
 
@@ -35,12 +36,13 @@ class Place:
     pos: ir.Pos
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Arrival:
-    """The nodes by which an item arrives; `consulted` maps the carriers asked to how many nodes they had passed on."""
+    """The nodes by which items arrive; `consulted` maps the carriers asked to how many nodes they had passed on."""
 
     nodes: Nodes
     consulted: dict[int, int]
+    grown: int  # value of `Graph.grown` at which this was last known to hold
 
 
 @dataclass(slots=True, eq=False)
@@ -84,7 +86,9 @@ class Graph:
     arrivals: dict[tuple[int, int], Arrival] = field(
         default_factory=dict
     )  # cache of `_arrival`, by carrier and item
-    arrived_at: int = 0  # `grown` when this cache was last emptied
+    ways_through: dict[tuple[Nodes, Nodes], Arrival] = field(
+        default_factory=dict
+    )  # cache of `through`, by content and carriers
     reads: Reads = field(default_factory=Reads)  # reads of the running call
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -193,15 +197,54 @@ class Graph:
         self.reads.ask(Graph.large, self)
         if self.large():
             return content
-        self.asked += len(content) + len(carriers)
+        if self.asking:  # inside a cycle of carriers, the result is not complete
+            return self._through(content, carriers)
+        known = self.ways_through.get((content, carriers))
+        if known is None or not self._still(known):
+            known = self._consulting(lambda: self._through(content, carriers))
+            self.ways_through[content, carriers] = known
+        self._note(known)
+        return known.nodes
+
+    def _consulting(self, find: Callable[[], Nodes]) -> Arrival:
+        """Return the result of a function, with the carriers that it consulted."""
+        reads = self.reads
+        outer = reads.held, reads.arrivals
+        reads.held, reads.arrivals = {}, set()
+        found = Arrival(find(), reads.held, self.grown)
+        reads.held, reads.arrivals = outer
+        return found
+
+    def _still(self, known: Arrival) -> bool:
+        """Return whether no carrier has passed on more since a result was computed."""
+        if known.grown != self.grown:
+            passed_by = self.passed_by
+            self.asked += len(known.consulted) // CARRIED
+            if any(passed_by(carrier) != size for carrier, size in known.consulted.items()):
+                return False
+            known.grown = self.grown
+        return True
+
+    def _note(self, known: Arrival) -> None:
+        """Make the running call depend on the carriers that were consulted for a result."""
+        reads = self.reads
+        if known not in reads.arrivals:
+            reads.arrivals.add(known)
+            complete(reads.held, known.consulted)
+
+    def _through(self, content: Nodes, carriers: Nodes) -> Nodes:
+        """Return content as passed on through carriers, and make the carry nodes that this takes."""
+        self.asked += len(carriers) // CARRIED
         self._consult(carriers)
         found: set[int] = set()
         taken: set[int] = set()
         for carrier in carriers:
             if carrier not in self.carried:
                 passed = content & self.held.get(carrier, NOTHING)
-                taken |= passed
-                found.update([self._carry(carrier, item) for item in passed])
+                if passed:
+                    self.asked += len(passed) // CARRIED
+                    taken |= passed
+                    found.update([self._carry(carrier, item) for item in passed])
                 continue
             inside = self.held.get(self._first(carrier))
             for item in content & inside if inside else ():
@@ -239,20 +282,14 @@ class Graph:
         return carrier
 
     def _arrival(self, carrier: int, item: int) -> Nodes:
-        """Return the nodes by which a carrier passes on an item; cached until `grown` changes."""
+        """Return the nodes by which a carrier passes on an item; cached until a consulted carrier passes on more."""
         if self.asking:
             return frozenset(self._by(carrier, item))
-        if self.arrived_at != self.grown:
-            self.arrived_at = self.grown
-            self.arrivals.clear()
         known = self.arrivals.get((carrier, item))
-        if known is None:
-            self.reads.held, outer = {}, self.reads.held
-            found = frozenset(self._by(carrier, item))
-            known = self.arrivals[carrier, item] = Arrival(found, self.reads.held)
-            self.reads.held = outer
-        for consulted, size in known.consulted.items():
-            self.reads.held.setdefault(consulted, size)
+        if known is None or not self._still(known):
+            known = self._consulting(lambda: frozenset(self._by(carrier, item)))
+            self.arrivals[carrier, item] = known
+        self._note(known)
         return known.nodes
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:

@@ -11,7 +11,9 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap, joins, reachable_data, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.store import BORN, Root, Store
+from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import ABSENT, BOTTOM, MAX_CONSTS, Value, const, join, pointer
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -163,3 +165,36 @@ def test_stores_of_other_roots_are_read_once_per_run(ctx):
     ctx.shared.leave(ctx.shared.ends, other, key, Value(OTHER))
     assert ctx.store.root in ctx.shared.dirty
     assert Store(ctx.shared, ctx.store.root).others(key) == Value(DATA | OTHER)
+
+
+def carrying(graph, frame, key):
+    return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
+
+
+def test_content_is_carried_only_by_what_passed_its_object_on_then(ctx, frame):
+    graph = ctx.graph
+    item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
+    content, carriers = frozenset([item]), frozenset([carrier])
+    assert graph.through(content, carriers) == content
+    graph.hold(carrier, content)
+    (arrived,) = graph.through(content, carriers)
+    assert graph.carried[arrived] == (carrier, item)
+    assert graph.through(content, carriers) == {arrived}
+
+
+def test_a_call_depends_on_the_carriers_behind_a_cached_answer(ctx, frame):
+    graph = ctx.graph
+    item, first, second = (carrying(graph, frame, key) for key in ("item", "first", "second"))
+    graph.hold(first, frozenset([item]))
+    (carried,) = graph.through(frozenset([item]), frozenset([first]))
+    graph.hold(carried, frozenset([item]))
+    for _ in range(2):
+        graph.reads = Reads()
+        graph.through(frozenset([item]), frozenset([carried, second]))
+        assert graph.reads.held.keys() >= {carried, item, second}
+        assert all(graph.passed_by(node) == size for node, size in graph.reads.held.items())
+    graph.hold(second, frozenset([item]))
+    assert graph.reads.held[second] != graph.passed_by(second)
+    graph.reads = Reads()
+    assert graph.through(frozenset([item]), frozenset([carried, second])) != frozenset([item])
+    assert graph.reads.held[second] == 1
