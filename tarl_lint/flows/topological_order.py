@@ -48,7 +48,10 @@ def in_order(
 def before_loops(
     edges: Iterable[tuple[int, int]], turns: Iterable[tuple[int, int]], function: Mapping[int, object]
 ) -> list[tuple[int, int]]:
-    """Return edges that place statements of other functions before the head of a loop that their values enter."""
+    """Return edges that order statements of other functions before a loop.
+
+    Such a statement computes a value that the body of the loop uses, so it comes before the head of the loop.
+    """
     formers: dict[int, list[int]] = {}
     for before, after in edges:
         formers.setdefault(after, []).append(before)

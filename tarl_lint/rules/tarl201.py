@@ -147,7 +147,10 @@ VALID: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether the group creates no lock, or guards every state by one wherever it is used, or nowhere."""
+    """Return whether no state can be guarded in one place and unguarded in another.
+
+    This is so if the group creates no lock, or if each state is guarded either at all of its uses or at none.
+    """
     return not any(map(MADE.search, side.texts)) or always_or_never_guarded(side.modules)
 
 
