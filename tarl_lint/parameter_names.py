@@ -1,11 +1,11 @@
-"""Parameters in the names of topics: marks in a text that stand for values which only the launch determines."""
+"""Parts of topic names that only the launch determines: marks in a text that stand for parameters and node names."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 MARK: Final = "\0"
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
@@ -13,10 +13,14 @@ _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 @dataclass(frozen=True, slots=True)
 class ParameterName:
-    """A parameter by its name in the code, and its default: None if that is not one known text."""
+    """A parameter by its name in the code, and its default: None if that is not one known text.
+
+    Other kinds are the node's name, its namespace, and a name after resolving and remapping.
+    """
 
     name: str
-    default: str | None
+    default: str | None = None
+    kind: Literal["parameter", "node", "namespace", "resolved"] = "parameter"
 
 
 def substituted(text: str, value: Callable[[int], str | None]) -> str | None:

@@ -94,8 +94,8 @@ class Interpreter:
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
-        self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
-        self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
+        self.sources: dict[Hashable, SourceRecord] = {}  # by path and position, for a launch also by context
+        self.sinks: dict[Hashable, SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # called functions: module, line
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes instantiated only outside of the files
@@ -108,6 +108,15 @@ class Interpreter:
         self.parameter_names: list[ParameterName] | None = None  # parameters in texts; None: not followed
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
+
+    @property
+    def launching(self) -> bool:
+        """Return whether the run is for a launch file: names may depend on the node, clients have servers."""
+        return self.parameter_names is not None
+
+    def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> Hashable:
+        """Return the key of an end of flows; for a launch, two objects of a class have ends of their own."""
+        return (path, pos, frame.id) if self.launching else (path, pos)
 
     @property
     def total(self) -> int:

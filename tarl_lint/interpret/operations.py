@@ -54,8 +54,8 @@ class Operations(Protocol[Ctx]):
         """Evaluate a call expression."""
         ...
 
-    def use_client(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value | None:
-        """Make or use a client of a service or action; None if the call does neither."""
+    def launched_call(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value | None:
+        """Make or use a client of a service or action, or name the node; None if the call does neither."""
         ...
 
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:

@@ -13,7 +13,7 @@ from tarl_lint.models.iterators import gate
 from tarl_lint.models.library import call_method, generic, named_by_settings
 from tarl_lint.models.records import entries, fill, missing
 from tarl_lint.models.ros.catalog_calls import ros_call
-from tarl_lint.models.ros.clients import use_client
+from tarl_lint.models.ros.clients import launched_call
 from tarl_lint.models.ros.publications import send
 from tarl_lint.models.ros.services import serve
 from tarl_lint.models.ros.subscriptions import call_later, register_filter
@@ -43,6 +43,7 @@ __all__ = [
     "generic",
     "holder",
     "imported",
+    "launched_call",
     "may_fail",
     "missing",
     "named_by_settings",
@@ -55,6 +56,5 @@ __all__ = [
     "send",
     "serve",
     "unpacked",
-    "use_client",
     "wait",
 ]

@@ -17,7 +17,11 @@ def text_of_parameter(known: list[ParameterName] | None, name: str, default: Val
     texts = default.names()
     if default.consts and not texts:
         return None
-    one = ParameterName(name, texts[0] if len(texts) == 1 else None)
+    return frozenset([marked(known, ParameterName(name, texts[0] if len(texts) == 1 else None))])
+
+
+def marked(known: list[ParameterName], one: ParameterName) -> Symbolic:
+    """Return the text that stands for a part of a name."""
     if one not in known:
         known.append(one)
-    return frozenset([Symbolic(f"{MARK}{known.index(one)}{MARK}")])
+    return Symbolic(f"{MARK}{known.index(one)}{MARK}")

@@ -63,8 +63,8 @@ def call_library(
         return ctx.ops.send(
             ctx, Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified)
         )
-    if ctx.parameter_names is not None:  # for a launch file
-        client = ctx.ops.use_client(ctx, None, Invocation(qualified, BOTTOM, arguments, frame, call))
+    if ctx.launching:  # for a launch file
+        client = ctx.ops.launched_call(ctx, None, Invocation(qualified, BOTTOM, arguments, frame, call))
         if client is not None:
             return client
     fact = _configured(ctx, qualified) or catalog.fact(qualified)
@@ -177,8 +177,8 @@ def call_method(
     call: ir.Call,
 ) -> Value:
     """Call a method of an object whose class is not analysed."""
-    if ctx.parameter_names is not None and target is not None:  # for a launch file
-        client = ctx.ops.use_client(ctx, target, Invocation(name, base, arguments, frame, call))
+    if ctx.launching and target is not None:  # for a launch file
+        client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
         if client is not None:
             return client
     return _call_method(ctx, base, target, name, arguments, frame, call)

@@ -5,7 +5,8 @@ It has no effect, so the two ends that it was meant to connect stay apart. In th
 (https://github.com/aliasrobotics/RVD/issues/582).
 
 Reported are remappings for which every node that has them was read with all that it imports, and uses only constant
-names of topics, and no string in its code ends in that name.
+names of topics, and no string in its code ends in that name. A remapping of a group is only reported if it matches
+nothing in any of its nodes.
 """
 
 from __future__ import annotations
@@ -46,6 +47,40 @@ INVALID: Final = (
     rospy.Subscriber("odom", Odometry, on_odom)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <remap from="cmd_val" to="/wheels/cmd_vel"/>
+      </node>
+      <node pkg="robot" type="other.py" name="other">
+        <remap from="cmd_val" to="/wheels/cmd_vel"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    --- scripts/other.py
+    import rospy
+    from geometry_msgs.msg import Twist
+
+    rospy.init_node("other")
+    rospy.Subscriber("cmd_val", Twist, print)
+    rospy.spin()
+    """,
 )
 
 VALID: Final = (
@@ -76,17 +111,29 @@ VALID: Final = (
 )
 
 _OF_ROS: Final = frozenset(
-    ["tf", "tf_static", "clock", "rosout", "parameter_events", "diagnostics", "robot_description"]
+    [
+        "tf",
+        "tf_static",
+        "clock",
+        "rosout",
+        "parameter_events",
+        "diagnostics",
+        "robot_description",
+        "parameter_descriptions",
+        "parameter_updates",
+        "set_parameters",
+    ]
 )
 
 
 def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each remapping that matches nothing in any node that has it."""
-    carriers: dict[tuple[str, str], list[Instance]] = {}
+    carriers: dict[tuple[str, str, str], list[Instance]] = {}
     for instance in system.instances:
-        for pair in instance.node.remaps:
-            carriers.setdefault(pair, []).append(instance)
-    for (old, new), instances in carriers.items():
+        for number, (old, new) in enumerate(instance.node.remaps):
+            own = "" if number < instance.node.inherited else f"{instance.name} {instance.node.line}"
+            carriers.setdefault((old, new, own), []).append(instance)
+    for (old, new, _), instances in carriers.items():
         if all(_unmatched(instance, old) for instance in instances):
             first = instances[0]
             used = sorted(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -35,11 +35,16 @@ def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:
         return ()  # the report says so
 
 
-def bound(interface: Interface, values: Mapping[str, Any], full_name: str) -> Interface:
-    """Return the interface of a program in a launched node, whose parameters have these values."""
+def bound(
+    interface: Interface, values: Mapping[str, Any], full_name: str, resolve: Callable[[str], str]
+) -> Interface:
+    """Return the interface of a program in a launched node, whose parameters have these values.
+
+    `resolve` returns the launched name of a topic in the code.
+    """
     if not interface.in_names:
         return interface
-    namer = _Namer(interface.in_names, values, full_name)
+    namer = _Namer(interface.in_names, values, full_name, resolve)
     endpoints = tuple(namer.endpoint(one) for one in interface.endpoints)
     flows = tuple(namer.finding(one) for one in interface.flows)
     known = all(one.names for one in endpoints) and all(_has_topics(one) for one in flows)
@@ -55,8 +60,13 @@ class _Namer:
     """Replaces parameters in the names of one node."""
 
     def __init__(
-        self, parameters: Sequence[ParameterName], values: Mapping[str, Any], full_name: str
+        self,
+        parameters: Sequence[ParameterName],
+        values: Mapping[str, Any],
+        full_name: str,
+        resolve: Callable[[str], str],
     ) -> None:
+        self._resolve = resolve
         self._parameters = parameters
         self._values = values
         self._namespace, _, self._own = full_name.rpartition("/")
@@ -84,19 +94,35 @@ class _Namer:
         return () if None in found else tuple(sorted({one for one in found if one}))
 
     def _in_code(self, text: str) -> str:
-        return substituted(text, lambda number: f"$(param {self._parameters[number].name})") or ""
+        return substituted(text, self._written) or ""
+
+    def _written(self, number: int) -> str:
+        one = self._parameters[number]
+        kind = "param" if one.kind == "parameter" else one.kind
+        return f"$({kind} {self._in_code(one.name)})" if one.name else f"$({kind})"
 
     def _value(self, number: int) -> str | None:
-        """Return the value of a parameter: from the launch file, else its default; None if it is unknown."""
+        """Return the value of a part of a name; None if it is unknown."""
         one = self._parameters[number]
+        if one.kind == "node":
+            return self._full_name
+        if one.kind == "namespace":
+            return f"{self._namespace}/"
+        if one.kind == "resolved":
+            name = self._deeper(one.name)
+            return None if name is None else self._resolve(name)
         places = (resolved(one.name, self._namespace or "/", self._own), f"{self._full_name}/{one.name}")
         given = next((self._values[place] for place in places if place in self._values), None)
         if given is not None:
             return str(given) if isinstance(given, str | int | float) else None
-        if one.default is None or self._depth >= DEEPEST:
+        return None if one.default is None else self._deeper(one.default)
+
+    def _deeper(self, text: str) -> str | None:
+        """Return a text with the values of its parts, which may contain parts themselves."""
+        if self._depth >= DEEPEST:
             return None
         self._depth += 1
         try:
-            return substituted(one.default, self._value)
+            return substituted(text, self._value)
         finally:
             self._depth -= 1

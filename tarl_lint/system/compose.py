@@ -65,7 +65,8 @@ def _instance(
     own = interface.name if isinstance(interface, Interface) else ""
     name = full_name(node, own)
     if isinstance(interface, Interface):
-        return Instance(node, name, bound(interface, parameter_values(launch, node, name), name))
+        resolve = Instance(node, name).resolve
+        return Instance(node, name, bound(interface, parameter_values(launch, node, name), name, resolve))
     package = workspace.package(node.package) if node.kind == "node" else None
     seen = (
         named_topics(package, node.executable)

@@ -14,7 +14,7 @@ _QUIET: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "cv_bridge", "cv2", "numpy", "scipy", "yaml", "matplotlib",
      "PIL",
      "roslib", "rospkg", "rosgraph", "genpy", "ament_index_python", "builtin_interfaces", "angles", "transforms3d",
-     "tf_transformations", "serial", "pandas", "torch", "sklearn", "shapely", "six", "future"]
+     "dynamic_reconfigure", "tf_transformations", "serial", "pandas", "torch", "sklearn", "shapely", "six", "future"]
 )  # fmt: skip
 _INTERFACES: Final = re.compile(r"\w+_(msgs|srvs|interfaces|actions?|msg|srv)$")
 _TRANSFORMS: Final = frozenset(
@@ -31,7 +31,7 @@ def closed(modules: Sequence[Module]) -> bool:
 
 def _quiet(name: str, own: set[str]) -> bool:
     first, _, rest = name.partition(".")
-    if rest.partition(".")[0] in ("msg", "srv", "action") or _INTERFACES.match(first):
+    if rest.partition(".")[0] in ("msg", "srv", "action", "cfg") or _INTERFACES.match(first):
         return True
     return first in own or first in _QUIET or first in _TRANSFORMS or first in sys.stdlib_module_names
 

@@ -56,7 +56,7 @@ def interface(
     texts = Texts({module.path: module for module in modules})  # also of modules in which nothing runs
     calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
     ends = (*_endpoints(machine, tracer, outlines), *calls)
-    endpoints = tuple(sorted(ends, key=lambda e: (e.span, e.role)))
+    endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))
     found = tuple(
         _marked(finding, flow, package, config)
         for finding, flow in zip(engine.findings(flows), flows, strict=True)

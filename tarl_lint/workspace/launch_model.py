@@ -31,6 +31,8 @@ class Setting:
 class LaunchedNode:
     """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
+    The first `inherited` of its remappings are those of groups around it.
+
     Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is the condition of which only the
     robot knows whether it holds, "" if the node is started in any case. For a component, `executable` is its class.
     """
@@ -46,6 +48,7 @@ class LaunchedNode:
     arguments: str = ""
     kind: Kind = "node"
     condition: str = ""
+    inherited: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -211,6 +211,7 @@ class Runner:
                 " ".join(performed(one, context) for one in _listed(values.get("arguments"))),
                 kind,
                 condition,
+                len(context.remaps),
             )
         )
 

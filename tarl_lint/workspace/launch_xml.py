@@ -150,6 +150,7 @@ class _Reader:
                 tuple(settings),
                 arguments,
                 condition=place.condition,
+                inherited=len(place.remaps),
             )
         )
 

@@ -152,3 +152,50 @@ def test_fingerprints_are_those_of_a_run_without_launch_files(arm, capsys):
     launched = {one["fingerprint"] for hop in document["systems"][0]["hops"] for one in hop["flows"]}
     linted = json.loads(run(capsys, "arm", "--format", "json")[1])
     assert launched == {one["fingerprint"] for one in linted["diagnostics"] if one["code"] == "TARL101"}
+
+
+TWO_ARMS = """
+import rostopic
+
+class Arm:
+    def __init__(self, side):
+        self.last = None
+        self.out = rospy.Publisher("{}/{}_target".format(rospy.get_name(), side), Float64, queue_size=1)
+        self.state = rospy.Publisher(rospy.resolve_name("state") + "/" + side, Float64, queue_size=1)
+        rospy.Subscriber("/" + side + "/joy", Float64, self.on_joy)
+
+    def on_joy(self, msg):
+        self.last = msg.data
+        self.out.publish(msg.data)
+
+    def tick(self):
+        self.state.publish(self.last)
+
+class Both:
+    def __init__(self):
+        self.arms = [Arm("left"), Arm("right")]
+
+    def run(self):
+        while not rospy.is_shutdown():
+            for arm in self.arms:
+                arm.tick()
+            rospy.sleep(0.1)
+
+rospy.init_node("relay")
+kind, topic, read = rostopic.get_topic_class(rospy.resolve_name("~any"), blocking=True)
+copies = rospy.Publisher(rospy.get_namespace() + "copies", Float64, queue_size=1)
+rospy.Subscriber(topic, kind, lambda msg: copies.publish(msg.data))
+Both().run()
+"""
+
+
+def test_two_objects_of_a_class_have_topics_of_their_own(arm, capsys):
+    remap = '<remap from="state" to="/arms"/>'
+    body = f'<group ns="robot">{node("both", remap)}</group>'
+    assert system(arm, capsys, TOP + TWO_ARMS, body) == [
+        "/left/joy → /robot/both → /arms/left  explicit",
+        "/left/joy → /robot/both → /robot/both/left_target  explicit",
+        "/right/joy → /robot/both → /arms/right  explicit",
+        "/right/joy → /robot/both → /robot/both/right_target  explicit",
+        "/robot/both/any → /robot/both → /robot/copies  explicit",
+    ]

@@ -16,6 +16,7 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.values import Obj, Value, pointer
 from tarl_lint.models.ros import publications, services
 from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
+from tarl_lint.models.ros.node_names import node_name
 
 MADE: Final[Mapping[str, Fact]] = {
     "rospy.ServiceProxy": Fact("client", "rospy.ServiceProxy", (0, "name"), (1, "service_class")),
@@ -39,9 +40,15 @@ SENDING: Final = frozenset(
 READING: Final = frozenset(["get_result"])
 
 
-def use_client(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value | None:
-    """Make a client, or call one of its methods or the client itself; None if the call is none of these."""
+def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value | None:
+    """Make a client, or call one of its methods or the client itself, or ask for the names of the node.
+
+    Return None if the call is none of these.
+    """
     table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
+    named = node_name(ctx, it)
+    if named is not None:
+        return named
     if name in table:
         return _made(ctx, Invocation(name, it.base, it.arguments, it.frame, it.call, table[name]))
     return _used(ctx, target, it) if target is not None else None
@@ -73,11 +80,12 @@ def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
 
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
     """Return the response of a service, or the result of an action; it also depends on the request."""
-    frame, key = it.frame, (it.frame.program.path, it.call.pos)
+    frame, place = it.frame, (it.frame.program.path, it.call.pos)
+    key = ctx.end_key(*place, frame)
     record = ctx.sources.get(key)
     if record is None and frame.statement is not None:
-        module = ctx.modules[key[0]].name
-        record = SourceRecord(*key, info.api, module, publications.qualname(frame), frame.statement, frame)
+        module = ctx.modules[place[0]].name
+        record = SourceRecord(*place, info.api, module, publications.qualname(frame), frame.statement, frame)
         record.kind = info.kind
         ctx.sources[key] = record
     asked = call_contexts.all_used(ctx, it.arguments)

@@ -39,10 +39,11 @@ def names_of(info: Publisher) -> tuple[int, int]:
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     """Record a sink, which depends on everything inside the message and on the conditions of the call."""
     frame, call = it.frame, it.call
-    key = (frame.program.path, call.pos)
+    place = (frame.program.path, call.pos)
+    key = ctx.end_key(*place, frame)
     record = ctx.sinks.get(key)
     if record is None:
-        record = SinkRecord(*key, _api(info, it), ctx.modules[key[0]].name, qualname(frame))
+        record = SinkRecord(*place, _api(info, it), ctx.modules[place[0]].name, qualname(frame))
         record.kind = info.kind
         ctx.sinks[key] = record
     ctx.store.reads.ask(names_of, info)

@@ -39,13 +39,13 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
         statement = place.call
         pos = call_position(place)
         place = place.caller
-    key = (place.program.path, pos)
+    path = place.program.path
+    key = ctx.end_key(path, pos, place)
     record = ctx.sources.get(key)
     if record is None:
         assert statement is not None  # noqa: S101 - a call stands in a statement
-        record = SourceRecord(
-            *key, it.fact.api, ctx.modules[key[0]].name, publications.qualname(place), statement, place
-        )
+        module = ctx.modules[path].name
+        record = SourceRecord(path, pos, it.fact.api, module, publications.qualname(place), statement, place)
         record.kind = KINDS.get(it.fact.kind, "topic")
         ctx.sources[key] = record
     record.via.update(via)
