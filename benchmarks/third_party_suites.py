@@ -90,6 +90,7 @@ SUITES = {
             "jsonschema==4.24.0",
             "pytz==2025.2",
             "pytest-mock==3.14.1",
+            "pytest-benchmark==5.1.0",  # its options are in the settings of the suite
             "email-validator",
         ),
         options=("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),
