@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.errors import SettingsError
@@ -109,6 +110,10 @@ def span(what: str, low: Any, high: Any, nominal: Any, profile: Profile | None =
     least, most = finite_number(low), finite_number(high)
     if least is None or most is None or not least < most:
         raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
+    if not isfinite(most - least):
+        raise SettingsError(
+            f"{what}: the range from {least:g} to {most:g} is too wide for a number: narrow it."
+        )
     if nominal is None:
         return Span(least, most)
     usual = finite_number(nominal)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.faults.topic import Arrivals, Channel, TopicFault, of_topic, up_to
-from pytest_tarl.finite_numbers import finite_number
+from pytest_tarl.faults.topic import LONGEST, Arrivals, Channel, TopicFault, moment, of_topic, up_to
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,18 +16,18 @@ def freeze(topic: str, most: float, *, at: float = 0.0) -> TopicFault:
 
     Raise SettingsError for an invalid moment.
     """
-    moment = finite_number(at)
-    if moment is None or moment < 0.0:
-        raise SettingsError(f"faults.freeze: at must be a moment in seconds, 0 or later, got {at!r}.")
+    begins = moment(at)
+    if begins is None:
+        raise SettingsError(f"faults.freeze: at must be a moment from 0 to {LONGEST:g} s, got {at!r}.")
 
     def begin(size: float, _draws: np.random.Generator) -> Channel:
         last: list[Any] = []
 
         def held(message: Any, now: float) -> Arrivals:
-            if not last or not moment <= now < moment + size:
+            if not last or not begins <= now < begins + size:
                 last[:] = [message]
             return [(0.0, last[0])]
 
         return held
 
-    return of_topic("freeze", topic, up_to("freeze", most), begin)
+    return of_topic("freeze", topic, up_to("freeze", most, LONGEST), begin)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pytest_tarl.faults.topic import Arrivals, Channel, TopicFault, of_topic, up_to
+from pytest_tarl.faults.topic import LONGEST, Arrivals, Channel, TopicFault, of_topic, up_to
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,4 +22,4 @@ def jitter(topic: str, most: float) -> TopicFault:
 
         return delayed
 
-    return of_topic("jitter", topic, up_to("jitter", most), begin)
+    return of_topic("jitter", topic, up_to("jitter", most, LONGEST), begin)

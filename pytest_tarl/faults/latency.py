@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pytest_tarl.faults.topic import Channel, TopicFault, of_topic, up_to
+from pytest_tarl.faults.topic import LONGEST, Channel, TopicFault, of_topic, up_to
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,4 +16,4 @@ def latency(topic: str, most: float) -> TopicFault:
     def begin(size: float, _draws: np.random.Generator) -> Channel:
         return lambda message, _: [(size, message)]
 
-    return of_topic("latency", topic, up_to("latency", most), begin)
+    return of_topic("latency", topic, up_to("latency", most, LONGEST), begin)

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.faults.topic import up_to
-from pytest_tarl.finite_numbers import finite_number
+from pytest_tarl.faults.topic import LONGEST, moment, up_to
 from pytest_tarl.spaces import Span
 
 if TYPE_CHECKING:
@@ -44,7 +43,9 @@ def restart(node: str, most: float, *, at: float) -> NodeRestart:
     """
     if not isinstance(node, str) or not node:
         raise SettingsError(f"faults.restart: name the node that tarl.start starts, got {node!r}.")
-    moment = finite_number(at)
-    if moment is None or moment <= 0.0:
-        raise SettingsError(f"faults.restart: at must be a moment in seconds, after 0, got {at!r}.")
-    return NodeRestart(node, moment, up_to("restart", most))
+    begins = moment(at)
+    if not begins:
+        raise SettingsError(
+            f"faults.restart: at must be a moment after 0 and up to {LONGEST:g} s, got {at!r}."
+        )
+    return NodeRestart(node, begins, up_to("restart", most, LONGEST))

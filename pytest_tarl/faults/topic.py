@@ -88,6 +88,17 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
+LONGEST = (
+    1e9  # s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
+)
+
+
+def moment(value: Any) -> float | None:
+    """Return a moment in s that the clock can represent; None for anything else."""
+    found = finite_number(value)
+    return found if found is not None and 0.0 <= found <= LONGEST else None
+
+
 def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
     """Return the sizes from 0, no fault, to `most`. Raise SettingsError unless it is positive, up to `limit`."""
     largest = finite_number(most)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
+import math
 from typing import Any
 
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl import Drift, faults
@@ -14,7 +17,7 @@ from pytest_tarl.design import value
 from pytest_tarl.drifts import drawn, drift, sizes
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.rollout import EpisodePlan
-from pytest_tarl.spaces import Space
+from pytest_tarl.spaces import Space, Span
 from pytest_tarl.workers.protocol import plan_message, planned
 from tests.plugin.tank import ONLINE, RECORD, changed
 
@@ -164,3 +167,45 @@ def test_a_misspelt_topic_or_field_of_a_fault_is_reported(spaced: pytest.Pyteste
     spaced.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = " ".join(spaced.runpytest(*ONLINE).stdout.str().split())
     assert "faults.bias of 'gauge': a message on /level (Float64) has no number 'deta'" in told
+
+
+ANY: tuple[Any, ...] = (
+    0, 1, -1, 0.5, -0.5, math.nan, math.inf, -math.inf, 10**400, 1e308, -1e308, 1e300, 5e-324, True, None, 1 + 2j,
+    "x", "", "/a", "a b", "/a//b", "\x1b[31m", b"x", [], (1, 2), {}, object, np.float64(0.5), np.nan, np.ones(2),
+)  # fmt: skip
+MAKERS = {
+    **{f"faults.{name}": getattr(faults, name) for name in faults.__all__},
+    **{f"Drift.{name}": getattr(Drift, name) for name in ("range", "choice", "step", "ramp", "burst")},
+}
+
+
+@pytest.mark.parametrize("name", MAKERS)
+@given(data=st.data())
+@settings(max_examples=40)
+def test_any_value_gives_a_usable_direction_or_a_message(name: str, data: st.DataObject) -> None:
+    values, named = [], {}
+    for parameter in inspect.signature(MAKERS[name]).parameters.values():
+        if parameter.kind is parameter.VAR_POSITIONAL:
+            values += data.draw(st.lists(st.sampled_from(ANY), max_size=3))
+        elif parameter.kind is parameter.KEYWORD_ONLY:
+            named[parameter.name] = data.draw(st.sampled_from(ANY))
+        else:
+            values.append(data.draw(st.sampled_from(ANY)))
+    try:
+        made = drift("t", "world", Drift.space(one=MAKERS[name](*values, **named))).value
+    except SettingsError as refused:
+        message = str(refused)
+    else:
+        message = ""
+        (extent,) = made.extents.values()
+        if isinstance(extent, Span):
+            assert extent.low <= made.nominal["one"] <= extent.high
+            assert math.isfinite(extent.high - extent.low)
+    assert "\x1b" not in message
+
+
+@pytest.mark.parametrize("name", ["latency", "jitter", "freeze"])
+def test_a_delay_longer_than_the_clock_counts_is_refused(name: str) -> None:
+    assert getattr(faults, name)("/odom", 1e9).extent.high == 1e9
+    with pytest.raises(SettingsError, match=r"above 0, at most 1e\+09, got 1e\+300"):
+        getattr(faults, name)("/odom", 1e300)

@@ -179,7 +179,7 @@ def test_a_field_without_numbers_is_refused(field: str) -> None:
         (lambda: faults.scale("/a", "data", 0.1, 0.5), "must include 1"),
         (lambda: faults.noise("/a", "data", 0), "above 0, got 0"),
         (lambda: faults.dropout("/a", 1.5), "at most 1, got 1.5"),
-        (lambda: faults.latency("/a", "x"), "above 0, got 'x'"),
+        (lambda: faults.latency("/a", "x"), "above 0, at most 1e.09, got 'x'"),
         (lambda: faults.latency(3, 1.0), "give the topic as text"),  # type: ignore[arg-type]
         (lambda: faults.sign("/a", ""), "give the field as text"),
         (lambda: faults.freeze("/a", 1.0, at=-1), "at must be a moment"),
