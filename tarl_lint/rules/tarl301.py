@@ -1,8 +1,8 @@
 """TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
 
-The two ends were meant to be connected: the last part of their names is equal and only the namespace differs
-(`/cmd_vel` and `/robot/cmd_vel`), or one letter differs, and their types are equal. The robot starts without an error
-and does not move. The keyboard teleoperation of the Kobuki did nothing for this reason
+The two ends were meant to be connected: one of them has a namespace more than the other (`/cmd_vel` and
+`/robot/cmd_vel`), or one letter differs, and their types are equal. The robot starts without an error and does not
+move. The keyboard teleoperation of the Kobuki did nothing for this reason
 (https://github.com/aliasrobotics/RVD/issues/581), and robots stand still when they are launched in a namespace but
 the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 

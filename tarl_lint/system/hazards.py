@@ -62,15 +62,22 @@ def single(endpoint: Endpoint) -> str:
 
 
 def spelled_alike(one: str, other: str) -> bool:
-    """Return whether two absolute names may be meant to be one: the last part is equal, or differs in one letter.
+    """Return whether two absolute names may be meant to be one: one has a namespace more, or another letter at its end.
 
+    `/robot/scan` may be meant to be `/scan`, but `/left/scan` and `/right/scan` are different names.
     A letter may be missing, be another one, or stand in the wrong place; names with fewer than five letters, and names
     that differ in a digit (`left_1`, `left_2`), are different names.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
-        return one != other
+        return one != other and _within(*sorted((above.split("/"), beyond.split("/")), key=len))
     return above == beyond and min(len(last), len(end)) >= 5 and _one_apart(last, end)
+
+
+def _within(few: list[str], many: list[str]) -> bool:
+    """Return whether all parts of a namespace are in another one, in their order."""
+    rest = iter(many)
+    return all(part in rest for part in few)
 
 
 def _one_apart(one: str, other: str) -> bool:

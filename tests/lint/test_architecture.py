@@ -52,8 +52,10 @@ def test_snippets_are_what_they_say(code, name, text, tmp_path, capsys):
     [
         ("/cmd_vel", "/robot/cmd_vel", True), ("/cmd_vel", "/cmd_vle", True), ("/cmd_vel", "/cmd_vell", True),
         ("/obstacle", "/obstacles", True), ("/cmd_vel", "/cmd_vel", False), ("/left_1", "/left_2", False),
-        ("/odom", "/oдom", False), ("/left", "/lift", False), ("/a/scan", "/b/scan", True),
-        ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", True),
+        ("/odom", "/oдom", False), ("/left", "/lift", False), ("/a/scan", "/b/scan", False),
+        ("/a/b/scan", "/a/scan", True),
+        ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", False),
+        ("/c/image_rect/compressed", "/c/image_calib/compressed", False),
     ],
 )  # fmt: skip
 def test_names_are_alike(one, other, alike):
