@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -50,6 +50,7 @@ class Tracer:
         self.forward_control = _reversed(self.graph.control)
         self._statements: dict[int, Written | None] = {}
         self._formers: dict[int, list[int]] = {}
+        self._before: dict[int, Sequence[tuple[int, list[int]]]] = {}
 
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
@@ -232,35 +233,56 @@ class Tracer:
     ) -> list[tuple[int, int]]:
         """Return the order constraints between statements, without those carried by a loop to its next iteration."""
         found: dict[tuple[int, int], None] = {}
-        turns: list[tuple[int, int]] = []
+        turns: dict[tuple[int, int], None] = {}
         function: dict[int, object] = {}
+        places = self.graph.places
         for node in sorted(nodes):
             after = statement_of.get(node)
             if after is None:
                 continue
-            function[after] = self.graph.places[node].frame.function
-            for former in self.before(node):
-                before = statement_of.get(former)
-                if before is None or before == after:
+            here = function[after] = places[node].frame.function
+            for before, formers in self.statements_before(node):
+                if before == after or (before, after) in found:
                     continue
-                same = self.graph.places[former].frame.function is function[after]
+                former = next(filter(statement_of.__contains__, formers), None)
+                if former is None:
+                    continue
+                same = places[former].frame.function is here
                 if same and written[before].start > written[after].start:
-                    turns.append((before, after))
+                    turns[before, after] = None
                 else:
                     found[before, after] = None
         return [*found, *before_loops(found, turns, function)]
 
-    def before(self, node: int) -> Iterator[int]:
-        """Yield the nodes that a node is made from or depends on; skip through nodes without a statement."""
-        pending = list(reversed(self.formers(node)))
+    def statements_before(self, node: int) -> Sequence[tuple[int, list[int]]]:
+        """Return the statements that a node depends on, each with its nodes. The same for all flows."""
+        known = self._before.get(node)
+        if known is None:
+            nodes: dict[int, list[int]] = {}
+            for former in self.before(node):
+                written = self.statement(former)
+                if written is not None:
+                    nodes.setdefault(id(written), []).append(former)
+            known = self._before[node] = [*nodes.items()]
+        return known
+
+    def before(self, node: int) -> Sequence[int]:
+        """Return the nodes that a node is made from or depends on; skip through nodes without a statement."""
+        formers = self.formers(node)
+        places = self.graph.places
+        if all(places[former].role != MERGED for former in formers):
+            return formers
+        pending = list(reversed(formers))
+        found: list[int] = []
         seen: set[int] = set()
         while pending:
             former = pending.pop()
-            if self.graph.places[former].role == MERGED and former not in seen:
+            if places[former].role == MERGED and former not in seen:
                 seen.add(former)
                 pending += reversed(self.formers(former))
             elif former not in seen:
-                yield former
+                found.append(former)
+        return found
 
     def formers(self, node: int) -> list[int]:
         """Return the nodes that a node is made from or depends on, in order."""
