@@ -11,7 +11,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import WEAK, further
 from pytest_tarl.repairing.centring import centred
-from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds
+from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.other_values import Others, OtherValues
@@ -97,6 +97,13 @@ class Examiner:
             if examined.reason in WEAK:
                 weak.append(guard)
                 edges += [examined.candidate] if examined.fresh else []
+            if examined.fresh and examined.candidate in self._missed.spread:
+                weak.append(guard)
+                accepted = self._followed(self.others.recentred(examined.candidate, trials), trials)
+                if accepted is not None or self._exhausted():
+                    return accepted
+            if operands(examined.candidate) == operands(candidate):
+                candidate = replace(candidate, mutations=examined.candidate.changes)  # centred once
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # this guard is as wide as in the search, so narrower guards cannot gain more
@@ -140,15 +147,15 @@ class Examiner:
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""
-        known = self.ledger.alike(candidate) or next(
-            (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate)), None
-        )
+        chosen = candidate in self.others.chosen
+        known = None if chosen else self._known(candidate)
         if known is not None:
             return known
         if self._goes_further(candidate):
             return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
-        candidate = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        known = self.ledger.alike(candidate)
+        if not chosen:
+            candidate = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
+            known = self.ledger.alike(candidate)
         if known is not None:
             return known
         placed = self.placing(candidate, trials)
@@ -167,7 +174,7 @@ class Examiner:
             examined = self._examined(nicer, trials)
             if isinstance(examined, Accepted):
                 return examined
-        if self.ledger.tests(candidate) >= SHARE and not self.others.bracketed(candidate):
+        if self.ledger.tests(candidate) >= SHARE and not chosen and not self.others.bracketed(candidate):
             self.waiting.append(candidate)
             return Tried(candidate, "never tested", ())
         for plainer in [one for one in self.waiting if oddness(one.mutations) < oddness(candidate.mutations)]:
@@ -176,6 +183,11 @@ class Examiner:
             if isinstance(examined, Accepted) or self._exhausted():
                 return examined
         return self._on_fresh_seeds(candidate)
+
+    def _known(self, candidate: Candidate) -> Tried | None:
+        """Return the result of a similar candidate that was examined before, or that waits for its test."""
+        waiting = (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate))
+        return self.ledger.alike(candidate) or next(waiting, None)
 
     def _goes_further(self, candidate: Candidate) -> bool:
         """Return whether a smaller step of the same operands under the same guard broke the designed world."""

@@ -18,7 +18,8 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 
 THIN = 0.5  # share of the margin; candidates that lose less are not improved
 STEPS = (1.12, 1.04)  # ratios of neighbouring values
-SEEDS = 3  # seeds on which to compare values
+SEEDS = 5  # seeds on which to compare values; a value that falls behind runs on fewer
+BEHIND = 2  # seeds after which a value that earned less is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio
 ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios to the neighbours of a value that fails on some seeds
 
@@ -57,15 +58,15 @@ def in_place(candidate: Candidate) -> Candidate:
 def _climbed(
     candidate: Candidate, trials: Trials, mutate: Mutate, pairs: Sequence[Pair], enough: float
 ) -> Candidate:
-    best, most = candidate, _mean(candidate, trials, pairs)
+    best, totals = candidate, [trials(candidate, pair.seed).total for pair in pairs]
     for step in STEPS:
         for ratio in (step, 1 / step):
             for _ in range(MOVES):
-                other = moved(best, ratio, mutate) if most < enough else None
-                earned = _mean(other, trials, pairs) if other is not None else most
-                if other is None or earned <= most:
+                other = moved(best, ratio, mutate) if fmean(totals) < enough else None
+                earned = _better(other, trials, pairs, totals) if other is not None else None
+                if other is None or earned is None:
                     break
-                best, most = other, earned
+                best, totals = other, earned
     return best
 
 
@@ -83,8 +84,16 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
     return replace(candidate, mutations=tuple(made))
 
 
-def _mean(candidate: Candidate, trials: Trials, pairs: Sequence[Pair]) -> float:
+def _better(
+    candidate: Candidate, trials: Trials, pairs: Sequence[Pair], totals: Sequence[float]
+) -> list[float] | None:
+    """Return a candidate's totals if they are higher in the mean than these; None as soon as it falls behind."""
+    earned: list[float] = []
     try:
-        return fmean(trials(candidate, pair.seed).total for pair in pairs)
+        for pair in pairs:
+            earned.append(trials(candidate, pair.seed).total)
+            if len(earned) >= BEHIND and fmean(earned) <= fmean(totals[: len(earned)]):
+                return None
     except RepairError:
-        return float("-inf")
+        return None
+    return earned

@@ -31,7 +31,8 @@ def enriched(mutants: Mutants, trials: Trials) -> Goal:
     """
     order = mutants.order
     goal, online = order.goal, order.online.recorded.sample
-    every = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
+    columns = zip(online.seeds, online.total.tolist(), online.steps.tolist(), strict=True)
+    every = [Pair(seed, total, steps) for seed, total, steps in columns]
     lost = [pair for pair in every if pair.total < goal.near]
     if not lost or len(lost) >= SELECTED * len(every):
         return goal

@@ -9,6 +9,21 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
 FEW = 0.25  # share of lost missions up to which a candidate's value counts as nearly right
+SPREAD = 5  # missions of a test that stand for all of them
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A mission of a refused candidate: its seed, the candidate's total, and the designed total."""
+
+    seed: int
+    total: float
+    designed: float
+
+    @property
+    def loss(self) -> float:
+        """Return the reward that the candidate lost."""
+        return self.designed - self.total
 
 
 @dataclass
@@ -16,12 +31,14 @@ class Missed:
     """Seeds on which tested candidates lost, each with the total that counts as near its designed mission.
 
     `few` contains the lost seeds of candidates that lost at most `FEW` of their missions, `poor` the candidates that
-    failed hardly any mission and earned too little.
+    failed hardly any mission and earned too little. `spread` contains, for each of the latter, missions of its test
+    that range from the least to the largest loss, each with the designed total.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
     few: dict[Candidate, list[tuple[int, float]]] = field(default_factory=dict)
     poor: set[Candidate] = field(default_factory=set)
+    spread: dict[Candidate, list[Lost]] = field(default_factory=dict)
 
     def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
         """Store the missions that a refused candidate lost."""
@@ -36,6 +53,7 @@ class Missed:
         failed = sum(not outcome.passed for outcome in found.drifted)
         if goal.passing and failed <= PASS_RATE_LOSS * len(found.drifted):
             self.poor.add(candidate)
+            self.spread[candidate] = _spread(found)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
         """Return whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
@@ -49,6 +67,14 @@ class Missed:
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
         """Return whether a candidate loses none of the missions that a refused one lost. Raises BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
+
+
+def _spread(found: Acceptance) -> list[Lost]:
+    """Return missions at equally spaced ranks of the loss, so that their mean is near that of the whole test."""
+    rows = zip(found.seeds, found.drifted, found.designed, strict=False)
+    ranked = sorted((Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss)
+    many = min(SPREAD, len(ranked))
+    return [ranked[(2 * at + 1) * len(ranked) // (2 * many)] for at in range(many)]
 
 
 def _loses(candidate: Candidate, trials: Trials, goal: Goal, seed: int, near: float) -> bool:

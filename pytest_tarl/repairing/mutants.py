@@ -108,4 +108,6 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     except TarlError:
         return Outcome(worst, passed=False)
     total = float(ended.trace.reward.sum())
-    return Outcome(min(total, worst) if ended.crashed else total, ended.passed, ended.judged)
+    return Outcome(
+        min(total, worst) if ended.crashed else total, ended.passed, ended.judged, ended.trace.steps
+    )

@@ -5,7 +5,7 @@ Each method is a generator that yields the next candidate to examine and receive
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from math import sqrt
 
 from pytest_tarl.errors import RepairError
@@ -13,7 +13,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.repairing.between import WEAK, Between, factor, stronger
 from pytest_tarl.repairing.centring import in_place, moved, neighbours
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
-from pytest_tarl.repairing.missed import Missed
+from pytest_tarl.repairing.missed import Lost, Missed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.accept import TOO_LITTLE
 from pytest_tarl.searching.search import Candidate, Trials
@@ -21,6 +21,9 @@ from tarl_lint.model import Operand
 
 POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
 MILDER = (0.75, 0.5)  # exponents for a candidate whose missions succeed but earn too little
+RATIOS = (1.1, 1.03)  # of neighbouring values, around one that loses too much in its test
+MOVES = 3  # largest number of moves in one direction with one ratio
+BETTER = 0.2  # share of the margin that a neighbour must earn more
 CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -37,6 +40,8 @@ class Others:
         self._pushed: set[Place] = set()
         self._bisected: set[Place] = set()
         self._mended: set[Candidate] = set()
+        self._recentred: set[Place] = set()
+        self.chosen: set[Candidate] = set()  # values that missions of a test prefer to the value tested
 
     def beyond(self, candidate: Candidate) -> OtherValues:
         """Propose larger steps for a candidate that fails on some seeds: it is at the edge of its window.
@@ -67,6 +72,50 @@ class Others:
                 if self.ledger.alike(other) is None and self._mends(other, refused, trials):
                     yield other
                     break
+
+    def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
+        """Propose the best value near one whose missions succeed and that loses too much, or nearly so, in its test.
+
+        Values are compared on missions that stand for the test, where a better one is seen however close it is.
+        Raises BudgetSpentError.
+        """
+        place = (operands(refused), refused.guard)
+        missions = self.missed.spread.get(refused)
+        if missions is None or place in self._recentred:
+            return
+        self._recentred.add(place)
+        before = -sum(max(one.loss, 0.0) for one in missions)
+        best, most = refused, before
+        for step in RATIOS:
+            for ratio in (step, 1 / step):
+                for _ in range(MOVES):
+                    other = moved(best, ratio, self.mutants.mutate)
+                    earned = self._earned(other, missions, most, trials) if other is not None else None
+                    if other is None or earned is None:
+                        break
+                    best, most = other, earned
+        if most - before >= BETTER * self.mutants.order.reference.margin * len(missions):
+            self.chosen.add(in_place(best))
+            yield in_place(best)
+
+    def _earned(
+        self, candidate: Candidate, missions: Sequence[Lost], most: float, trials: Trials
+    ) -> float | None:
+        """Return what a candidate earns more than designed on missions; None if at most `most`, as soon as known.
+
+        A mission is taken to earn at most what it does as designed.
+        """
+        earned = 0.0
+        trials.expect((candidate, one.seed) for one in missions)
+        for one in sorted(missions, key=lambda each: -each.loss):
+            try:
+                outcome = trials(candidate, one.seed)
+            except RepairError:
+                return None
+            earned += min(outcome.total - one.designed, 0.0)
+            if earned <= most or self.mutants.order.goal.lost(outcome):
+                return None
+        return earned
 
     def bracketed(self, candidate: Candidate) -> bool:
         """Return whether close values on both sides lost few missions, which indicates a narrow window between them."""

@@ -84,7 +84,8 @@ class Order:
         if self.searched is not None:
             return self.searched
         online = self.online.recorded.sample
-        pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
+        columns = zip(online.seeds, online.total.tolist(), online.steps.tolist(), strict=True)
+        pairs = [Pair(seed, total, steps) for seed, total, steps in columns]
         found = goal(pairs, self.reference, self.comparison.verdict.loss)
         if not self.comparison.sizes or self.world is None or self.drift is None:
             return found

@@ -36,7 +36,8 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             trials,
             order.goal,
             generator,
-            late=(*timing_operands(order), *same),
+            late=same,
+            timing=timing_operands(order),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

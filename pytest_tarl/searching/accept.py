@@ -34,11 +34,12 @@ SHARE = 2 / 3  # share of the risk α for the first candidate; each later one ge
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One episode: total reward, whether the test passed, and the verdicts of its formulas."""
+    """One episode: total reward, whether the test passed, the verdicts of its formulas, and its rewarded steps."""
 
     total: float
     passed: bool
     judged: tuple[Judged, ...] = ()
+    steps: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,10 +22,13 @@ class Gains:
         self.slack = slack
         self.proposed = proposed
         self._by_key: dict[Key, dict[float, float]] = {}
+        self._moved: set[tuple[Unit, float]] = set()
 
-    def enter(self, key: Key, factor: float, gain: float) -> None:
-        """Store the gain of a factor."""
+    def enter(self, key: Key, factor: float, gain: float, moved: bool | None = None) -> None:
+        """Store the gain of a factor, and whether it changed an episode; by default, whether there is a gain."""
         self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain
+        if gain if moved is None else moved:
+            self._moved.add((key[0], factor))
 
     def of(self, unit: Unit, guard: Guard) -> Mapping[float, float]:
         """Return the gains of a unit under a guard, by factor."""
@@ -48,27 +51,36 @@ class Gains:
         return any(max(gains.values()) > self.slack for gains in self._by_key.values())
 
     def moves(self, unit: Unit) -> bool:
-        """Return whether a unit ever changed a reward."""
-        return any(any(gains.values()) for (tried, _), gains in self._by_key.items() if tried == unit)
+        """Return whether a unit ever changed an episode."""
+        return any(moved == unit for moved, _ in self._moved)
 
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units except those moved both ways, under any guard, without changing a reward."""
-        seen: dict[Unit, list[float]] = {}
+        """Return the units except those moved both ways, under any guard, without changing an episode."""
+        tries: dict[Unit, int] = {}
         for (unit, _), by_factor in self._by_key.items():
-            seen.setdefault(unit, []).extend(gain for factor, gain in by_factor.items() if factor != 1.0)
-        return [unit for unit in among if len(seen.get(unit, ())) < len(NEAR) or any(seen[unit])]
+            tries[unit] = tries.get(unit, 0) + sum(factor != 1.0 for factor in by_factor)
+        moved = {unit for unit, _ in self._moved}
+        return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
 
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units that lost more than the slack with both near factors."""
+        """Return the units that lost with both near factors: more than the slack, or nothing where all is lost.
+
+        A mission that already earns the least cannot lose more, so there a changed episode without a gain counts.
+        """
         tried = {unit: self.of(unit, guard) for unit in among}
-        return [u for u, gains in tried.items() if all(gains.get(one, 0.0) < -self.slack for one in NEAR)]
+
+        def lost(unit: Unit, gains: Mapping[float, float], factor: float) -> bool:
+            gain = gains.get(factor)
+            return gain is not None and (gain < -self.slack or (gain == 0.0 and (unit, factor) in self._moved))
+
+        return [unit for unit, gains in tried.items() if all(lost(unit, gains, one) for one in NEAR)]
 
     def leading(
         self, before: float, guard: Guard, among: Sequence[Unit], least: float, inert: bool = False
     ) -> list[Unit]:
         """Return the units that gained at least `least` with the factor `before`, best first.
 
-        Units that never changed a reward are excluded unless `inert` is true.
+        Units that never changed an episode are excluded unless `inert` is true.
         """
         gains = {unit: self.of(unit, guard).get(before) for unit in (among if inert else self.moving(among))}
         kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]

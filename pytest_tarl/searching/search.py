@@ -41,10 +41,11 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """An episode in the drifted world: its seed and its total reward without any mutation."""
+    """An episode in the drifted world without any mutation: its seed, total reward and number of steps, if known."""
 
     seed: int
     total: float
+    steps: int | None = None
 
 
 @dataclass(frozen=True)
@@ -71,8 +72,11 @@ class Goal:
 
     @property
     def wanted(self) -> float:
-        """Return the gain per episode that a repair must bring."""
-        return max(self.enough - self.online, 0.0)
+        """Return the gain per episode that a repair must bring on the episodes that lost."""
+        if not self.pairs:
+            return max(self.enough - self.online, 0.0)
+        lost = fmean(pair.total for pair in self.pairs)
+        return max(self.enough_on([pair.seed for pair in self.pairs]) - lost, 0.0)
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
         """Return whether an episode earns about as much as the same seed in the designed world."""
@@ -143,6 +147,17 @@ class Trials:
         """Return a candidate's mean gain over the unmutated runs of the seeds on which it has run (at least one)."""
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
+
+    def moved(self, candidate: Candidate, pairs: Iterable[Pair]) -> bool:
+        """Return whether a candidate changed the reward or the length of any episode that it ran.
+
+        In a world that rewards the end only, a mission that fails in another way earns the same.
+        """
+        known = ((self._known.get((candidate, pair.seed)), pair) for pair in pairs)
+        return any(
+            outcome is not None and (outcome.total != pair.total or pair.steps not in (None, outcome.steps))
+            for outcome, pair in known
+        )
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
         """Store a candidate that nearly reached the goal on every seed but earned too little on average."""

@@ -66,9 +66,11 @@ class Sweep:
         generator: np.random.Generator | None = None,
         proposed: bool = False,
         late: Sequence[Operand] = (),
+        timing: Sequence[Operand] = (),
     ) -> None:
         self.units = units(operands)
         self.late = units(late)
+        self.timing = units(timing)
         self.mutate = mutate
         self.guards = guards
         self.trials = trials
@@ -95,6 +97,8 @@ class Sweep:
             for guard in chief:
                 yield from self._all(factor, guard, self._leading(before, guard, -self.slack))
                 yield from self._leaders_together(guard)
+        if not self._gains.anything():
+            yield from self._late_ones(self.timing, chief)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self._gains.moving(self.units))
@@ -104,7 +108,7 @@ class Sweep:
         yield from self._finely(chief)
         if not gained:
             yield from self._together()
-        yield from self._late_ones(chief)
+        yield from self._late_ones((*self.timing, *self.late), chief)
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
@@ -146,11 +150,12 @@ class Sweep:
                 yield from self._try(unit, guard, FLIP, pair)
         yield from self._refine(pair)
 
-    def _late_ones(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try operands that take part in no flow, such as the period of a timer, after those in flows failed."""
-        self.units = (*self.units, *self.late)
-        for guard in guards:
-            yield from self._near_ones(self.late, guard)
+    def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Try operands that take part in no flow, such as the period of a timer, after those in flows."""
+        new = [unit for unit in late if unit not in self.units]
+        self.units = (*self.units, *new)
+        for guard in guards if new else ():
+            yield from self._near_ones(new, guard)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try smaller steps where both near factors lost: the operand matters and its best value is close by."""
@@ -179,14 +184,19 @@ class Sweep:
         near = self._near(candidate, pair)
         if near is None:
             return
-        self._gains.enter((unit, guard), factor, self.trials.gain(candidate, self.goal.pairs))
+        self._learn(unit, candidate, factor)
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
-        self._gains.enter((unit, guard), factor, self.trials.gain(candidate, self.goal.pairs))
+        self._learn(unit, candidate, factor)
         if holds:
             yield from self._plainer(candidate, unit, pair)
             yield candidate
         if holds or (near and self.trials.loses(candidate)):
             self._refused.add((unit, guard))
+
+    def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
+        pairs = self.goal.pairs
+        gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
+        self._gains.enter((unit, candidate.guard), factor, gain, moved)
 
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
@@ -254,7 +264,8 @@ class Sweep:
             if best is None or before <= self.slack:
                 return
             yield from self._between(best, pair)
-            if self._gains.most(best) <= max(before, PROMISING * self.goal.wanted):
+            gained = self._gains.most(best)
+            if gained <= max(before, PROMISING * self.goal.wanted) and gained < ALMOST * self.goal.wanted:
                 return
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.repairing.between import factor
-from pytest_tarl.repairing.centring import THIN, centred
+from pytest_tarl.repairing.centring import SEEDS, THIN, centred
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -53,7 +53,7 @@ def test_a_value_moves_towards_the_middle_until_it_loses_at_most_half_the_margin
         assert after >= 10.0 - THIN * REFERENCE.margin
     if before >= 10.0 - THIN * REFERENCE.margin:
         assert moved == found
-        assert trials.spent <= 3
+        assert trials.spent <= SEEDS
 
 
 def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
@@ -69,4 +69,4 @@ def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
     found = Candidate((Mutation(constant, value),), ALWAYS)
     trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
-    assert trials.spent == 3
+    assert trials.spent == SEEDS

@@ -57,6 +57,7 @@ class Road:
             seeds=tuple(seeds),
             episodes=len(seeds),
             total=np.array([self.total(one, drift) for one in seeds]),
+            steps=np.full(len(seeds), 100),
             cells=cells,
             chain=SimpleNamespace(
                 episode=np.array([at for at, _ in way]), cell=np.array([cell for _, cell in way])
