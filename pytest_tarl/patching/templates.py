@@ -25,6 +25,7 @@ SCALES = (
     "typical",
     "sensor",
 )  # a default as is, as a multiple of the value's usual size, or divided by the sensor's usual size
+STRONGER = ("larger", "smaller")
 OPERATORS = (
     "op",
     "closed",
@@ -37,11 +38,12 @@ LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of a
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with the start value."""
+    """A parameter to search, with the start value; `stronger` says which values change more."""
 
     name: str
     default: float
     of: str = ""
+    stronger: str = "larger"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,7 @@ def template(path: Path) -> Template:
         raise SettingsError(f"{path}: a template has no {unknown[0]!r}; it has {', '.join(sorted(_KEYS))}.")
     try:
         parameters = tuple(
-            Parameter(name, float(one["default"]), one.get("of", ""))
+            Parameter(name, float(one["default"]), one.get("of", ""), one.get("stronger", STRONGER[0]))
             for name, one in data.get("parameters", {}).items()
         )
         made = Template(
@@ -140,6 +142,8 @@ def _check_placeholders(path: Path, made: Template) -> None:
     for one in made.parameters:
         if one.of not in SCALES:
             raise SettingsError(f"{path}: of = {one.of!r} is unknown; use typical or sensor, or omit it.")
+        if one.stronger not in STRONGER:
+            raise SettingsError(f"{path}: stronger = {one.stronger!r} is unknown; use larger or smaller.")
 
 
 def _placeholders(made: Template) -> Iterator[str]:

@@ -148,16 +148,10 @@ class Examiner:
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""
         chosen = candidate in self.others.chosen
-        known = None if chosen else self._known(candidate)
-        if known is not None:
-            return known
-        if self._goes_further(candidate):
-            return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
-        if not chosen:
-            candidate = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-            known = self.ledger.alike(candidate)
-        if known is not None:
-            return known
+        value = candidate if chosen else self._centred(candidate, trials)
+        if isinstance(value, Tried):
+            return value
+        candidate = value
         placed = self.placing(candidate, trials)
         if placed is None:
             self._refuse(Refused(candidate, "not at its definition"))
@@ -183,6 +177,16 @@ class Examiner:
             if isinstance(examined, Accepted) or self._exhausted():
                 return examined
         return self._on_fresh_seeds(candidate)
+
+    def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
+        """Return the candidate with its best value nearby; the result if it, or one like it, need not be examined."""
+        known = self._known(candidate)
+        if known is not None:
+            return known
+        if self._goes_further(candidate):
+            return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
+        better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
+        return self.ledger.alike(better) or better
 
     def _known(self, candidate: Candidate) -> Tried | None:
         """Return the result of a similar candidate that was examined before, or that waits for its test."""

@@ -72,7 +72,9 @@ class Missed:
 def _spread(found: Acceptance) -> list[Lost]:
     """Return missions at equally spaced ranks of the loss, so that their mean is near that of the whole test."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
-    ranked = sorted((Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss)
+    ranked = sorted(
+        (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss
+    )
     many = min(SPREAD, len(ranked))
     return [ranked[(2 * at + 1) * len(ranked) // (2 * many)] for at in range(many)]
 

@@ -23,7 +23,7 @@ POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of i
 MILDER = (0.75, 0.5)  # exponents for a candidate whose missions succeed but earn too little
 RATIOS = (1.1, 1.03)  # of neighbouring values, around one that loses too much in its test
 MOVES = 3  # largest number of moves in one direction with one ratio
-BETTER = 0.2  # share of the margin that a neighbour must earn more
+BETTER = 0.1  # share of the margin that a neighbour must earn more
 CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
 
 OtherValues = Generator[Candidate, Tried, None]

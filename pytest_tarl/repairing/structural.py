@@ -6,19 +6,17 @@ Each parameter of a template at an expression is an operand like any other, so t
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations, groupby
 
-import numpy as np
-
 from pytest_tarl.errors import RepairError
-from pytest_tarl.learning.tables import START, Sample
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand, SiteId, Span, Step
@@ -30,12 +28,19 @@ MOST = {
     "pair": 4,
     "sensor": 3,
 }  # expressions at which to try a template, by its kind
+FIRST = (
+    2  # expressions that get all templates first: the slices' first one and the one next to the publish call
+)
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
 _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
 
 
 class Structures:
-    """A search over templates, cheapest first; templates of equal cost share an equal part of the episodes."""
+    """A search over templates, cheapest first: at the best `FIRST` expressions of a kind, then at the others.
+
+    Templates of equal cost share a part of the episodes, in proportion to their number of parameters; if one gains
+    much, they also get half of what the others have left.
+    """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
         self.order = order
@@ -48,17 +53,29 @@ class Structures:
         """Yield confirmed candidates, cheap templates first. Raises BudgetSpentError."""
         groups = self._groups()
         whole = self.trials.budget
+        sizes = [len(operands) for operands in groups]
         for number, operands in enumerate(groups):
-            sweep = Sweep(operands, self.mutate, self.guards, self.trials, self.order.goal, proposed=True)
+            sweep = Sweep(
+                operands,
+                self.mutate,
+                self.guards,
+                self.trials,
+                self.order.goal,
+                proposed=True,
+                weaker=self.weaker,
+            )
             self._sweeps.append(sweep)
-            self.trials.budget = self.trials.spent + (whole - self.trials.spent) // (len(groups) - number)
+            left = whole - self.trials.spent
+            share = left * sizes[number] // sum(sizes[number:])
+            self.trials.budget = self.trials.spent + share
+            self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
             try:
                 yield from sweep.candidates()
             except BudgetSpentError:
                 if number == len(groups) - 1:
                     raise
             finally:
-                self.trials.budget = whole
+                self.trials.budget, self.trials.reserve = whole, 0
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gains of each template's best values."""
@@ -79,19 +96,29 @@ class Structures:
             )
         return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
 
+    def weaker(self, operand: Operand, factor: float) -> bool:
+        """Return whether a factor on a parameter makes the structural change weaker."""
+        form = self._found[operand]
+        growing = {one.name: one.stronger == "larger" for one in form.template.parameters}
+        return 0.0 < factor != 1.0 and (factor < 1.0) == growing.get(form.parameter, factor > 1.0)
+
     def _groups(self) -> list[list[Operand]]:
         spots = list(_spots(self.order))
         known = templates(self.order.root)
-        groups = []
-        for _, same in groupby(known, key=lambda one: one.cost):
-            operands: list[Operand] = []
-            for one in same:
-                for operand, form in _forms(self.order, one, spots):
-                    self._found[operand] = form
-                    operands.append(operand)
-            if operands:
-                groups.append(operands)
+        groups: list[list[Operand]] = []
+        for first in (True, False):
+            for _, same in groupby(known, key=lambda one: one.cost):
+                operands = [operand for one in same for operand in self._at(one, spots, first)]
+                groups += [operands] if operands else []
         return groups
+
+    def _at(self, template: Template, spots: Sequence[_Spot], first: bool) -> Iterator[Operand]:
+        """Yield a template's operands at the first or at the other expressions, and remember their forms."""
+        for number, forms in enumerate(_forms(self.order, template, spots)):
+            if (number < FIRST) == first:
+                for operand, form in forms:
+                    self._found[operand] = form
+                    yield operand
 
 
 def form_words(order: Order, mutation: Mutation) -> str:
@@ -115,24 +142,26 @@ class _Spot:
         self.typical = typical
 
 
-def _forms(order: Order, template: Template, spots: Sequence[_Spot]) -> Iterator[tuple[Operand, Form]]:
-    """Yield an operand for every parameter of a template at every expression that it fits."""
+def _forms(order: Order, template: Template, spots: Sequence[_Spot]) -> Iterator[list[tuple[Operand, Form]]]:
+    """Yield, for every expression that a template fits, an operand for each of its parameters."""
     kind = "value" if template.on == "sensor" else template.on
     if template.on == "pair":
         for one, other in _pairs(spots):
             partner = _span(other.source, other.node)
-            yield from _operands(template, one, Form(template, partner=partner), 1.0)
+            yield list(_operands(template, one, Form(template, partner=partner), 1.0))
         return
     fitting = [spot for spot in spots if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     fitting.sort(key=lambda spot: spot.kind != kind)
     for spot in fitting[: MOST[template.on]]:
         if template.on != "sensor":
-            yield from _operands(template, spot, Form(template), spot.typical)
+            yield list(_operands(template, spot, Form(template), spot.typical))
             continue
+        by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:
             if sensor.numeric and sensor.guardable and sensor.low is not None and sensor.high is not None:
                 reach = max(abs(sensor.low), abs(sensor.high)) or 1.0
-                yield from _operands(template, spot, Form(template, sensor=sensor), 1.0 / reach)
+                by_sensor += _operands(template, spot, Form(template, sensor=sensor), 1.0 / reach)
+        yield by_sensor
 
 
 def _operands(template: Template, spot: _Spot, bare: Form, scale: float) -> Iterator[tuple[Operand, Form]]:
@@ -149,21 +178,19 @@ def _operands(template: Template, spot: _Spot, bare: Form, scale: float) -> Iter
 
 def _spots(order: Order) -> Iterator[_Spot]:
     """Yield the expressions in the statements of flows, in the order of the statements."""
-    sizes = _typical(order)
+    sizes = TypicalSizes(order)
     seen: set[tuple[str, int]] = set()
     for step in _steps(order):
         try:
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
             continue
-        for node, kind in _expressions(source, step.span, str(step.site) in sizes):
+        for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site):
             key = (source.path, source.start(node))
             if key not in seen:
                 seen.add(key)
-                usual = sizes.get(str(step.site), 1.0)
-                yield _Spot(
-                    step.site, source, node, kind, _threshold(node) if kind == "comparison" else usual
-                )
+                usual = threshold(node) if kind == "comparison" else sizes.of(step.site, node)
+                yield _Spot(step.site, source, node, kind, usual)
 
 
 def _steps(order: Order) -> list[Step]:
@@ -259,29 +286,6 @@ def _axis_apart(one: _Spot, other: _Spot) -> bool:
 def _assigned(spot: _Spot) -> str:
     statement = spot.source.statement(spot.node)
     return ast.unparse(statement.targets[0]) if isinstance(statement, ast.Assign) else ""
-
-
-def _threshold(node: ast.expr) -> float:
-    """Return the absolute value of the number in a comparison, 1 if there is none."""
-    numbers = [each.value for each in ast.walk(node) if isinstance(each, ast.Constant)]
-    sizes = [abs(float(value)) for value in numbers if isinstance(value, int | float) and value]
-    return sizes[0] if sizes else 1.0
-
-
-def _typical(order: Order) -> Mapping[str, float]:
-    """Return the mean recorded flow value of each site, by site id."""
-    sample: Sample = order.fixture.sample
-    found: dict[str, float] = {}
-    for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):
-        visits = recorded.visits
-        events = visits.state != START
-        site = (visits.state[events] - 1) % max(recorded.width, 1)
-        counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
-        flows = recorded.flow.sum(axis=0)
-        for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
-            if count and flow:
-                found[place.id] = flow / count
-    return found
 
 
 def _span(source: Document, node: ast.expr) -> Span:

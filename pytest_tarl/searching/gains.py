@@ -50,6 +50,11 @@ class Gains:
         """Return whether any gain is large enough to build upon."""
         return any(max(gains.values()) > self.slack for gains in self._by_key.values())
 
+    def idle(self, unit: Unit) -> bool:
+        """Return whether a proposed change, as proposed, changed no episode."""
+        tried = any(1.0 in gains for (one, _), gains in self._by_key.items() if one == unit)
+        return self.proposed and tried and (unit, 1.0) not in self._moved
+
     def moves(self, unit: Unit) -> bool:
         """Return whether a unit ever changed an episode."""
         return any(moved == unit for moved, _ in self._moved)
@@ -62,8 +67,8 @@ class Gains:
         moved = {unit for unit, _ in self._moved}
         return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
 
-    def lost_both_ways(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units that lost with both near factors: more than the slack, or nothing where all is lost.
+    def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
+        """Return the units that lost with all of these factors: more than the slack, or nothing where all is lost.
 
         A mission that already earns the least cannot lose more, so there a changed episode without a gain counts.
         """
@@ -71,9 +76,11 @@ class Gains:
 
         def lost(unit: Unit, gains: Mapping[float, float], factor: float) -> bool:
             gain = gains.get(factor)
-            return gain is not None and (gain < -self.slack or (gain == 0.0 and (unit, factor) in self._moved))
+            return gain is not None and (
+                gain < -self.slack or (gain == 0.0 and (unit, factor) in self._moved)
+            )
 
-        return [unit for unit, gains in tried.items() if all(lost(unit, gains, one) for one in NEAR)]
+        return [unit for unit, gains in tried.items() if all(lost(unit, gains, one) for one in factors)]
 
     def leading(
         self, before: float, guard: Guard, among: Sequence[Unit], least: float, inert: bool = False

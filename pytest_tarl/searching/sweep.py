@@ -8,7 +8,7 @@ first. If no single operand suffices, the search combines those that gained.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -34,7 +34,8 @@ LEADING = (
 HINT = 0.005  # ... if they gained at least this share of the loss
 FLIP = -1.0  # flips the sign
 BETWEEN = (1.5, 0.65)
-FINE = (1.22, 0.82, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
+FINER = (1.22, 0.82)
+FINE = (*FINER, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
 LAST = (10.0, 0.05)
 FLIPPED = 3  # units that gained from a smaller value and are tried with the other sign
 REFINEMENTS = 3  # consecutive refinements of one operand ...
@@ -53,7 +54,7 @@ class Sweep:
 
     The first two guards are used throughout (the second is the second opinion), the others only at the end. With
     `proposed` the operands' values are proposals that the program does not contain yet, so they are first tried
-    unchanged.
+    unchanged; where such a change is idle, a factor that makes it `weaker` is left out.
     """
 
     def __init__(
@@ -67,10 +68,12 @@ class Sweep:
         proposed: bool = False,
         late: Sequence[Operand] = (),
         timing: Sequence[Operand] = (),
+        weaker: Callable[[Operand, float], bool] = lambda _, __: False,
     ) -> None:
         self.units = units(operands)
         self.late = units(late)
         self.timing = units(timing)
+        self.weaker = weaker
         self.mutate = mutate
         self.guards = guards
         self.trials = trials
@@ -90,6 +93,20 @@ class Sweep:
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
+        yield from self._in_large_steps(chief)
+        gained = self._gains.anything()
+        if gained:
+            yield from self._together()
+        yield from self._finely(chief)
+        if not gained:
+            yield from self._together()
+        yield from self._late_ones((*self.timing, *self.late), chief)
+        for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
+            for guard in self.guards:
+                yield from self._all(factor, guard, self.units)
+
+    def _in_large_steps(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
+        """Try every unit in steps that are large enough to show whether it matters."""
         for block in blocks(self.units):
             for guard in chief:
                 yield from self._near_ones(block, guard)
@@ -102,16 +119,6 @@ class Sweep:
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self._gains.moving(self.units))
-        gained = self._gains.anything()
-        if gained:
-            yield from self._together()
-        yield from self._finely(chief)
-        if not gained:
-            yield from self._together()
-        yield from self._late_ones((*self.timing, *self.late), chief)
-        for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
-            for guard in self.guards:
-                yield from self._all(factor, guard, self.units)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
@@ -158,10 +165,16 @@ class Sweep:
             yield from self._near_ones(new, guard)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try smaller steps where both near factors lost: the operand matters and its best value is close by."""
-        lost = self._gains.lost_both_ways(guard, among)
+        """Try smaller steps where both near factors lost: the operand matters and its best value is close by.
+
+        Where these lose as well and nothing else gained, go on with `FINER` steps.
+        """
+        lost = self._gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
             yield from self._all(factor, guard, lost)
+        still = [] if self._gains.anything() else self._gains.lost_both_ways(guard, lost, BETWEEN)
+        for factor in FINER if still else ():
+            yield from self._all(factor, guard, still)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Try small steps on operands that move the reward and were not refined: their window may be narrow."""
@@ -179,6 +192,8 @@ class Sweep:
         mutations = unit.mutations(self.mutate, factor)
         candidate = Candidate(mutations, guard)
         if not mutations or candidate in self._tried:
+            return
+        if self._gains.idle(unit) and self.weaker(unit.operands[0], factor):
             return
         self._tried.add(candidate)
         near = self._near(candidate, pair)

@@ -1,0 +1,94 @@
+"""Usual sizes of the values that expressions have in the recording, as start values for structural changes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.learning.tables import START, Sample
+from pytest_tarl.patching.document import document
+from pytest_tarl.repairing.request import Order
+from tarl_lint.model import SiteId
+
+BOUNDING = ("abs", "float", "int", "max", "min", "round")
+
+
+class TypicalSizes:
+    """Mean absolute values in the recording, by site, by assigned name, and by constant."""
+
+    def __init__(self, order: Order) -> None:
+        self.by_site = _recorded(order)
+        self._by_name = dict(_assigned(order, self.by_site))
+        self._constants = {
+            (operand.site, operand.code): abs(float(operand.value))
+            for step in order.analysis.sites
+            for operand in order.analysis.operands(step.site)
+            if operand.value and not isinstance(operand.value, bool)
+        }
+
+    def of(self, site: SiteId, node: ast.expr) -> float:
+        """Return the usual size of an expression of a site: recorded, else estimated from its parts, else 1."""
+        return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
+
+    def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
+        """Return the size that follows from the sizes of the parts; of a sum, the largest; None if unknown."""
+        if isinstance(node, ast.Constant):
+            number = isinstance(node.value, int | float) and not isinstance(node.value, bool)
+            return abs(float(node.value)) if number else None  # type: ignore[arg-type]
+        if isinstance(node, ast.UnaryOp):
+            return self._estimated(site, node.operand)
+        if isinstance(node, ast.BinOp):
+            return self._of_two(site, node)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in BOUNDING:
+            return max(filter(None, (self._estimated(site, each) for each in node.args)), default=None)
+        code = ast.unparse(node)
+        return self._constants.get((site, code)) or self._by_name.get(code)
+
+    def _of_two(self, site: SiteId, node: ast.BinOp) -> float | None:
+        left, right = self._estimated(site, node.left), self._estimated(site, node.right)
+        if isinstance(node.op, ast.Add | ast.Sub):
+            return max(filter(None, (left, right)), default=None)
+        if not left or not right:
+            return None
+        if isinstance(node.op, ast.Mult):
+            return left * right
+        return left / right if isinstance(node.op, ast.Div) else None
+
+
+def threshold(node: ast.expr) -> float:
+    """Return the absolute value of the number in a comparison, 1 if there is none."""
+    numbers = [each.value for each in ast.walk(node) if isinstance(each, ast.Constant)]
+    sizes = [abs(float(value)) for value in numbers if isinstance(value, int | float) and value]
+    return sizes[0] if sizes else 1.0
+
+
+def _recorded(order: Order) -> Mapping[str, float]:
+    """Return the mean recorded flow value of each site, by site id."""
+    sample: Sample = order.fixture.sample
+    found: dict[str, float] = {}
+    for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):
+        visits = recorded.visits
+        events = visits.state != START
+        site = (visits.state[events] - 1) % max(recorded.width, 1)
+        counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
+        flows = recorded.flow.sum(axis=0)
+        for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
+            if count and flow:
+                found[place.id] = flow / count
+    return found
+
+
+def _assigned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    """Yield the assigned names and attributes of the flows with the size recorded where they are assigned."""
+    for step in order.analysis.sites:
+        size = by_site.get(str(step.site))
+        try:
+            source = document(step.span.path, order.analysis.sources[step.span.path])
+        except (RepairError, KeyError):
+            continue
+        for node in ast.walk(source.tree):
+            if size and isinstance(node, ast.Assign) and node.lineno == step.span.line:
+                yield ast.unparse(node.targets[0]), size

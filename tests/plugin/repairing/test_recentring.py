@@ -1,0 +1,60 @@
+"""A value that loses too much in its test moves on missions of that test, however near the better value is."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.repairing.between import factor
+from pytest_tarl.repairing.ledger import Ledger
+from pytest_tarl.repairing.missed import SPREAD, Missed
+from pytest_tarl.repairing.other_values import Others
+from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tests.plugin.searching.test_search import operand
+
+LITERAL = operand(3, "2.0", 2.0)
+REFERENCE = Reference((10.0, 10.0), 1.0, 0.5, 0.0)
+GOAL = Goal((Pair(0, 0.0),), near=9.0, enough=9.5, online=0.0, passing=True)
+
+
+def outcome(by: float, best: float, seed: int) -> Outcome:
+    """Return a mission that loses with the distance from the best factor, more on some seeds than on others."""
+    total = 10.0 - (1.0 + seed % 5) * 4.0 * abs(by / best - 1.0)
+    return Outcome(total, total > 5.0)
+
+
+def recentred(best: float, failing: bool = False) -> list[float]:
+    """Return the factors proposed after a test of factor 2."""
+    candidate = Candidate((Mutation(LITERAL, 4.0),), ALWAYS)
+    seen = tuple(Outcome(-5.0, False) if failing else outcome(2.0, best, seed) for seed in range(60))
+    found = Acceptance(
+        False, "not shown", seen, (), seeds=tuple(range(60)), designed=tuple(10.0 for _ in range(60))
+    )
+    missed = Missed()
+    missed.learn(candidate, found, GOAL, REFERENCE)
+    mutants: Any = SimpleNamespace(mutate=mutations, order=SimpleNamespace(goal=GOAL, reference=REFERENCE))
+    trials = Trials(lambda one, seed: outcome(factor(one.mutations[0]) or 1.0, best, seed), 300)
+    others = Others(mutants, Ledger(), missed)
+    proposed = list(others.recentred(candidate, trials))
+    assert set(proposed) == others.chosen
+    assert trials.spent <= 12 * SPREAD
+    return [factor(one.mutations[0]) or 1.0 for one in proposed]
+
+
+@pytest.mark.parametrize("best", [1.94, 2.06, 2.2, 1.8])
+def test_the_value_moves_towards_the_best_one(best: float) -> None:
+    (by,) = recentred(best)
+    assert abs(by / best - 1.0) < abs(2.0 / best - 1.0)
+
+
+def test_a_value_that_loses_nothing_stays() -> None:
+    assert recentred(2.0) == []
+
+
+def test_missions_that_fail_say_nothing_about_the_value() -> None:
+    assert recentred(1.94, failing=True) == []

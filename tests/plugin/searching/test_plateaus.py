@@ -1,0 +1,48 @@
+"""Where only the end is rewarded, failed missions earn the same: what they did tells which constants matter."""
+
+from __future__ import annotations
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.repairing.between import factor
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from tests.plugin.searching.test_search import operand
+
+LOST, STEPS = -4.0, 100
+RIGHT = operand(3, "38.0", 38.0)
+INERT = [operand(line, f"{line}.5", line + 0.5) for line in range(4, 14)]
+
+
+def searched(low: float, high: float, steps: int | None) -> tuple[Candidate | None, int]:
+    """Search a world in which one factor of one constant succeeds; return what was found and the episodes."""
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        moved = {one.operand: factor(one) or 1.0 for one in candidate.mutations}
+        by = moved.get(RIGHT, 1.0)
+        won = low <= by <= high
+        return Outcome(10.0 if won else LOST, won, steps=STEPS + round(10 * (by - 1.0)))
+
+    pairs = tuple(Pair(seed, LOST, steps) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=LOST, passing=True)
+    trials = Trials(run, 300)
+    sweep = Sweep([*INERT, RIGHT], mutations, (ALWAYS,), trials, goal)
+    found = next(sweep.candidates(), None)
+    return found, trials.spent
+
+
+def test_a_constant_that_changes_failed_missions_gets_small_steps_before_those_that_do_not() -> None:
+    found, spent = searched(1.4, 1.8, STEPS)
+    blind, more = searched(1.4, 1.8, None)
+    assert found is not None
+    assert {one.operand for one in found.mutations} == {RIGHT}
+    assert blind is not None
+    assert spent <= 2 * (len(INERT) + 1) + 8 < more
+
+
+def test_steps_become_smaller_while_nothing_gains() -> None:
+    found, spent = searched(1.15, 1.3, STEPS)
+    assert found is not None
+    assert {one.operand for one in found.mutations} == {RIGHT}
+    assert spent <= 2 * (len(INERT) + 1) + 12
