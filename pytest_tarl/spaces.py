@@ -128,10 +128,18 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
     """Return checked options; the first one equal to `usual` is nominal. Raise SettingsError for invalid ones."""
     if len(options) < 2:
         raise SettingsError(f"Drift.choice needs at least two options, got {len(options)}.")
-    found = [index for index, option in enumerate(options) if option is usual or option == usual]
+    found = [index for index, option in enumerate(options) if option is usual or _equal(option, usual)]
     if not found:
         raise SettingsError(f"Drift.choice: the nominal value {usual!r} is none of {options!r}.")
     return Choice(options, found[0])
+
+
+def _equal(option: Any, usual: Any) -> bool:
+    """Return whether two options are equal; False if they cannot say, as arrays, whose comparison is an array."""
+    try:
+        return bool(option == usual)
+    except (ValueError, TypeError):
+        return False
 
 
 def space(parts: Mapping[str, Any]) -> Space:

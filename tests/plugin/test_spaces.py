@@ -209,3 +209,9 @@ def test_a_delay_longer_than_the_clock_counts_is_refused(name: str) -> None:
     assert getattr(faults, name)("/odom", 1e9).extent.high == 1e9
     with pytest.raises(SettingsError, match=r"above 0, at most 1e\+09, got 1e\+300"):
         getattr(faults, name)("/odom", 1e300)
+
+
+def test_options_can_be_arrays() -> None:
+    calm, windy = np.zeros(2), np.ones(2)
+    made = drift("t", "world", Drift.space(wind=Drift.choice(calm, windy, nominal=windy))).value
+    assert made.nominal == {"wind": 1.0}
