@@ -1,7 +1,8 @@
 """Write the bill of materials of a release beside its wheel, in the form of CycloneDX 1.6.
 
 `python .ci/sbom.py dist/tarl-0.1.0-py3-none-any.whl` names what the wheel needs, with all extras that it has for users,
-at the versions and with the digests of requirements-dev.txt. The same wheel and lock give the same bytes.
+at the versions and with the digests of requirements-dev.txt and requirements-simulators.txt. The same wheel and locks
+give the same bytes.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from email.parser import Parser
 from pathlib import Path
 from typing import Any
 
-LOCK = Path(__file__).resolve().parent.parent / "requirements-dev.txt"
+ROOT = Path(__file__).resolve().parent.parent
+LOCKS = (ROOT / "requirements-dev.txt", ROOT / "requirements-simulators.txt")
 DEVELOPMENT = {"dev", "bench"}  # extras that are not for users
 _PINNED = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==(\S+)(?: ; ([^\\]*?))? *\\?$")
 _VIA = re.compile(r"^    #(?: via|  ) +(\S+)")
@@ -28,8 +30,13 @@ def main() -> None:
         sys.exit("usage: python .ci/sbom.py dist/NAME.whl")
     wheel = Path(sys.argv[1])
     target = wheel.with_suffix(".cdx.json")
-    target.write_text(json.dumps(bill(wheel, LOCK.read_text()), indent=2, sort_keys=True) + "\n")
+    target.write_text(json.dumps(bill(wheel, locked()), indent=2, sort_keys=True) + "\n")
     print(f"wrote {target}")
+
+
+def locked() -> str:
+    """Return the text of all locks."""
+    return "\n".join(lock.read_text() for lock in LOCKS)
 
 
 def bill(wheel: Path, lock: str) -> dict[str, Any]:
@@ -37,7 +44,7 @@ def bill(wheel: Path, lock: str) -> dict[str, Any]:
     with zipfile.ZipFile(wheel) as archive:
         (metadata,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
         about = Parser().parsestr(archive.read(metadata).decode())
-    pinned = list(pins(lock))
+    pinned = merged(pins(lock))
     needed = closure({normal(name) for name in asked(about.get_all("Requires-Dist") or [])}, pinned)
     own = {
         "type": "library",
@@ -91,6 +98,16 @@ def pins(lock: str) -> Iterator[dict[str, Any]]:
             current["via"].append(via[1])
     if current is not None:
         yield current
+
+
+def merged(found: Iterator[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return pins, each once though several locks have it, with all by whom it is needed."""
+    once: dict[tuple[str, str], dict[str, Any]] = {}
+    for one in found:
+        known = once.setdefault((normal(one["name"]), one["version"]), one)
+        if known is not one:
+            known["via"] += [via for via in one["via"] if via not in known["via"]]
+    return list(once.values())
 
 
 def closure(names: set[str], pinned: list[dict[str, Any]]) -> set[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -221,6 +221,10 @@ class Tarl:
         amount = _reward(sum(given.values()) if total is None else total)
         self._recorder.reward(amount, given)
         self._rewards += 1
+
+    def at_end(self, call: Callable[[], object]) -> None:
+        """Call a function when the episode is over, however it ended; the last one first."""
+        self._open.callback(call)
 
     def conclude(self, ended: BaseException | None) -> None:
         """Evaluate the formulas after the body, which raised `ended` or None. Raise RequirementError for a violation.

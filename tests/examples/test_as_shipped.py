@@ -14,11 +14,21 @@ import pytest
 
 from tests.examples.driving import EXAMPLES
 
+GYMNASIUM, MUJOCO = (find_spec(name) is not None for name in ("gymnasium", "mujoco"))
 FORMULAS = sys.version_info < (3, 13) and find_spec("rtamt") is not None
 
 
 @pytest.mark.parametrize(
-    ("example", "tests"), [("shuttle", 4), ("line_follower", 1), ("quadrotor", 1), ("workspace", 1)]
+    ("example", "tests"),
+    [
+        *[("shuttle", 4), ("line_follower", 1), ("quadrotor", 1), ("workspace", 1)],
+        pytest.param(
+            "cart_mujoco", 1, marks=pytest.mark.skipif(not MUJOCO, reason="MuJoCo is not installed")
+        ),
+        pytest.param(
+            "pole_gymnasium", 1, marks=pytest.mark.skipif(not GYMNASIUM, reason="Gymnasium is not installed")
+        ),
+    ],
 )
 def test_an_example_passes_without_flags_in_its_own_folder(example: str, tests: int) -> None:
     run = subprocess.run(
