@@ -57,11 +57,13 @@ class Sized:
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode."""
-        size = (plan.point or {})[SIZE]
+        if plan.point is None:
+            return self.stage.rollout(plan)
+        size = plan.point[SIZE]
         value: Any = round(size) if self.whole else size
         marked = replace(self.stage.marked, drifts={self.name: Drift(value)})
         rollout = replace(self.stage.rollout, designation=marked)
-        return rollout(EpisodePlan(plan.seed, self.name))
+        return rollout(replace(plan, drift=self.name, point=None))
 
     def begin(self, plan: EpisodePlan) -> Pending:
         """Return an episode that runs when its result is requested."""

@@ -46,7 +46,11 @@ FLAGS = (
         "compare mode: run the drift scenarios and compare them with the recording",
         asks=True,
     ),
-    Flag("--tarl-repair", "with --tarl-online: search for a repair and write a patch", asks=True),
+    Flag(
+        "--tarl-repair",
+        "with --tarl-online or --tarl-stress: search for a repair and write a patch",
+        asks=True,
+    ),
     Flag(
         "--tarl-drift",
         "with --tarl-online: compare only this scenario; with --tarl-record: record under this permanent drift, "

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.accounts import Account, Compared
+from pytest_tarl.boundary_repairs import Job, repair_boundary
 from pytest_tarl.comparing import run_online
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
@@ -78,9 +79,8 @@ class Mission:
             return self._stress(rollout_with, fixture)
         analysis = self._analysis()
         sites = plan(analysis)
-        positions = {self.root / path: at for path, at in sites.positions.items()}
         sensors = self._sensors(rollout_with, fixture)
-        rollout = rollout_with(Instruments(positions, sites.publishes), sensors)
+        rollout = rollout_with(self._instruments(sites), sensors)
         self._ignore()
         if fixture is None:
             return replace(self, designation=replace(self.designation, sensors=sensors))._record(
@@ -210,7 +210,6 @@ class Mission:
                     )
 
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
-        changeable = {str(step.site) for step in analysis.sites if analysis.operands(step.site)}
         online = run_online(
             rollout,
             fixture,
@@ -219,7 +218,7 @@ class Mission:
             sites,
             self.drift,
             self.progress,
-            changeable,
+            _changeable(analysis),
             self.tell,
         )
         comparison = online.comparison
@@ -257,11 +256,30 @@ class Mission:
 
     def _stress(self, rollout_with: RolloutWith, fixture: Fixture) -> Account:
         sensors = self._sensors(rollout_with, fixture)
-        rollout = rollout_with(Instruments(), sensors)
+        analysis = self._analysis() if self.options.stress_repair else None
+        sites = plan(analysis) if analysis is not None else None
+        instruments = Instruments() if sites is None else self._instruments(sites)
+        rollout = rollout_with(instruments, sensors)
         request = Request(rollout, fixture, self.designation, self.options, self.drift or "", self.progress)
         self._ignore()
         found = deliver(request, self.root)
-        return Account(found.lines, found.problem, interrupted=found.interrupted)
+        if analysis is None or sites is None or found.found is None or found.interrupted:
+            return Account(found.lines, found.problem, interrupted=found.interrupted)
+        job = Job(
+            request,
+            analysis,
+            sites,
+            self.root,
+            self.tarl / "patches",
+            self.fixture_path,
+            self._neighbours,
+            _changeable(analysis),
+        )
+        told = repair_boundary(job, found.found)
+        return Account((*found.lines, *told.lines), found.problem, told.patch, told.interrupted)
+
+    def _instruments(self, sites: Plan) -> Instruments:
+        return Instruments({self.root / path: at for path, at in sites.positions.items()}, sites.publishes)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
         """Return a note if a scenario replaces the design instead of changing it."""
@@ -320,6 +338,11 @@ class Mission:
         with suppress(OSError, UnicodeDecodeError):  # writing the other files reports the same problem
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())
+
+
+def _changeable(analysis: Analysis) -> set[str]:
+    """Return the ids of the sites with an operand."""
+    return {str(step.site) for step in analysis.sites if analysis.operands(step.site)}
 
 
 @contextmanager

@@ -47,6 +47,7 @@ class Options:
     comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
     stress_budget: int = 1000  # limit of a stress run, in episodes
+    stress_repair: bool = False  # whether a stress run repairs at the boundary
     resume: bool = False  # whether to take the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
@@ -132,6 +133,7 @@ def options(given: Mapping[str, Any]) -> Options:
         stress_budget=number_within(
             "--tarl-stress-budget", "it", given["stress-budget"], int, 32, MOST_EPISODES
         ),
+        stress_repair=bool(given["stress"] and given["repair"]),
         resume=given["resume"],
     )
 
@@ -161,8 +163,8 @@ def _check_modes(given: Mapping[str, Any]) -> None:
         )
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
-    if given["repair"] and not given["online"]:
-        raise SettingsError("--tarl-repair needs --tarl-online: it repairs what the comparison finds.")
+    if given["repair"] and not (given["online"] or given["stress"]):
+        raise SettingsError("--tarl-repair needs --tarl-online or --tarl-stress: it repairs what they find.")
     if given["holm"] and not given["online"]:
         raise SettingsError("--tarl-holm needs --tarl-online: it corrects the verdicts of comparisons.")
     if given["holm"] and given["repair"]:
@@ -174,7 +176,7 @@ def _check_modes(given: Mapping[str, Any]) -> None:
 
 def _check_stress(given: Mapping[str, Any]) -> None:
     """Raise SettingsError for flags of other modes beside --tarl-stress."""
-    other = next((name for name in ("record", "online", "repair") if given[name]), None)
+    other = next((name for name in ("record", "online") if given[name]), None)
     if other is not None:
         raise SettingsError(
             f"--tarl-stress and --tarl-{other} are two runs: stress the test in one of its own."

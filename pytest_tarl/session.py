@@ -262,7 +262,8 @@ class TarlSession:
         from pytest_tarl.missions import Other
 
         found: dict[str, Other] = {}
-        needed = self.options.mode == "repair" or (self.options.mode == "record" and self.options.drift)
+        repairs = self.options.mode == "repair" or self.options.stress_repair
+        needed = repairs or (self.options.mode == "record" and self.options.drift)
         for other in self._designated if needed else ():
             marked, name = designated(other), without_drift(other)
             if marked is not None and isinstance(other, pytest.Function) and name != without_drift(item):

@@ -246,11 +246,12 @@ def _diff(arguments: argparse.Namespace) -> int:
 def _diff_margins(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import margins_diff
     from pytest_tarl.commands.margins_files import FOLDER, margins_in
+    from pytest_tarl.stressing.margin_changes import compared
 
     given: tuple[str, str | None] = (arguments.first, arguments.second)
     places = (given[0], given[1]) if given[1] is not None else (f"{given[0]}:{FOLDER}", FOLDER)
     before, after = margins_in(places[0]), margins_in(places[1])
-    rows = margins_diff.compared(before, after)
+    rows = compared(before, after)
     if arguments.format == "markdown":
         _print(margins_diff.markdown(rows, "before"))
     else:

@@ -13,6 +13,7 @@ from typing import Any
 from pytest_tarl.commands import margins_diff
 from pytest_tarl.commands.margins_files import margins_in
 from pytest_tarl.errors import FixtureError
+from pytest_tarl.stressing.margin_changes import compared
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
 BARS = 8  # maximum number of statements in a chart
@@ -39,7 +40,7 @@ def _margins(folder: Path, since: str | None) -> list[str]:
     """Return the table of the margins, beside those of a revision if one is given."""
     now = margins_in(str(folder))
     before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
-    rows = margins_diff.compared(before, now)
+    rows = compared(before, now)
     if since is None:
         return list(margins_diff.table(rows))
     notes = margins_diff.guarantees_changed(before, now)

@@ -20,6 +20,7 @@ class Delivered:
     lines: tuple[str, ...]
     problem: str
     interrupted: bool
+    found: Stress | None = None  # None if Ctrl-C came before the first result
 
 
 def deliver(request: Request, root: Path) -> Delivered:
@@ -34,7 +35,7 @@ def deliver(request: Request, root: Path) -> Delivered:
         )
     found = stress(request)
     told = (*words.lines(found), *before, *(f"  {line}" for line in _written(found, root, name, memory)))
-    return Delivered(told, _problem(found), found.ended == "interrupted")
+    return Delivered(told, _problem(found), found.ended == "interrupted", found)
 
 
 def _replayed(request: Request, memory: Path) -> tuple[str, ...]:

@@ -32,8 +32,10 @@ class Request:
     progress: Progress
 
 
-def stress(request: Request) -> Stress:
+def stress(request: Request, *, combined: bool = True) -> Stress:
     """Find the boundary in each direction and in their combinations; Ctrl-C or the budget end the search early.
+
+    Without `combined`, only single directions are searched.
 
     Each claim that the guarantee fails is confirmed on fresh seeds; all of them together are wrong with a probability
     of at most alpha. Raise RecordingError if the test itself is broken.
@@ -53,9 +55,11 @@ def stress(request: Request) -> Stress:
             ended = "nominal"
         else:
             along_rays(curves, evaluator, share)
-            pairs(evaluator, together)
+            if combined:
+                pairs(evaluator, together)
             near_ends([curve for curve in curves if curve.failing], evaluator)
-            search(evaluator, together)
+            if combined:
+                search(evaluator, together)
             near_ends([curve for curve in curves if not curve.failing], evaluator)
     except BudgetSpentError:
         ended = "budget"

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 from pytest_tarl import Drift
 from pytest_tarl.commands.cli import main
-from pytest_tarl.commands.margins_diff import compared, words
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.margin_changes import compared, words
 from pytest_tarl.stressing.margins import Margin, Margins, margins, read, text
 from tests.plugin.stressing.worlds import space_of, stressed
 

@@ -1,0 +1,149 @@
+"""How far repairs at the boundary move it, on the tasks of benchmarks/drift.
+
+    python benchmarks/stress_repair.py [TASK ...] [--results FILE]
+
+Each task has one direction, from its nominal value to its drift. It is recorded, stressed with 246 episodes, repaired
+at the boundary and beyond, and stressed again, as `pytest --tarl-stress --tarl-repair` does; seed 1. A line per task:
+the interval of the boundary before and after as shares of the range, and what became of it. With `--results`, results
+are added to a JSON Lines file, and tasks that it holds are not run again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE / "drift")]
+
+from stage import TASKS, Stage, visit  # noqa: E402
+from stress import EPISODES, GRID, SHARE, sized, span_of  # noqa: E402
+
+from pytest_tarl.boundary_repairs import Job, repair_boundary  # noqa: E402
+from pytest_tarl.drifts import Drift  # noqa: E402
+from pytest_tarl.learning.fixture import Fixture  # noqa: E402
+from pytest_tarl.options import Options  # noqa: E402
+from pytest_tarl.recording import mean_flows, run_episodes, sarsa_tables  # noqa: E402
+from pytest_tarl.seeds import episode_seeds  # noqa: E402
+from pytest_tarl.stressing.margins import Margin, margins  # noqa: E402
+from pytest_tarl.stressing.search import Request, stress  # noqa: E402
+
+SEED = 1
+BUDGET = round(SHARE * GRID * EPISODES)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """One task: the boundary's interval before and after as shares of the range, what changed, and the report."""
+
+    before: tuple[float | None, float | None]
+    after: tuple[float | None, float | None]
+    change: str
+    report: Sequence[str]
+
+    @property
+    def grew(self) -> bool | None:
+        """Return whether the middle of the interval moved away from nominal; None without a repair."""
+        return None if not self.change else middle(self.after) > middle(self.before)
+
+    @property
+    def line(self) -> str:
+        """Return the columns of the table after the task."""
+        change = self.change or "no repair"
+        return f"{shown(self.before)} | {shown(self.after) if self.change else ''} | {change}"
+
+
+def middle(interval: tuple[float | None, float | None]) -> float:
+    """Return the middle of an interval whose open ends are those of the range."""
+    low, high = interval
+    return ((low or 0.0) + (1.0 if high is None else high)) / 2
+
+
+def shown(interval: tuple[float | None, float | None]) -> str:
+    """Return an interval in words."""
+    low, high = interval
+    return f"{low or 0.0:.3f}–{'end' if high is None else format(high, '.3f')}"
+
+
+def job_of(stage: Stage) -> Job:
+    """Record a task, and return what stress and repair need."""
+    name = stage.drift
+    rollout, nominal, far = sized(stage, name)
+    marked = replace(stage.marked, drifts={name: Drift(span_of(nominal, far))})
+    recorded = run_episodes(
+        stage.rollout, episode_seeds(SEED, "offline", marked.episodes), None, stage.sites.members, quiet
+    )
+    tables = sarsa_tables(recorded, mean_flows(recorded.sample))
+    fixture = Fixture(
+        stage.test, SEED, marked.sensors, stage.sites.lists, recorded.topics, recorded.sample, tables
+    )
+    options = Options(mode="stress", seed=SEED, stress_budget=BUDGET, stress_repair=True)
+    request = Request(rollout, fixture, marked, options, name, quiet)
+
+    changeable = {str(step.site) for step in stage.analysis.sites if stage.analysis.operands(step.site)}
+    return Job(
+        request,
+        stage.analysis,
+        stage.sites,
+        stage.folder,
+        stage.folder / ".tarl" / "patches",
+        None,
+        tuple,
+        changeable,
+    )
+
+
+def moved(stage: Stage) -> Moved:
+    """Stress and repair a task."""
+    job = job_of(stage)
+    found = stress(job.request, combined=False)
+    told = repair_boundary(job, found)
+    (before,) = margins(found).sides
+    if told.patch is None or told.fixed is None:
+        return Moved(interval(before), interval(before), "", told.lines)
+    told.patch.unlink()
+    (row,) = told.fixed.rows
+    assert row.after is not None
+    return Moved(interval(before), interval(row.after), row.change, told.lines)
+
+
+def interval(side: Margin) -> tuple[float | None, float | None]:
+    """Return both ends as shares of the range."""
+    low, high = (None if one is None else side.share(one) for one in (side.holds_to, side.fails_at))
+    return low, high
+
+
+def quiet(done: int, total: int, what: str) -> None:
+    """Show no progress."""
+
+
+def main() -> None:
+    """Print a line per task, and the sums."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("tasks", nargs="*")
+    parser.add_argument("--results", type=Path, help="JSON Lines file of results to continue")
+    arguments = parser.parse_args()
+    path: Path | None = arguments.results
+    lines = path.read_text().splitlines() if path is not None and path.exists() else []
+    done = {task: Moved(**one) for task, one in map(json.loads, lines)}
+    print("| task | before | after | boundary |\n|---|---|---|---|")
+    for task in arguments.tasks or TASKS:
+        if task not in done:
+            done[task] = visit(task, moved)
+            if path is not None:
+                with path.open("a") as out:
+                    out.write(f"{json.dumps([task, asdict(done[task])])}\n")
+        print(f"| {task} | {done[task].line} |", flush=True)
+    every = list(done.values())
+    print(f"\nRepaired: {sum(bool(one.change) for one in every)} of {len(every)}.")
+    print(f"The boundary moved away: {sum(bool(one.grew) for one in every)}, significantly in", end=" ")
+    print(f"{sum(one.change == 'more robust' for one in every)};", end=" ")
+    print(f"significantly nearer in {sum(one.change == 'more fragile' for one in every)}.")
+
+
+if __name__ == "__main__":
+    main()
