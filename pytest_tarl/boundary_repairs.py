@@ -86,9 +86,8 @@ class Placed:
 
 @dataclass(frozen=True)
 class Fixed:
-    """An accepted repair, margins before and after it, and outcomes over the space without and with it."""
+    """What an accepted repair changes: margins, and outcomes over the space without and with it."""
 
-    repair: Repair
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
     after: tuple[Outcome, ...]
@@ -122,18 +121,33 @@ def repair_boundary(job: Job, found: Stress) -> Told:
         key=lambda curve: (curve.confirmed or 0.0) * curve.ray.length,
     )
     lines: list[str] = []
-    try:
-        for curve in failing[:DIRECTIONS]:
-            for world, where in _worlds(curve):
+    for curve in failing[:DIRECTIONS]:
+        for world, where in _worlds(curve):
+            head = f"  {'repair' if not lines else '':10} {where}:"
+            try:
                 accepted, overlay, why = _searched(job, curve, world)
-                if accepted is None:
-                    lines.append(f"  {'repair' if not lines else '':10} {where}: {why}")
-                    continue
-                fixed = _examined(job, found, accepted, overlay)
-                return Told((*lines, *_words(where, fixed, first=not lines)), _kept(job, fixed), fixed=fixed)
-    except KeyboardInterrupt:
-        return Told((*lines, f"  {'repair':10} interrupted."), interrupted=True)
+            except KeyboardInterrupt:
+                return Told((*lines, f"{head} interrupted."), interrupted=True)
+            if accepted is not None:
+                return _told(job, found, accepted, overlay, (*lines, f"{head} {repair_words(accepted)}"))
+            lines.append(f"{head} {why}")
     return Told(tuple(lines))
+
+
+def _told(
+    job: Job, found: Stress, accepted: Repair, overlay: Mapping[Path, str], lines: tuple[str, ...]
+) -> Told:
+    """Examine an accepted repair; its patch stays if this is interrupted, and goes if it loses."""
+    patch = job.root / accepted.patch
+    try:
+        fixed = _examined(job, found, overlay)
+    except KeyboardInterrupt:
+        unknown = f"  {'':10} Interrupted before it was tested over the declared space."
+        return Told((*lines, unknown), patch, interrupted=True)
+    if fixed.loses:
+        with suppress(OSError):
+            patch.unlink()
+    return Told((*lines, *_words(fixed)), None if fixed.loses else patch, fixed=fixed)
 
 
 def _worlds(curve: Curve) -> Iterator[tuple[Drift, str]]:
@@ -197,14 +211,13 @@ def _searched(job: Job, curve: Curve, world: Drift) -> tuple[Repair | None, Mapp
     return given, Mutants(order).source(done.accepted.candidate), ""
 
 
-def _examined(job: Job, found: Stress, accepted: Repair, overlay: Mapping[Path, str]) -> Fixed:
+def _examined(job: Job, found: Stress, overlay: Mapping[Path, str]) -> Fixed:
     """Stress the repaired node along single directions, and run it over the whole space on fresh draws."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
     after = stress(replace(request, rollout=patched), combined=False)
     rows = compared([margins(found)], [margins(after)])
     return Fixed(
-        accepted,
         tuple(rows),
         _over_space(job, found.space, request.rollout),
         _over_space(job, found.space, patched),
@@ -221,19 +234,8 @@ def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]
     return tuple(outcome(one.result()) for one in in_order(rollout, plans))
 
 
-def _kept(job: Job, fixed: Fixed) -> Path | None:
-    """Return the patch; remove it if the repair is withheld."""
-    path = job.root / fixed.repair.patch
-    if not fixed.loses:
-        return path
-    with suppress(OSError):
-        path.unlink()
-    return None
-
-
-def _words(where: str, fixed: Fixed, *, first: bool) -> Iterator[str]:
-    """Yield the lines on an accepted repair."""
-    yield f"  {'repair' if first else '':10} {where}: {repair_words(fixed.repair)}"
+def _words(fixed: Fixed) -> Iterator[str]:
+    """Yield the lines on what an accepted repair changes."""
     for row in fixed.rows:
         before, after = row.cells
         if before != after or row.change != "no significant change":

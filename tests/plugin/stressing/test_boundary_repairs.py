@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from pytest_tarl import Drift
+from pytest_tarl import Drift, boundary_repairs
 from pytest_tarl.boundary_repairs import Fixed, Placed, _worlds
 from pytest_tarl.model import Repair
 from pytest_tarl.rollout import EpisodePlan
@@ -74,10 +75,37 @@ def test_the_range_to_repair_begins_at_the_boundary() -> None:
 
 def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
     wide, narrow = Margin("mud", 1.0, 0.0, 0.2, 0.1), Margin("mud", 1.0, 0.0, 0.5, 0.3)
-    repair, row = Repair(True, "", ()), Row("t[world]", wide, wide)
+    row = Row("t[world]", wide, wide)
     fine = tuple(Outcome(True, 9.0 + n / 100) for n in range(60))
     poor = tuple(Outcome(True, 8.9) for _ in range(60))
-    assert Fixed(repair, (row,), fine, fine).loses == ""
-    assert "over the declared space" in Fixed(repair, (row,), fine, poor).loses
-    nearer = Fixed(repair, (Row("t[world]", wide, narrow),), poor, fine)
+    assert Fixed((row,), fine, fine).loses == ""
+    assert "over the declared space" in Fixed((row,), fine, poor).loses
+    nearer = Fixed((Row("t[world]", wide, narrow),), poor, fine)
     assert nearer.loses == "the boundary of mud to 0 came nearer"
+
+
+@pytest.mark.parametrize(
+    ("stopped", "kept", "told"), [(True, True, "Interrupted before"), (False, False, "withheld")]
+)
+def test_a_patch_stays_after_ctrl_c_and_goes_if_it_loses(
+    stopped: bool, kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.patch").write_text("patch")
+    job = SimpleNamespace(root=tmp_path)
+    ray = rays(space_of(mud=Drift.range(0.0, 1.0, nominal=1.0)), {})[0]
+    found = SimpleNamespace(curves=(Curve(ray, confirmed=0.5),))
+    fine, poor = (tuple(Outcome(True, total) for _ in range(60)) for total in (9.0, 8.0))
+
+    def examined(*_: object) -> Fixed:
+        if stopped:
+            raise KeyboardInterrupt
+        return Fixed((), fine, poor)
+
+    monkeypatch.setattr(
+        boundary_repairs, "_searched", lambda *_: (Repair(True, "", (), patch="a.patch"), {}, "")
+    )
+    monkeypatch.setattr(boundary_repairs, "_examined", examined)
+    done = boundary_repairs.repair_boundary(job, found)  # type: ignore[arg-type]
+    assert (done.interrupted, done.patch is not None) == (stopped, kept)
+    assert told in done.lines[-1]
+    assert (tmp_path / "a.patch").exists() == kept
