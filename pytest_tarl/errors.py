@@ -35,6 +35,10 @@ class LogError(TarlError):
     """A node cannot be observed, or the log of its missions cannot be read."""
 
 
+class FleetError(TarlError):
+    """A fleet's data set cannot be read or written, or holds files that are damaged or of another format."""
+
+
 class MonitorError(TarlError):
     """Missions cannot be watched: the watch's state is damaged, in use, or belongs to another watch."""
 

@@ -11,6 +11,7 @@ from urllib.request import url2pathname
 
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
+FLEET = ("duckdb", "fsspec", "pyarrow")
 
 
 def missing_packages() -> list[str]:
@@ -26,6 +27,13 @@ def missing_extra(what: str) -> str | None:
 def missing_server(what: str) -> str | None:
     """Return a sentence that `what` needs the extra `lsp`, or None if it is installed."""
     return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
+
+
+def missing_fleet(what: str) -> str | None:
+    """Return a sentence on what `what` needs of the extra `fleet`, or None if everything is installed."""
+    return missing_extra(what) or _sentence(
+        what, [name for name in FLEET if find_spec(name) is None], "fleet"
+    )
 
 
 def install_command(extra: str) -> str:

@@ -20,6 +20,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.observing.frames import Record, records, set_aside
 from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.sensors import binning_digest
 
 FEWEST = 2  # fewest missions that can be compared
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
@@ -192,6 +193,16 @@ def _check(start: Record, path: Path, fixture: Fixture) -> None:
             f"{path} was written with the sensors {', '.join(start['sensors'])}, but the recording of {fixture.test} "
             "has "
             f"{', '.join(names)}: observe again with that recording, or name the log that belongs to it."
+        )
+    if start.get("test", fixture.test) != fixture.test:
+        raise LogError(
+            f"{path} was written for the recording of {start['test']}, not of {fixture.test}: name the recording that "
+            "it belongs to."
+        )
+    if start.get("bins", digest := binning_digest(fixture.sensors)) != digest:
+        raise LogError(
+            f"{path} was written when the sensors of {fixture.test} had other bins, so its cells cannot be compared: "
+            "observe again with the current recording."
         )
 
 

@@ -9,11 +9,11 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from pytest_tarl.commands.fleet import add_merge
+from pytest_tarl.commands.fleet import add_ingest, add_merge
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.commands.robots import add_observe, add_watch
 from pytest_tarl.errors import RefusedError, TarlError
-from pytest_tarl.extras import missing_extra, missing_server
+from pytest_tarl.extras import missing_extra, missing_fleet, missing_server
 from pytest_tarl.printable import printable, printable_line
 
 
@@ -104,6 +104,8 @@ def parser() -> Parser:
     _add_patches(commands)
     for command in commands.choices.values():
         command.set_defaults(parser=command, needs=missing_extra)
+    add_ingest(commands)
+    commands.choices["ingest"].set_defaults(parser=commands.choices["ingest"], needs=missing_fleet)
     workspace = commands.add_parser(
         "workspace", help="list the packages of a ROS workspace, as TARL reads them"
     )

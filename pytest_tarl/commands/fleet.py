@@ -1,12 +1,13 @@
-"""Commands for fleets: `tarl merge`."""
+"""Commands for fleets: `tarl merge`, `tarl ingest`, `tarl fleet`."""
 
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from pytest_tarl.commands.parser import Parser
-from pytest_tarl.printable import printable_line
+from pytest_tarl.printable import printable, printable_line
 
 
 def add_merge(commands: argparse._SubParsersAction[Parser]) -> None:
@@ -36,3 +37,49 @@ def _merge(arguments: argparse.Namespace) -> int:
     for line in merged.lines(arguments.to, recording, parts):
         print(printable_line(line))
     return 0
+
+
+def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Declare `tarl ingest`."""
+    ingest = commands.add_parser("ingest", help="add the missions of logs to the data set of a fleet")
+    flag = ingest.add_argument
+    flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`")
+    flag("--to", required=True, metavar="DIR", help="data set: a folder, or a URL such as s3://bucket/folder")
+    flag("--fixture", type=Path, required=True, metavar="FILE", help="the recording that the robots observed")
+    flag(
+        "--robot",
+        required=True,
+        metavar="NAME",
+        help="robot that wrote the log; {folder} and {file} stand for the folder and the name of each log",
+    )
+    flag("--version", default="unknown", metavar="NAME", help="version of the robots' software")
+    flag("--site", default="unknown", metavar="NAME", help="where the robots work")
+    flag(
+        "--hash-robots", default="", metavar="SALT", help="store keyed digests in place of the robots' names"
+    )
+    ingest.set_defaults(run=_ingest)
+
+
+def _ingest(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.fleet.ingest import Order, ingest
+
+    order = Order(
+        logs=tuple(arguments.logs),
+        to=arguments.to,
+        fixture=arguments.fixture,
+        robot=arguments.robot,
+        version=arguments.version,
+        site=arguments.site,
+        salt=arguments.hash_robots,
+    )
+    found, refused = 0, 0
+    for one in ingest(order):
+        if one.problem:
+            refused += 1
+            print(printable(f"tarl: {one.problem}"), file=sys.stderr)
+            continue
+        found += one.missions
+        known = f", {one.known} were there already" if one.known else ""
+        print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}"))
+    print(printable_line(f"{order.to}: {found} missions added"))
+    return 2 if refused else 0

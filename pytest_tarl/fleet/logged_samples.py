@@ -17,8 +17,10 @@ from pytest_tarl.logged import Mission, missions, trace
 BYTES = 8  # of a mission's identity, which takes the place of an episode's seed
 
 
-def logged_samples(log: Path, fixture: Fixture) -> Iterator[Sample]:
-    """Yield the statistics of each finished mission with rewards of a log and of its rotated parts.
+def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
+    """Yield start and statistics of each finished mission with rewards of a log and of its rotated parts.
+
+    The start is in seconds since 1970.
 
     Raise LogError if the log does not belong to the recording, or holds no rewards.
     """
@@ -26,9 +28,8 @@ def logged_samples(log: Path, fixture: Fixture) -> Iterator[Sample]:
     number = {place.id: n for n, place in enumerate(plan.places)}
     for mission in missions(log, fixture):
         if mission.ended and any(chunk["step_cell"] for chunk in mission.chunks):
-            yield sample(
-                trace(mission, number, fixture, None), identity(mission), mission.passed, plan.members
-            )
+            found = trace(mission, number, fixture, None)
+            yield mission.time, sample(found, identity(mission), mission.passed, plan.members)
 
 
 def plan_of(fixture: Fixture) -> Plan:
@@ -51,7 +52,7 @@ def identity(mission: Mission) -> int:
 
 def checked(log: Path, fixture: Fixture) -> list[Sample]:
     """Return the missions of a log. Raise LogError if there are none."""
-    found = list(logged_samples(log, fixture))
+    found = [one for _, one in logged_samples(log, fixture)]
     if not found:
         raise LogError(
             f"{log} holds no finished mission with rewards: separate the missions with --mission-topic or --idle, and "

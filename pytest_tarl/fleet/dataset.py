@@ -1,0 +1,94 @@
+"""The files of a data set: which recording each belongs to, and which missions it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from pytest_tarl.errors import FleetError
+from pytest_tarl.fleet.schema import PREFIX, SCHEMA_VERSION, Origin
+from pytest_tarl.fleet.store import Store
+
+
+@dataclass(frozen=True)
+class Part:
+    """A file of `missions`, relative to the data set, with its origin and the number of its missions."""
+
+    path: str
+    origin: Origin
+    missions: int
+
+    def beside(self, table: str) -> str:
+        """Return the file of another table with the same missions."""
+        return f"{table}/{self.path.partition('/')[2]}"
+
+
+def parts(where: Store) -> list[Part]:
+    """Return the files of a data set. Raise FleetError if one is damaged, incomplete or of another schema."""
+    found = []
+    cells = set(where.files("cells"))
+    for path in where.files("missions"):
+        about = _opened(where, path)
+        told = {
+            key.decode(): value.decode()
+            for key, value in (about.schema.to_arrow_schema().metadata or {}).items()
+        }
+        part = Part(path, _origin(where, path, told), about.num_rows)
+        if part.beside("cells") not in cells:
+            raise FleetError(
+                f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: restore it, "
+                "or delete the latter and ingest its logs again."
+            )
+        found.append(part)
+    return found
+
+
+def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
+    """Yield identity and robot of each mission that the test's partition holds for a day."""
+    for path in where.files(f"missions/test={folder}"):
+        if f"/date={date}/" in path:
+            table = _columns(where, path, ["mission", "robot"])
+            yield from zip(table["mission"].to_pylist(), table["robot"].to_pylist(), strict=True)
+
+
+def _origin(where: Store, path: str, told: dict[str, str]) -> Origin:
+    schema = told.get(f"{PREFIX}schema", "")
+    if not schema:
+        raise FleetError(
+            f"{where.shown(path)} was not written by `tarl ingest`: move it out of the data set."
+        )
+    if schema != str(SCHEMA_VERSION):
+        raise FleetError(
+            f"{where.shown(path)} has schema {schema}, but this version of tarl reads {SCHEMA_VERSION}: use the "
+            "version of tarl that wrote it."
+        )
+    return Origin(**{one.name: told.get(f"{PREFIX}{one.name}", "") for one in fields(Origin)})
+
+
+def _opened(where: Store, path: str) -> Any:
+    with _readable(where, path), where.opened(path) as file:
+        return pq.read_metadata(file)
+
+
+def _columns(where: Store, path: str, names: Sequence[str]) -> Any:
+    with _readable(where, path), where.opened(path) as file:
+        return pq.read_table(file, columns=list(names))
+
+
+class _readable:  # noqa: N801 - a context manager
+    def __init__(self, where: Store, path: str) -> None:
+        self.shown = where.shown(path)
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, _kind: object, problem: object, _trace: object) -> None:
+        if isinstance(problem, (pa.ArrowInvalid, OSError)):
+            raise FleetError(
+                f"{self.shown} is damaged or cannot be read ({str(problem).splitlines()[0]}): delete it and ingest its "
+                "logs again."
+            ) from problem

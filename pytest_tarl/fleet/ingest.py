@@ -1,0 +1,150 @@
+"""`tarl ingest`: add the missions of logs to a data set, each once, however often it is repeated or interrupted."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pytest_tarl.errors import LogError, SettingsError
+from pytest_tarl.fleet import dataset
+from pytest_tarl.fleet.logged_samples import logged_samples
+from pytest_tarl.fleet.rows import Row, files, valid
+from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition
+from pytest_tarl.fleet.store import Store, store
+from pytest_tarl.learning.fixture import Fixture, load
+
+TOGETHER = 20_000  # missions held in memory until they are written
+FOLDER, FILE = "{folder}", "{file}"
+
+
+@dataclass(frozen=True)
+class Order:
+    """The arguments of the command line."""
+
+    logs: tuple[Path, ...]
+    to: str
+    fixture: Path
+    robot: str  # {folder} and {file} stand for those of each log
+    version: str = "unknown"
+    site: str = "unknown"
+    salt: str = ""  # replace names of robots by digests if given
+
+
+@dataclass(frozen=True)
+class Ingested:
+    """What a log added: missions that are new and that the data set held before, and why it was not read."""
+
+    log: Path
+    robot: str
+    missions: int = 0
+    known: int = 0
+    problem: str = ""
+
+
+def ingest(order: Order) -> Iterator[Ingested]:
+    """Add the missions of all logs; yield what each of them added once its missions are read.
+
+    Logs that do not fit are left out. Raise FixtureError, FleetError or SettingsError if nothing can be ingested.
+    """
+    _check(order)
+    fixture = load(order.fixture)
+    into = _Writer(store(order.to), order.version, origin(fixture, order.fixture.read_bytes()), fixture)
+    for log in order.logs:
+        robot = named(order, log)
+        try:
+            rows = list(_rows(log, fixture, robot, order.site))
+            added = into.add(rows)
+        except LogError as problem:
+            yield Ingested(log, robot, problem=str(problem))
+            continue
+        yield Ingested(log, robot, added, len(rows) - added)
+    into.write()
+    into.keep(order.fixture.read_bytes())
+
+
+def named(order: Order, log: Path) -> str:
+    """Return the robot of a log, as it is stored."""
+    name = order.robot.replace(FOLDER, log.resolve().parent.name).replace(FILE, log.stem)
+    if not order.salt:
+        return name
+    return hmac.new(order.salt.encode(), name.encode(), hashlib.sha256).hexdigest()[:16]
+
+
+@dataclass
+class _Writer:
+    """New missions on their way into the data set."""
+
+    store: Store
+    version: str
+    origin: Origin
+    fixture: Fixture
+    rows: dict[str, list[Row]] = field(default_factory=lambda: defaultdict(list))  # by day
+    known: dict[str, dict[int, str]] = field(default_factory=dict)  # day → mission → its robot
+    waiting: int = 0
+
+    def add(self, rows: Sequence[Row]) -> int:
+        """Take the missions that are not in the data set yet; return their number.
+
+        Raise LogError if the data set has one of them as a mission of another robot.
+        """
+        for row in rows:
+            robot = self._held(row.date).get(row.mission, row.robot)
+            if robot != row.robot:
+                raise LogError(
+                    f"A mission of {row.robot} is in {self.store.shown('')} already, as one of {robot}: correct "
+                    f"--robot, or delete the files of {robot} and ingest its logs again."
+                )
+        before = self.waiting
+        for row in rows:
+            held = self._held(row.date)
+            if row.mission not in held:
+                held[row.mission] = row.robot
+                self.rows[row.date].append(row)
+                self.waiting += 1
+        added = self.waiting - before
+        if self.waiting >= TOGETHER:
+            self.write()
+        return added
+
+    def _held(self, day: str) -> dict[int, str]:
+        """Return the robot of each mission of a day that is in the data set or waits."""
+        if day not in self.known:
+            found = dataset.known(self.store, self.origin.folder, day)
+            self.known[day] = dict(found)
+        return self.known[day]
+
+    def write(self) -> None:
+        """Write the missions that wait, those of each day into files of their own."""
+        for day, rows in sorted(self.rows.items()):
+            name, contents = files(rows, self.origin, self.fixture.lists)
+            for table in TABLES:
+                path = f"{table}/{partition(self.origin, self.version, day)}/{name}.parquet"
+                self.store.write(path, contents[table])
+        self.rows.clear()
+        self.waiting = 0
+
+    def keep(self, recording: bytes) -> None:
+        """Keep the recording beside the missions, so that `tarl fleet` finds it."""
+        if any(part.origin.recording == self.origin.recording for part in dataset.parts(self.store)):
+            self.store.write(f"recordings/{self.origin.recording}.npz", recording)
+
+
+def _rows(log: Path, fixture: Fixture, robot: str, site: str) -> Iterator[Row]:
+    for time, sample in logged_samples(log, fixture):
+        yield Row(robot, site, valid(time), sample)
+
+
+def _check(order: Order) -> None:
+    for name, value in (("robot", order.robot), ("version", order.version), ("site", order.site)):
+        if not value.strip():
+            raise SettingsError(f"--{name} is empty: give it a name.")
+    parts = (FOLDER in order.robot) or (FILE in order.robot)
+    if len(order.logs) > 1 and not parts:
+        raise SettingsError(
+            f"--robot {order.robot} would be the robot of all {len(order.logs)} logs: use --robot {FOLDER} to name "
+            f"each robot by the folder of its log, {FILE} by the name of its log, or ingest one log at a time."
+        )

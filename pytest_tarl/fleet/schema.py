@@ -1,0 +1,113 @@
+"""The tables of a fleet's data set: Parquet files with a schema version and the digests of the recording.
+
+    missions/test=…/version=…/date=…/KEY.parquet      one row a mission
+    cells/…, same path                                one row a transition from a cell to the next, in a mission
+    statements/…, same path                           one row a statement and cell, in a mission
+
+KEY follows from the content. The file in `missions` is written last: without it, the other two do not count.
+
+SCHEMA_VERSION history:
+1  These three tables.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from urllib.parse import quote
+
+import pyarrow as pa
+
+from pytest_tarl.files import slug
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.sensors import Cell, binning_digest
+
+SCHEMA_VERSION = 1
+TABLES = ("statements", "cells", "missions")  # in the order in which they are written
+PREFIX = "tarl."
+_NAME = pa.dictionary(pa.int32(), pa.string())
+
+SCHEMAS = {
+    "missions": pa.schema(
+        [
+            ("mission", pa.uint64()),  # identity: a digest of its content
+            ("robot", _NAME),
+            ("site", _NAME),
+            ("time", pa.float64()),  # start in seconds since 1970; 0 if a clock was wrong
+            ("passed", pa.bool_()),
+            ("total", pa.float64()),
+            ("steps", pa.int64()),
+        ]
+    ),
+    "cells": pa.schema(
+        [
+            ("mission", pa.uint64()),
+            ("cell", _NAME),  # bins of the sensors, such as 3,0
+            ("next_cell", _NAME),  # null after the last step
+            ("count", pa.int64()),
+            ("reward", pa.float64()),  # sum over the steps
+        ]
+    ),
+    "statements": pa.schema(
+        [
+            ("mission", pa.uint64()),
+            ("source", _NAME),
+            ("sink", _NAME),
+            ("statement", _NAME),
+            ("cell", _NAME),
+            ("count", pa.int64()),
+            *((name, pa.float64()) for name in ("reward", "scaled", "reward_squared", "scaled_squared")),
+        ]
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The recording that missions were ingested with; with equal test, sensors and statements, cells are comparable."""
+
+    test: str
+    sensors: str  # digest of the sensors and their bins
+    statements: str  # digest of the statements of all taint lists
+    recording: str  # digest of the file
+
+    def fits(self, other: Origin) -> bool:
+        """Return whether missions of both can be counted together."""
+        return (self.test, self.sensors, self.statements) == (other.test, other.sensors, other.statements)
+
+    @property
+    def folder(self) -> str:
+        """Return the name of the test's partition."""
+        return f"{slug(self.test)}-{hashlib.sha256(self.test.encode()).hexdigest()[:8]}"
+
+
+def origin(fixture: Fixture, content: bytes) -> Origin:
+    """Return the digests of a recording; `content` are the bytes of its file."""
+    sites = json.dumps([[one.source, one.sink, [place.id for place in one.sites]] for one in fixture.lists])
+    return Origin(
+        fixture.test,
+        binning_digest(fixture.sensors),
+        hashlib.sha256(sites.encode()).hexdigest()[:16],
+        hashlib.sha256(content).hexdigest()[:16],
+    )
+
+
+def metadata(where: Origin) -> dict[str, str]:
+    """Return the metadata of a file."""
+    return {f"{PREFIX}schema": str(SCHEMA_VERSION), **{f"{PREFIX}{k}": v for k, v in asdict(where).items()}}
+
+
+def partition(where: Origin, version: str, date: str) -> str:
+    """Return the folder of a partition below its table's."""
+    return f"test={where.folder}/version={quote(version, safe='')}/date={date}"
+
+
+def name_of(cell: Cell) -> str:
+    """Return a cell as text."""
+    return ",".join(map(str, cell))
+
+
+def cell_of(name: str) -> Cell:
+    """Return the cell that a text stands for. Raise ValueError if it stands for none."""
+    return tuple(int(one) for one in name.split(",")) if name else ()

@@ -1,0 +1,91 @@
+"""The folder of a data set, on this machine or in an object store, through fsspec."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import fsspec
+
+from pytest_tarl.errors import FleetError
+from pytest_tarl.extras import install_command
+from pytest_tarl.files import advice_on, write_atomically
+
+
+@dataclass(frozen=True)
+class Store:
+    """A folder; `root` is its path in the file system `fs`, `protocol` is "file" for a local one."""
+
+    fs: Any
+    root: str
+    protocol: str
+
+    def files(self, folder: str) -> list[str]:
+        """Return the Parquet files below a folder, relative to the root, sorted; none if it does not exist.
+
+        Raise FleetError if the folder cannot be listed.
+        """
+        try:
+            self.fs.invalidate_cache()
+            found = self.fs.find(f"{self.root}/{folder}")
+        except FileNotFoundError:
+            return []
+        except Exception as problem:  # each store has exceptions of its own
+            raise FleetError(f"{self.shown(folder)} cannot be listed ({problem}): {ADVICE}") from problem
+        start = len(self.root) + 1
+        return sorted(one[start:] for one in found if one.endswith(".parquet"))
+
+    def write(self, path: str, content: bytes) -> None:
+        """Write a file atomically: readers see all of it or nothing. Raise FleetError if it cannot be written."""
+        try:
+            if self.protocol == "file":
+                write_atomically(Path(self.root) / path, content)
+            else:
+                self.fs.pipe_file(f"{self.root}/{path}", content)
+        except OSError as problem:
+            advice = advice_on(problem) if self.protocol == "file" else ADVICE
+            raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {advice}") from problem
+        except Exception as problem:
+            raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {ADVICE}") from problem
+
+    def read(self, path: str) -> bytes:
+        """Return the content of a file. Raise FleetError if it cannot be read."""
+        try:
+            content: bytes = self.fs.cat_file(f"{self.root}/{path}")
+        except Exception as problem:
+            raise FleetError(f"{self.shown(path)} cannot be read ({problem}): {ADVICE}") from problem
+        return content
+
+    def opened(self, path: str) -> Any:
+        """Return a file opened for reading at any place."""
+        return self.fs.open(f"{self.root}/{path}", "rb")
+
+    def address(self, path: str) -> str:
+        """Return the address by which DuckDB opens a file."""
+        return f"{self.root}/{path}" if self.protocol == "file" else f"{self.protocol}://{self.root}/{path}"
+
+    def shown(self, path: str) -> str:
+        """Return a file as shown to the user."""
+        return self.address(path)
+
+
+ADVICE = (
+    "check the address, the connection and your credentials, and run the command again; nothing counts twice."
+)
+
+
+def store(address: str) -> Store:
+    """Return the store at an address: a folder, or a URL such as `s3://bucket/folder`.
+
+    Raise FleetError if no package for the URL is installed or the store refuses.
+    """
+    try:
+        fs, root = fsspec.core.url_to_fs(address)
+    except ImportError as problem:
+        command = install_command("s3") if address.startswith("s3:") else "install the package that it names"
+        raise FleetError(f"{address} cannot be opened ({problem}): {command}.") from problem
+    except Exception as problem:  # each store has exceptions of its own
+        raise FleetError(f"{address} cannot be opened ({problem}): {ADVICE}") from problem
+    protocol = fs.protocol if isinstance(fs.protocol, str) else fs.protocol[0]
+    return Store(fs, str(root).rstrip("/"), protocol)
