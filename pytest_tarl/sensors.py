@@ -134,10 +134,10 @@ class Sensor:
         given: Any = self.categories
         if isinstance(given, list):  # keep the sensor hashable
             object.__setattr__(self, "categories", tuple(given))
-        elif not isinstance(given, tuple):
+        if not isinstance(given, list | tuple) or not all(isinstance(one, str) for one in given):
             raise SettingsError(
                 f"Sensor {self.name!r}: categories lists the strings that it may receive, for example "
-                f"categories=('auto', 'manual'), got {given!r}."
+                f"categories=('auto', 'manual'), got {given!r}. Booleans and small integers need no categories."
             )
         twice = next((one for one in self.categories if self.categories.count(one) > 1), None)
         if twice is not None:

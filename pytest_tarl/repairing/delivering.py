@@ -162,7 +162,9 @@ def _guard(order: Order, candidate: Candidate) -> str:
 
 
 def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
-    return tuple(_edit(order, mutation) for mutation in candidate.mutations)
+    """Return the edits in order; uses that share a definition share its edit."""
+    placed = {one.place or one: one for one in reversed(candidate.mutations)}
+    return tuple(_edit(order, one) for one in candidate.mutations if placed[one.place or one] is one)
 
 
 def _edit(order: Order, mutation: Mutation) -> Edit:

@@ -77,6 +77,7 @@ def test_a_guard_reads_the_variable_that_holds_the_sensor(expr: str) -> None:
         ({"name": "x", "expr": "a b"}, "expr must name a variable of the node"),
         ({"name": "x", "expr": 5}, "expr must name a variable of the node"),
         ({"name": "x", "categories": "auto"}, "categories lists the strings"),
+        ({"name": "x", "categories": (False, True)}, "Booleans and small integers need no categories"),
         ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],
 )
