@@ -16,7 +16,7 @@ import pytest
 from pytest_tarl import Sensor
 from pytest_tarl.patching.mutate import rewrite
 from pytest_tarl.patching.templates import SHIPPED, template
-from pytest_tarl.repairing import structural
+from pytest_tarl.repairing import structural, typical_sizes
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
@@ -187,7 +187,7 @@ def test_a_template_is_found_for_any_origin_of_the_value(
 ) -> None:
     world = World(name, tmp_path, BODIES[body])
     recorded = {str(step.site): 1.0 for step in world.analysis.sites}
-    monkeypatch.setattr(structural, "_typical", lambda _: recorded)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: recorded)
     check_found(name, world, monkeypatch)
 
 
