@@ -29,7 +29,8 @@ HAZARDS: Final = tuple(
 
 def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
     """Return every finding: flows, and hazards of the enabled rules."""
-    return tuple(f for group in groups(modules, config) for f in examine(group, config)[0])
+    found = (f for group in groups(modules, config) for f in examine(group, config)[0])
+    return tuple(dict.fromkeys(found))
 
 
 def examine(

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Final, TypeVar
 
 from tarl_lint import catalog
+from tarl_lint.prefilter.programs import programs
 from tarl_lint.read.module_names import Index, Named
 from tarl_lint.settings.config import Config
 
@@ -38,14 +39,15 @@ def concerned(modules: Sequence[Named], config: Config) -> bool:
 
 def relevant(modules: Sequence[M], config: Config) -> list[M]:
     """Return the modules that may take part in a flow, or have an unused subscription or publisher."""
-    return [m for group in groups(modules, config) for m in group]
+    return [*{m.path: m for group in groups(modules, config) for m in group}.values()]
 
 
 def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
-    """Return the relevant modules in groups; no module of one group imports a module of another.
+    """Return the relevant modules in groups between which no data flows, each with everything that it imports.
 
     Relevant modules are those that subscribe or publish, those that import them, and everything that these import.
-    Within a group, a module comes after its imports, as far as import cycles allow.
+    Within a group, a module comes after its imports, as far as import cycles allow. A module that several programs
+    import may be in several groups.
     """
     start = list(mentioning(modules, config))
     if not start:
@@ -59,7 +61,9 @@ def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
     kept = {m.path: m for m in _closure(_closure(start, importers), imports)}
     either = {p: [n for n in (*imports[p], *importers[p]) if n.path in kept] for p in kept}
     turn = {path: number for number, path in enumerate(_in_turn(kept, imports))}
-    return [tuple(sorted(g, key=lambda m: turn[m.path])) for g in _connected(kept, either)]
+    endpoints = {m.path for m in start}
+    connected = (sorted(g, key=lambda m: turn[m.path]) for g in _connected(kept, either))
+    return [part for group in connected for part in programs(group, imports, endpoints, code)]
 
 
 def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:

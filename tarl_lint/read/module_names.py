@@ -40,6 +40,10 @@ class Named(Protocol):
     def is_package(self) -> bool:
         """Return whether it is a package's `__init__.py`."""
 
+    @property
+    def started(self) -> tuple[str, ...]:
+        """Return the entry points that its package declares."""
+
 
 M = TypeVar("M", bound=Named)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -49,8 +50,8 @@ def examine(
         reports = _reports(tasks, keys, config, cache, jobs, tell)
         cache.put_plan(whole, keys)
     cache.save()
-    errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
-    findings = tuple(f for r in reports for f in r.findings)
+    errors = sorted({e for r in reports for e in r.errors}, key=lambda e: (e.path, e.line, e.message))
+    findings = tuple(dict.fromkeys(f for r in reports for f in r.findings))  # programs may share a file
     return Report(
         findings,
         tuple(errors),
@@ -108,15 +109,35 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> It
             yield from reports
             return
     with without_collection():
+        shared = _Parsed(tasks)
         for number, task in enumerate(tasks, 1):
-            tell(f"Analysing {task.scripts[0].path} ({number} of {len(tasks)})")
-            yield perform(task, config)
+            tell(f"Analysing {task.scripts[-1].path} ({number} of {len(tasks)})")
+            yield perform(task, config, shared)
 
 
-def perform(task: Task, config: Config) -> Report:
+class _Parsed:
+    """Parses files, those of several tasks once."""
+
+    def __init__(self, tasks: Sequence[Task] = ()) -> None:
+        self._left = Counter(script.path for task in tasks for script in task.scripts)
+        self._known: dict[str, Module | SourceError] = {}
+
+    def module(self, script: Script) -> Module | SourceError:
+        """Return the parsed file, or the reason why there is none."""
+        found = self._known.get(script.path) or _parsed(script)
+        self._left[script.path] -= 1
+        if self._left[script.path] > 0:
+            self._known[script.path] = found
+        else:
+            self._known.pop(script.path, None)
+        return found
+
+
+def perform(task: Task, config: Config, shared: _Parsed | None = None) -> Report:
     """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry."""
     with without_collection():
-        results = [_parsed(script) for script in task.scripts]
+        parse = (shared or _Parsed()).module
+        results = [parse(script) for script in task.scripts]
         errors = tuple(r for r in results if isinstance(r, SourceError))
         modules = [r for r in results if isinstance(r, Module)]
         if not task.analyse or not modules:

@@ -26,9 +26,9 @@ def analysed(monkeypatch) -> list[str]:
     seen: list[str] = []
     perform = groups.perform
 
-    def noted(task, config):
+    def noted(task, config, *parsed):
         seen.extend(script.path for script in task.scripts)
-        return perform(task, config)
+        return perform(task, config, *parsed)
 
     monkeypatch.setattr(groups, "perform", noted)
     return seen

@@ -27,7 +27,7 @@ from tarl_lint.run import groups
 from tarl_lint.run import runner
 from tarl_lint.cli import main
 
-def perform(task, config):
+def perform(task, config, *parsed):
     if sys.argv[1] == "worker":
         os.killpg(0, signal.{signal.SIGINT.name})
     time.sleep(60)
