@@ -98,9 +98,10 @@ def _launched(typed: Namespace) -> int:
             f"--format {typed.format} cannot show launch files: use one of {', '.join(command.FORMATS)}."
         )
     typed.paths = [asked.root]
-    config = resolve(options(typed))
+    chosen = options(typed)
+    config = resolve(chosen)
     _check(config)
-    made = _with_progress(lambda tell: command.systems(asked, config, tell))
+    made = _with_progress(lambda tell: command.systems(asked, config, tell, cached=chosen.cache))
     found = command.judged(made, config, writing=typed.write_baseline)
     if typed.write_baseline:
         path, written = command.accepted(found, config)

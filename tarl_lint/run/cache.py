@@ -32,7 +32,7 @@ FORMAT: Final = 1 + 4
 PLACE: Final = (".tarl", "cache", "lint")
 PACKAGES: Final = (
     "flows", "interpret", "ir", "memory", "models", "models/ros", "prefilter", "read", "rules", "rules/limits",
-    "rules/races", "run", "settings",
+    "rules/races", "run", "settings", "system",
 )  # fmt: skip
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
@@ -53,10 +53,14 @@ class Report:
 
 
 class Cache:
-    """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored."""
+    """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored.
 
-    def __init__(self, file: Path | None) -> None:
+    Of the entries that a run does not use, `spare` are kept.
+    """
+
+    def __init__(self, file: Path | None, spare: int = 0) -> None:
         self._file = file
+        self._spare = spare
         self._reports: dict[str, Any] = {}
         self._plans: dict[str, list[str]] = {}
         self._used: dict[str, Any] = {}
@@ -66,25 +70,32 @@ class Cache:
 
     def report(self, key: str) -> Report | None:
         """Return the report stored under a key, None if there is none."""
-        packed = self._reports.get(key)
+        packed = self.entry(key)
         if packed is None:
             return None
-        self._used[key] = packed
         findings, errors, cut, ended = packed
-        found = tuple(_unpacked(Finding, f) for f in findings)
+        found = tuple(unpacked(Finding, f) for f in findings)
         return Report(
             found, tuple(SourceError(*e) for e in errors), tuple(Cut(*c) for c in cut), tuple(ended)
         )
 
     def put(self, key: str, report: Report) -> None:
         """Store a report, unless it contains an internal error, which the next version may not have."""
-        if self._file is not None and not any(error.bug for error in report.errors):
-            self._used[key] = [
-                _packed(report.findings),
-                _packed(report.errors),
-                _packed(report.cut),
-                list(report.ended),
-            ]
+        if not any(error.bug for error in report.errors):
+            parts = packed(report.findings), packed(report.errors), packed(report.cut), list(report.ended)
+            self.put_entry(key, list(parts))
+
+    def entry(self, key: str) -> Any:
+        """Return what is stored under a key, None if there is nothing."""
+        found = self._reports.get(key)
+        if found is not None:
+            self._used[key] = found
+        return found
+
+    def put_entry(self, key: str, entry: object) -> None:
+        """Store lists, texts and numbers under a key."""
+        if self._file is not None:
+            self._used[key] = entry
 
     def plan(self, key: str) -> Sequence[str]:
         """Return the keys of the reports of a whole run, empty if one is missing."""
@@ -97,10 +108,13 @@ class Cache:
 
     def save(self) -> None:
         """Write the entries used in this run, if they differ from the file."""
-        if self._file is None or (self._plan is None and self._used.keys() == self._reports.keys()):
+        unused = [key for key in self._reports if key not in self._used]
+        new = self._used.keys() - self._reports.keys()
+        if self._file is None or (self._plan is None and not new and len(unused) <= self._spare):
             return
         plans = dict([self._plan]) if self._plan is not None else self._plans
-        text = json.dumps([self._used, plans], ensure_ascii=True, separators=(",", ":"))
+        entries = {**{key: self._reports[key] for key in unused[-self._spare or len(unused) :]}, **self._used}
+        text = json.dumps([entries, plans], ensure_ascii=True, separators=(",", ":"))
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             ignore = self._file.parent / ".gitignore"
@@ -120,13 +134,13 @@ class Cache:
             self._reports, self._plans = kept
 
 
-def opened(paths: Sequence[Path], config: Config) -> Cache:
-    """Return the cache of runs on these paths with these settings."""
+def opened(paths: Sequence[Path], config: Config, of: str = "", spare: int = 0) -> Cache:
+    """Return the cache of runs on these paths with these settings; `of` names a separate kind of entries."""
     settings = [f"{f.name}={getattr(config, f.name)!r}" for f in fields(config) if f.name not in AFTERWARDS]
     places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - as text, also for what does not exist
     here = os.getcwd()  # noqa: PTH109
     name = digest([str(FORMAT), __version__, sys.version, *_ourselves(), *settings, here, *places])
-    return Cache((config.root or Path.cwd()).joinpath(*PLACE, f"{name}.json"))
+    return Cache((config.root or Path.cwd()).joinpath(*PLACE, f"{of}{name}.json"), spare)
 
 
 def digest(texts: Iterable[str]) -> str:
@@ -150,15 +164,17 @@ def _ourselves() -> list[str]:
     return found
 
 
-def _packed(value: object) -> object:
+def packed(value: object) -> object:
     """Return dataclasses as lists of their fields."""
     if isinstance(value, tuple):
-        return [_packed(item) for item in value]
+        return [packed(item) for item in value]
+    if isinstance(value, frozenset):
+        return sorted(value)
     names = getattr(value, "__dataclass_fields__", None)
-    return [_packed(getattr(value, name)) for name in names] if names is not None else value
+    return [packed(getattr(value, name)) for name in names] if names is not None else value
 
 
-def _unpacked(kind: type[T], values: Sequence[Any]) -> T:
+def unpacked(kind: type[T], values: Sequence[Any]) -> T:
     """Return a dataclass from its packed fields."""
     names = getattr(kind, "__dataclass_fields__", {})
     made = (PARTS.get(name, _same)(value) for name, value in zip(names, values, strict=True))
@@ -180,8 +196,8 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "chain": tuple,
     "registered": _spans,
     "via": _spans,
-    "source": lambda packed: _unpacked(Source, packed),
-    "sink": lambda packed: _unpacked(Sink, packed),
+    "source": lambda packed: unpacked(Source, packed),
+    "sink": lambda packed: unpacked(Sink, packed),
     "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
-    "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
+    "flow": lambda packed: None if packed is None else unpacked(Flow, packed),
 }  # converters, by field name

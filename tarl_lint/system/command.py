@@ -16,17 +16,20 @@ from tarl_lint.errors import UsageError
 from tarl_lint.files import shown
 from tarl_lint.fingerprints import OfHazard
 from tarl_lint.model import Finding
+from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read import discover
 from tarl_lint.read.discover import SourceFile
 from tarl_lint.read.source import Script
 from tarl_lint.report.line import Line, View, unbroken
 from tarl_lint.run import runner
+from tarl_lint.run.cache import Cache, opened
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config
 from tarl_lint.settings.schema import BASELINE_NAME
 from tarl_lint.system import compose
 from tarl_lint.system.hazards import hazards
 from tarl_lint.system.interfaces import interface
+from tarl_lint.system.kept import SPARE, keep, kept, key
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
@@ -77,10 +80,10 @@ def request(launch: str | None, paths: Sequence[Path], origin: str | None, targe
 
 
 class _Workbench:
-    """Reads the files of a workspace once, and each program at most once."""
+    """Reads the files of a workspace once, and analyses each program at most once, unless `cache` has its interface."""
 
-    def __init__(self, root: Path, config: Config, tell: Tell) -> None:
-        self.config, self.tell = config, tell
+    def __init__(self, root: Path, config: Config, tell: Tell, cache: Cache) -> None:
+        self.config, self.tell, self.cache = config, tell, cache
         tell("Looking for packages")
         self.workspace = read(root)
         found = discover.find((root,), config)
@@ -106,22 +109,34 @@ class _Workbench:
         script = self.scripts.get(file.shown)
         if script is None:
             return f"{file.shown} is not Python 3"
-        self.tell(f"Analysing {file.shown}")
         owner = self.workspace.package_of(program.path)
         package = owner.name if owner is not None else ""
-        others = [one for one in self.scripts.values() if one.path != script.path]
-        return interface(script, program.entry, package, others, self.config)
+        imported = reached([script], [one for one in self.scripts.values() if one.path != script.path])
+        name = key(script, program.entry, package, imported)
+        found = kept(self.cache, name)
+        if found is None:
+            self.tell(f"Analysing {file.shown}")
+            found = interface(script, program.entry, package, imported, self.config)
+            keep(self.cache, name, found)
+        return found
 
 
-def systems(asked: Request, config: Config, tell: Tell = silent) -> tuple[System, ...]:
-    """Return the requested systems. Raises UsageError without a workspace or launch file."""
+def systems(
+    asked: Request, config: Config, tell: Tell = silent, *, cached: bool = False
+) -> tuple[System, ...]:
+    """Return the requested systems, and keep the interfaces of programs if `cached`.
+
+    Raises UsageError without a workspace or launch file.
+    """
     if not asked.root.is_dir():
         raise UsageError(f"{asked.root}: no such folder. Name the folder of a workspace.")
-    bench = _Workbench(asked.root.resolve(), config, tell)
+    cache = opened([asked.root], config, "system-", SPARE) if cached else Cache(None)
+    bench = _Workbench(asked.root.resolve(), config, tell, cache)
     made = [
         compose.composed(launch, bench.workspace, tuple(bench.files), bench.interface)
         for launch in _launches(asked, bench.workspace)
     ]
+    cache.save()
     return tuple(replace(one, arguments=asked.arguments) for one in made)
 
 

@@ -1,0 +1,67 @@
+"""Keep the interfaces of programs from run to run, by the texts of the program and of what it imports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final
+
+from tarl_lint.model import Finding, Span
+from tarl_lint.parameter_names import ParameterName
+from tarl_lint.read.source import Script
+from tarl_lint.run.cache import Cache, digest, packed, unpacked
+from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
+
+SPARE: Final = 1000  # entries of other launch files and of earlier texts that stay
+
+
+def key(script: Script, entry: str, package: str, imported: Sequence[Script]) -> str:
+    """Return the key of a program: everything that its interface depends on, besides the settings."""
+    scripts = [
+        part
+        for one in (script, *imported)
+        for part in (one.path, one.name, str((one.is_package, one.installed, one.started)), one.text)
+    ]
+    return digest([entry, package, *scripts])
+
+
+def kept(cache: Cache, name: str) -> Interface | str | None:
+    """Return the interface under a key, or the reason why the program cannot be analysed; None without an entry."""
+    entry = cache.entry(name)
+    if entry is None or isinstance(entry, str):
+        return entry
+    values = zip(Interface.__dataclass_fields__, entry, strict=True)
+    return Interface(**{field: _PARTS.get(field, _same)(value) for field, value in values})
+
+
+def keep(cache: Cache, name: str, interface: Interface | str) -> None:
+    """Store an interface under a key."""
+    cache.put_entry(name, interface if isinstance(interface, str) else packed(interface))
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _endpoint(entry: Sequence[Any]) -> Endpoint:
+    role, names, kind, span, qos, place, written = entry
+    profile = None if qos is None else Qos(*qos)
+    return Endpoint(role, tuple(names), kind, Span(*span), profile, place, tuple(written))
+
+
+def _findings(entries: Sequence[Any]) -> tuple[Finding, ...]:
+    return tuple(unpacked(Finding, one) for one in entries)
+
+
+def _misfit(entry: Sequence[Any]) -> Misfit:
+    kind, field, span, place = entry
+    return Misfit(kind, field, Span(*span), place)
+
+
+_PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
+    "endpoints": lambda entries: tuple(map(_endpoint, entries)),
+    "flows": _findings,
+    "stale": _findings,
+    "words": frozenset,
+    "misfits": lambda entries: tuple(map(_misfit, entries)),
+    "in_names": lambda entries: tuple(ParameterName(*one) for one in entries),
+}
