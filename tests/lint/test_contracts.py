@@ -60,6 +60,5 @@ def test_the_cache_key_covers_all_packages_that_influence_findings():
     assert packages - shown == {
         "tarl_lint.report",
         "tarl_lint.queries",
-        "tarl_lint.system",
         "tarl_lint.workspace",
     }
