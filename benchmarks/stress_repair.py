@@ -47,20 +47,15 @@ class Moved:
 
     @property
     def grew(self) -> bool | None:
-        """Return whether the middle of the interval moved away from nominal; None without a repair."""
-        return None if not self.change else middle(self.after) > middle(self.before)
+        """Return whether the guarantee now fails farther from nominal, or nowhere; None without a repair."""
+        before, after = self.before[1], self.after[1]
+        return None if not self.change else after is None or (before is not None and after > before)
 
     @property
     def line(self) -> str:
         """Return the columns of the table after the task."""
         change = self.change or "no repair"
         return f"{shown(self.before)} | {shown(self.after) if self.change else ''} | {change}"
-
-
-def middle(interval: tuple[float | None, float | None]) -> float:
-    """Return the middle of an interval whose open ends are those of the range."""
-    low, high = interval
-    return ((low or 0.0) + (1.0 if high is None else high)) / 2
 
 
 def shown(interval: tuple[float | None, float | None]) -> str:

@@ -101,7 +101,7 @@ def test_intervals_contain_the_boundary_and_are_narrow(
     assert sum(contained) >= CONFIDENCE * len(found)
     assert fmean(one.far - (one.near or 0.0) for _, _, one in found) < narrow
     if make is rare_failures:  # the search overlooks them, so that this test can fail
-        assert sum(before) <= 0.5 * len(found)
+        assert sum(before) <= 0.75 * len(found)
 
 
 @pytest.mark.parametrize("share", [0.6, 0.9, 0.95, 0.98])
