@@ -63,10 +63,10 @@ def words(side: Margin) -> str:
             if side.fails_at is not None
             else "holds"
             if side.holds_to is not None
-            else "no failure found"
+            else "no failure shown"
         )
     if side.fails_at is None:
-        return "no failure found" if side.holds_to is None else f"beyond {side.holds_to:.3g}"
+        return "no failure shown" if side.holds_to is None else f"beyond {side.holds_to:.3g}"
     if side.holds_to is None:
         return f"not beyond {side.fails_at:.3g}"
     low, high = sorted((side.holds_to, side.fails_at))

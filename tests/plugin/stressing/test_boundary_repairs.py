@@ -39,7 +39,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(tank: pytest.Pytester) -
     done.assert_outcomes(passed=1, deselected=1)
     told = done.stdout.str()
     assert re.search(r"  repair     pump from 0\.9\d+ to 0\.1: GAIN → ", told)
-    assert re.search(r"pump to 0\.1: not beyond 0\.9\d+ → no failure found", told)
+    assert re.search(r"pump to 0\.1: not beyond 0\.9\d+ → no failure shown", told)
     before, now = map(int, re.findall(r"(\d+) instead of (\d+) of 60 fresh draws", told)[0][::-1])
     assert now > before
     (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")

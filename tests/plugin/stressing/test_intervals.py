@@ -137,6 +137,19 @@ def test_without_budget_for_the_near_end_only_the_far_end_is_printed() -> None:
     assert (boundary["held_up_to"], boundary["confidence"]) == (None, CONFIDENCE)
 
 
+def test_a_suspicious_direction_is_shown_to_hold_before_it() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool(draws.random() > 0.07 * (point["size"] > 0.8)), 1.0  # too rare to be confirmed
+
+    for seed in range(40):
+        (curve,) = stressed(world, SPACE, seed=seed).curves
+        if curve.failing and curve.confirmed is None:
+            break
+    assert curve.confirmed is None
+    assert curve.held is not None
+    assert 0.3 < curve.held <= 0.8
+
+
 def test_a_direction_without_failures_is_shown_to_hold() -> None:
     space = space_of(size=SIZE, camera=Drift.choice("up", "down"))
     found = dict(
