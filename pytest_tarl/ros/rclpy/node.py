@@ -24,6 +24,7 @@ from pytest_tarl.ros.rclpy.logging import RcutilsLogger
 from pytest_tarl.ros.rclpy.parameter_services import offer_parameter_services, parameter_event
 from pytest_tarl.ros.rclpy.parameters import NodeParameters
 from pytest_tarl.ros.rclpy.qos import as_profile
+from pytest_tarl.ros.rclpy.qos_overriding_options import overridden
 from pytest_tarl.ros.rclpy.services import Client, Service
 from pytest_tarl.ros.rclpy.time import ROSClock
 from pytest_tarl.ros.rclpy.timer import Rate, Timer
@@ -179,7 +180,8 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
     ) -> Publisher:
         """Create a publisher."""
         place = self.process.bus.topic(self.resolve_topic_name(topic))
-        made = (publisher_class or Publisher)(self, msg_type, place, as_profile(qos_profile))
+        profile = overridden(self, "publisher", place.name, as_profile(qos_profile), qos_overriding_options)
+        made = (publisher_class or Publisher)(self, msg_type, place, profile)
         self.publishers_.append(made)
         return self.publishers_[-1]
 
@@ -203,7 +205,10 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
             raise unsupported("Node.create_subscription(content_filter_options=…)")
         place = self.process.bus.topic(self.resolve_topic_name(topic))
         group = callback_group or self.default_callback_group
-        made = Subscription(self, msg_type, place, callback, group, as_profile(qos_profile))
+        profile = overridden(
+            self, "subscription", place.name, as_profile(qos_profile), qos_overriding_options
+        )
+        made = Subscription(self, msg_type, place, callback, group, profile)
         self._add(made, self.subscriptions_)
         return made
 

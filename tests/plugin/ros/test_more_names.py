@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from textwrap import dedent
 from types import ModuleType
 
 import numpy as np
@@ -240,3 +241,48 @@ def test_parameter_files_are_read_for_other_nodes(start: Start, tmp_path: Path) 
     arm, leg = {"gain": 2.5, "limits.top": 3}, {"names": ["a", "b"]}
     assert ros.namespace["found"] == ({**arm, **leg}, {"debug": True, **arm}, leg)
     assert ros.namespace["said"].startswith("Param file does not contain any parameters for ['/hand']")
+
+
+def test_parameters_override_the_quality_of_service(start: Start) -> None:
+    node = """
+        import rclpy
+        from rcl_interfaces.msg import SetParametersResult
+        from rclpy.duration import Duration
+        from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
+        from std_msgs.msg import Float64
+        rclpy.init()
+        node = rclpy.create_node("n")
+        options = QoSOverridingOptions.with_default_policies(entity_id="left")
+        pub = node.create_publisher(Float64, "out", 10, qos_overriding_options=options)
+        own = QoSOverridingOptions((QoSPolicyKind.DEADLINE, QoSPolicyKind.DURABILITY), callback=check)
+        sub = node.create_subscription(Float64, "in", print, 3, qos_overriding_options=own)
+        found = (pub.qos_profile.reliability.name, pub.qos_profile.depth, sub.qos_profile.durability.name,
+                 sub.qos_profile.deadline.nanoseconds, sub.qos_profile.depth,
+                 node.get_parameter("qos_overrides./out.publisher_left.history").value)
+    """
+    check = "def check(profile): return SetParametersResult(successful={}, reason='no')\n"
+    given = {
+        "qos_overrides./out.publisher_left.reliability": "best_effort",
+        "qos_overrides./out.publisher_left.depth": 2,
+        "qos_overrides./in.subscription.deadline": 5,
+    }
+    ros = start(check.format(True) + dedent(node), parameters=given)
+    assert ros.namespace["found"] == ("BEST_EFFORT", 2, "VOLATILE", 5, 3, "keep_last")
+    with pytest.raises(NodeError, match="check refused the profile: no"):
+        start(check.format(False) + dedent(node))
+    with pytest.raises(
+        NodeError, match="'sometimes' is no reliability: it is one of system_default, reliable,"
+    ):
+        start(check.format(True) + dedent(node),
+              parameters={"qos_overrides./out.publisher_left.reliability": "sometimes"})  # fmt: skip
+
+
+def test_multiplexers_are_called_by_their_services(start: Start) -> None:
+    ros = start("""
+        import rospy
+        from topic_tools.srv import MuxSelect, MuxSelectResponse
+        rospy.init_node("n")
+        rospy.Service("mux/select", MuxSelect, lambda request: MuxSelectResponse(prev_topic="/" + request.topic))
+        found = rospy.ServiceProxy("mux/select", MuxSelect)("odom").prev_topic
+    """)
+    assert ros.namespace["found"] == "/odom"

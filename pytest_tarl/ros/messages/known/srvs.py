@@ -117,6 +117,32 @@ uint8 value
 ---
 bool success
 string message
+== topic_tools/MuxAdd
+string topic
+---
+== topic_tools/MuxDelete
+string topic
+---
+== topic_tools/MuxList
+---
+string[] topics
+== topic_tools/MuxSelect
+string topic
+---
+string prev_topic
+== topic_tools/DemuxAdd
+string topic
+---
+== topic_tools/DemuxDelete
+string topic
+---
+== topic_tools/DemuxList
+---
+string[] topics
+== topic_tools/DemuxSelect
+string topic
+---
+string prev_topic
 == turtlesim/Kill
 string name
 ---
