@@ -111,3 +111,19 @@ def test_another_registration_stands_outside_loops_and_always_runs(
     found = beside(source, call, "node")
     assert found is not None
     assert (ast.unparse(found.statement), found.after, found.node) == (statement, after, "node")
+
+
+@pytest.mark.parametrize(
+    ("line", "nodes"),
+    [
+        ("rclpy.spin(rclpy.create_node('pilot'))", []),
+        ("wrapped = Wrapper(rclpy.create_node('pilot'))", []),
+        ("node = Wrapper(rclpy.create_node('pilot'))\n    node.create_timer(1.0, print)", ["node", "node"]),
+        ("self.node = rclpy.create_node('pilot')", ["self.node"]),
+    ],
+)
+def test_a_node_is_named_only_where_it_is_assigned_or_used(line: str, nodes: list[str]) -> None:
+    text = f"import rclpy\n\n\ndef main():\n    {line}\n"
+    analysis: Any = SimpleNamespace(flows=[], sources={"pilot.py": text})
+    site: Any = None
+    assert [found.node for found in anchors(analysis, site, "pilot.py")] == nodes
