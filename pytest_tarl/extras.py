@@ -12,6 +12,7 @@ from urllib.request import url2pathname
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
 FLEET = ("duckdb", "fsspec", "pyarrow")
+STRESS = ("cma", "hypothesis")
 
 
 def missing_packages() -> list[str]:
@@ -34,6 +35,11 @@ def missing_fleet(what: str) -> str | None:
     return missing_extra(what) or _sentence(
         what, [name for name in FLEET if find_spec(name) is None], "fleet"
     )
+
+
+def missing_stress(what: str) -> str | None:
+    """Return a sentence that `what` needs the extra `stress`, or None if it is installed."""
+    return _sentence(what, [name for name in STRESS if find_spec(name) is None], "stress")
 
 
 def install_command(extra: str) -> str:

@@ -12,6 +12,7 @@ import pytest
 
 from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
+from pytest_tarl.extras import missing_stress
 from pytest_tarl.options import Options
 from pytest_tarl.printable import printable
 from pytest_tarl.progress import ProgressLine
@@ -102,7 +103,10 @@ class TarlSession:
             items[:] = marked
 
     def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
-        """Return the items with a space. Raise UsageError if there is none."""
+        """Return the items with a space. Raise UsageError if there is none, or if the search is not installed."""
+        sentence = missing_stress("--tarl-stress")
+        if sentence is not None:
+            raise pytest.UsageError(sentence)
         found = [item for item in marked if _has_space(item)]
         if marked and not found:
             raise pytest.UsageError(

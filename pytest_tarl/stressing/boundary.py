@@ -15,8 +15,7 @@ NOISY = 0.04  # the same if the failing end is undecided: noise then hides any f
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
     """Run the points of the coarse sweep along a ray, the farthest first."""
     for t in curve.ray.places:
-        if t not in curve.evidence:
-            curve.evidence[t] = evaluator.examine(curve.ray.point(t), COARSE)
+        curve.evidence[t] = evaluator.examine(curve.ray.point(t), COARSE)
     curve.swept = True
 
 
@@ -38,6 +37,8 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
     All rays share these seeds, since no point was chosen with them.
     """
     for k, t in enumerate(_candidates(curve, evaluator.guarantee, risk), 1):
+        if curve.confirmed is not None and t >= curve.confirmed:
+            return
         if evaluator.confirm(curve.ray.point(t), RAYS, risk / (k * (k + 1))):
             curve.confirmed = t
             return

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from math import sqrt
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point, Space
-from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, refuted
+from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, margin_of, refuted
 
 SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
 FRESH = (16, 32)  # episodes on fresh seeds after which a failure is confirmed or not
@@ -36,6 +38,18 @@ class Evaluator:
     spent: int = 0
     short: bool = False  # whether a result was left out for want of budget
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
+    _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
+
+    @contextmanager
+    def limited(self, share: float) -> Iterator[None]:
+        """End the block quietly once this share of the budget is spent in all; `short` remembers it."""
+        whole, self.budget = self.budget, min(self.budget, round(share * self.budget))
+        try:
+            yield
+        except BudgetSpentError:
+            self.short = True
+        finally:
+            self.budget = whole
 
     def examine(self, point: Point, most: int) -> Evidence:
         """Return the evidence at a point after at most `most` episodes; end early once it is decided.
@@ -63,6 +77,20 @@ class Evaluator:
     def _evidence(self, point: Point, count: int) -> Evidence:
         outcomes = self.common(point, count)
         return examined(self.guarantee, outcomes, self.common(self.space.nominal, count))
+
+    def measured(self, point: Point) -> tuple[float, float]:
+        """Return the margin by all episodes that the search ran at a point, and its approximate standard deviation."""
+        outcomes = self._known[("search", *point.values())]
+        key = (len(outcomes), *point.values())
+        if key not in self._measured:
+            self._measured[key] = margin_of(
+                self.guarantee, outcomes, self.common(self.space.nominal, len(outcomes))
+            )
+        return self._measured[key]
+
+    def noise(self, point: Point) -> float:
+        """Return the approximate standard deviation of a single episode's margin at a point."""
+        return self.measured(point)[1] * sqrt(len(self._known[("search", *point.values())]))
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes on the search's first seeds. Raise BudgetSpentError if the budget does not cover them."""

@@ -104,15 +104,19 @@ class Stress:
     @property
     def failures(self) -> tuple[Failure, ...]:
         """Return all confirmed failing drifts, the nearest first."""
-        single = [
-            failure(self.space, curve.ray.point(curve.confirmed))
-            for curve in self.curves
-            if curve.confirmed is not None
-        ]
-        return tuple(sorted([*single, *self.combinations], key=lambda one: (one.distance, one.names)))
+        return tuple(
+            sorted([*confirmed(self.curves), *self.combinations], key=lambda one: (one.distance, one.names))
+        )
 
 
 def failure(space: Space, point: Point) -> Failure:
     """Return a failing drift."""
     names = tuple(name for name, number in point.items() if number != space.nominal[name])
     return Failure(point, distance(space, point), names)
+
+
+def confirmed(curves: Sequence[Curve]) -> list[Failure]:
+    """Return the confirmed failing drifts along single directions."""
+    return [
+        failure(one.ray.space, one.ray.point(one.confirmed)) for one in curves if one.confirmed is not None
+    ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import sqrt
 from statistics import fmean, stdev
 from typing import Literal
 
@@ -13,6 +14,7 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
+LOWEST = -1.5  # margin below which a drift says little about the boundary, since it fails clearly
 LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
 SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it gives no guarantee
 
@@ -97,6 +99,27 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
     answer: Answer = "fails" if failing else "holds" if holding else "open"
     spread = stdev(losses) if count > 1 else 0.0
     return Evidence(answer, given.margin(passed / count, loss), count, passed, loss, spread)
+
+
+def margin_of(
+    given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]
+) -> tuple[float, float]:
+    """Return the margin of outcomes, at least LOWEST, and its approximate standard deviation.
+
+    If episodes fail, that is half of the margin's 80 % interval. If all pass, it is that of the mean loss, with two
+    more losses of a spread of a third of the tolerance, since few outcomes may agree by chance.
+    """
+    count, passed = len(outcomes), sum(one.passed for one in outcomes)
+    losses = _losses(outcomes, nominal)
+    mean = fmean(losses)
+    margin = max(given.margin(passed / count, mean), LOWEST)
+    if passed < count:
+        bounds = rate(passed, count, 0.9)
+        high, low = (max(given.margin(share, 0.0), LOWEST) for share in (bounds.high, bounds.low))
+        return margin, max((high - low) / 2, 0.1)
+    prior = (given.tolerance / 3) ** 2
+    variance = (sum((one - mean) ** 2 for one in losses) + 2 * prior) / (count + 1)
+    return margin, sqrt(variance / count) / given.tolerance if given.tolerance > 0.0 else 1.0
 
 
 def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:

@@ -12,7 +12,7 @@ from pytest_tarl.options import Options
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.spaces import Space
 from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
-from pytest_tarl.stressing.combinations import Together, pairs, search
+from pytest_tarl.stressing.combinations import Combined, Together
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
 from pytest_tarl.stressing.findings import FAR_RISK, Curve, Stress
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
@@ -49,24 +49,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
     share = request.options.alpha / (len(curves) + 2)  # for each ray, all combinations, and nominal
     share = min(share, FAR_RISK)
     together = Together(share, curves)
-    ended = ""
-    try:
-        if _nominal_fails(evaluator, share):
-            ended = "nominal"
-        else:
-            along_rays(curves, evaluator, share)
-            if combined:
-                pairs(evaluator, together)
-            near_ends([curve for curve in curves if curve.failing], evaluator)
-            if combined:
-                search(evaluator, together)
-            near_ends([curve for curve in curves if not curve.failing], evaluator)
-    except BudgetSpentError:
-        ended = "budget"
-    except KeyboardInterrupt:
-        ended = "interrupted"
-    if evaluator.short:
-        ended = ended or "budget"
+    ended = explore(evaluator, together, combined=combined)
     return Stress(
         test=request.fixture.test,
         drift=request.drift,
@@ -81,6 +64,30 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         tried=together.tried,
         ended=ended,
     )
+
+
+def explore(evaluator: Evaluator, together: Together, *, combined: bool = True) -> str:
+    """Fill the curves and the combinations of `together`, each curve at its risk; return why the search ended early.
+
+    With several directions, the nearest failing drift comes first, since it needs least; the budget has a share for it.
+    """
+    curves, share = together.curves, together.risk
+    several = Combined(evaluator, together) if combined and len(evaluator.space.extents) > 1 else None
+    try:
+        if _nominal_fails(evaluator, share):
+            return "nominal"
+        if several is not None:
+            several.begin()
+        along_rays(curves, evaluator, share)
+        near_ends([curve for curve in curves if curve.failing], evaluator)
+        if several is not None:
+            several.end()
+        near_ends([curve for curve in curves if not curve.failing], evaluator)
+    except BudgetSpentError:
+        return "budget"
+    except KeyboardInterrupt:
+        return "interrupted"
+    return "budget" if evaluator.short else ""
 
 
 def _evaluator(request: Request, space: Space) -> Evaluator:

@@ -92,8 +92,8 @@ def test_noise_rarely_gives_a_boundary(spread: float) -> None:
     def world(_: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 0.96), float(draws.normal(10.0, spread))
 
-    found = [stressed(world, space_of(mud=MUD, slope=SLOPE), seed=seed, budget=400) for seed in range(10)]
-    assert sum(bool(one.failures) for one in found) <= 1
+    found = [stressed(world, space_of(mud=MUD, slope=SLOPE), seed=seed, budget=400) for seed in range(5)]
+    assert not any(one.failures for one in found)
 
 
 def test_an_interval_of_failures_is_not_reported_as_monotone() -> None:

@@ -72,6 +72,20 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     assert written(spaced) == first
 
 
+def test_kept_failures_and_workers_leave_a_search_in_two_directions_as_it_is(spaced: pytest.Pytester) -> None:
+    changed(spaced, "test_tank", "import Drift, Sensor", "import Drift, Sensor, faults")
+    changed(spaced, "test_tank", "nominal=1.0)", 'nominal=1.0), high=faults.bias("/level", "data", 0.0, 0.2)')
+    budget = ("--tarl-stress", "--tarl-stress-budget=120")
+    spaced.runpytest(*budget).assert_outcomes(passed=1, deselected=1)
+    first = written(spaced)
+    found = json.loads(first[0])
+    assert {one["name"] for one in found["directions"]} == {"pump", "high"}
+    assert found["failures"]
+    again = spaced.runpytest(*budget, "--tarl-workers=2")
+    assert "still fails." in again.stdout.str()
+    assert written(spaced) == first
+
+
 def test_a_failure_inside_must_hold_fails_the_test(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", "    episodes=30,", '    episodes=30,\n    must_hold={"pump": (0.2, 1.0)},')
     done = spaced.runpytest(*STRESS)

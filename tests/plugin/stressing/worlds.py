@@ -14,12 +14,12 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.seeds import episode_seeds, generator
 from pytest_tarl.spaces import Point, Space
-from pytest_tarl.stressing.combinations import Together, pairs, search
-from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator
+from pytest_tarl.stressing.combinations import Together
+from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import Curve, Stress
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import along_rays, near_ends
+from pytest_tarl.stressing.search import explore
 
 World = Callable[[Point, np.random.Generator], tuple[bool, float]]  # → passed, total reward
 
@@ -68,17 +68,7 @@ def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -
     evaluator = evaluator_of(world, space, seed=seed, budget=budget)
     curves = [Curve(ray) for ray in rays(space, {})]
     together = Together(0.01, curves)
-    ended = ""
-    try:
-        along_rays(curves, evaluator, 0.01)
-        pairs(evaluator, together)
-        near_ends([curve for curve in curves if curve.failing], evaluator)
-        search(evaluator, together)
-        near_ends([curve for curve in curves if not curve.failing], evaluator)
-    except BudgetSpentError:
-        ended = "budget"
-    if evaluator.short:
-        ended = "budget"
+    ended = explore(evaluator, together)
     return Stress(
         test="t",
         drift="world",

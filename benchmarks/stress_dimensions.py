@@ -1,0 +1,299 @@
+"""The nearest failing drift in four directions, by a stress run and by other searches with the same episodes.
+
+    python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
+    python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
+
+The worlds of stress_worlds.py are formulas. Each task of benchmarks/drift has its own drift, from the nominal value to
+that of the task, and three faults of the topic of its first numeric sensor: a bias, a latency and a dropout, of the
+same relative size in every task. Each method may run BUDGET episodes. A peer learns of each drift that it proposes the
+distance from nominal if the guarantee fails on PROBES common seeds, and otherwise the margin above the largest
+distance. A failure counts if fresh seeds confirm it, free of charge; each method may offer its nearest OFFERS failing
+drifts, of which the k-th is tested at RISK / k(k + 1).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import fmean, median
+from subprocess import DEVNULL, PIPE, Popen
+from typing import Any
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE / "drift"), str(HERE)]
+
+from peers import Cma  # noqa: E402
+from stage import TASKS, Stage, visit  # noqa: E402
+from stress import nominal_of  # noqa: E402
+from stress_worlds import TOLERANCE, WORLDS, Formula  # noqa: E402
+from stress_worlds import space as world_space  # noqa: E402
+
+from pytest_tarl import faults  # noqa: E402
+from pytest_tarl.designation import Designation  # noqa: E402
+from pytest_tarl.drifts import Drift  # noqa: E402
+from pytest_tarl.rollout import EpisodePlan, Rollout  # noqa: E402
+from pytest_tarl.seeds import episode_seeds, generator  # noqa: E402
+from pytest_tarl.spaces import Point, Space, Span, nominal  # noqa: E402
+from pytest_tarl.stressing.combinations import Together  # noqa: E402
+from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcome  # noqa: E402
+from pytest_tarl.stressing.findings import Curve, confirmed  # noqa: E402
+from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
+from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
+from pytest_tarl.stressing.search import explore  # noqa: E402
+
+BUDGET = 600  # episodes of a run, the default of --tarl-stress-budget
+PROBES = 4  # episodes at a drift that a peer proposes
+OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
+RECORDED = 100
+RISK = 0.05  # of the test on fresh seeds
+SIZE = "size"
+SCENARIO = "stress"
+LARGEST = 2.0  # no drift of four directions is farther
+PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
+
+
+class Numbered(Space):
+    """A space whose world takes a single number, as the tests of benchmarks/drift do."""
+
+    def world(self, point: Point) -> Any:
+        """Return the value of the task's own drift."""
+        extent = self.directions[SIZE]
+        assert isinstance(extent, Span)
+        return point[SIZE]
+
+
+@dataclass(frozen=True)
+class Arena:
+    """A task in four directions, with the guarantee of its recording."""
+
+    task: str
+    rollout: Rollout
+    space: Space
+    given: Guarantee
+
+    def evaluator(self, seed: int, budget: int) -> Evaluator:
+        """Return an evaluator that may run `budget` episodes."""
+        return Evaluator(self.rollout, self.space, SCENARIO, self.given, seed, budget, lambda *_: None)
+
+
+def space_of(stage: Stage) -> Numbered:
+    """Return the four directions of a task."""
+    usual, far = float(nominal_of(stage)), float(stage.marked.drifts[stage.drift].value)
+    sensor = next(one for one in stage.marked.sensors if one.low is not None)
+    assert sensor.low is not None
+    assert sensor.high is not None
+    assert sensor.topic is not None
+    assert isinstance(sensor.field, str)
+    size = 0.1 * (sensor.high - sensor.low)
+    parts: dict[str, Any] = {
+        "bias": faults.bias(sensor.topic, sensor.field, -size, size),
+        "late": faults.latency(sensor.topic, 0.5),
+        "lost": faults.dropout(sensor.topic, 0.5),
+    }
+    return Numbered({SIZE: Span(min(usual, far), max(usual, far), usual)}, parts)
+
+
+def arena(stage: Stage) -> Arena:
+    """Return a task in four directions, recorded."""
+    space = space_of(stage)
+    marked = replace(stage.marked, drifts={SCENARIO: Drift(space)})
+    return recorded(stage.task, replace(stage.rollout, designation=marked), space, marked)
+
+
+def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> Arena:
+    """Return an arena with the guarantee of RECORDED nominal episodes."""
+    plans = (
+        EpisodePlan(seed, SCENARIO, point=space.nominal) for seed in episode_seeds(11, "offline", RECORDED)
+    )
+    runs = [outcome(rollout(plan)) for plan in plans]
+    tolerance = max(0.05 * abs(fmean(one.total for one in runs)), marked.tolerance or 0.0)
+    return Arena(task, rollout, space, guaranteed(runs, tolerance, marked))
+
+
+def formula(name: str) -> Arena:
+    """Return a world of stress_worlds.py."""
+    marked = Designation((), (), min_success=0.95, tolerance=TOLERANCE)
+    return recorded(name, Formula(WORLDS[name]), world_space(), marked)
+
+
+def ours(one: Arena, seed: int) -> list[Point]:
+    """Return the failing drifts of a stress run, the nearest first."""
+    evaluator = one.evaluator(seed, BUDGET)
+    curves = [Curve(ray) for ray in rays(one.space, {})]
+    together = Together(RISK / (len(curves) + 2), curves)
+    explore(evaluator, together)
+    found = [*confirmed(curves), *together.found]
+    return [failure.point for failure in sorted(found, key=lambda failure: failure.distance)]
+
+
+class Uniform:
+    """Draw every coordinate uniformly."""
+
+    def __init__(self, size: int, draws: np.random.Generator) -> None:
+        self.size, self.draws = size, draws
+
+    def ask(self) -> Sequence[float]:
+        """Return the next point."""
+        drawn: list[float] = self.draws.uniform(-1.0, 1.0, self.size).tolist()
+        return drawn
+
+    def tell(self, point: Sequence[float], cost: float) -> None:
+        """Learn nothing."""
+
+
+class Process:
+    """A peer in a process and an environment of its own, which writes a point and reads its cost, a JSON line each."""
+
+    def __init__(self, home: Path, script: str, size: int, seed: int) -> None:
+        python = home / Path(script).stem.removesuffix("_peer") / "bin" / "python"
+        budget = BUDGET // PROBES - 1
+        words = [str(python), str(HERE / "stress_peers" / script), str(size), str(budget), str(seed)]
+        self.process = Popen(words, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, text=True)
+        self.script = script
+
+    def ask(self) -> Sequence[float] | None:
+        """Return the next point; None after the last one."""
+        assert self.process.stdout is not None
+        line = self.process.stdout.readline()
+        if not line and self.process.wait() != 0:
+            raise SystemExit(f"{self.script} ended with status {self.process.returncode}")
+        return json.loads(line) if line else None
+
+    def tell(self, point: Sequence[float], cost: float) -> None:  # noqa: ARG002
+        """Send the cost of the last point."""
+        assert self.process.stdin is not None
+        self.process.stdin.write(f"{cost!r}\n")
+        self.process.stdin.flush()
+
+    def close(self) -> None:
+        """End the process."""
+        self.process.kill()
+        self.process.wait()
+
+
+@contextmanager
+def optimiser(method: str, size: int, seed: int, home: Path) -> Iterator[Any]:
+    """Yield a peer by its name."""
+    if method in PEERS:
+        peer = Process(home, PEERS[method], size, seed)
+        try:
+            yield peer
+        finally:
+            peer.close()
+    else:
+        draws = generator(seed, method)
+        yield Uniform(size, draws) if method == "random" else Cma(size, draws)
+
+
+def placed(space: Space, numbers: Sequence[float]) -> Point:
+    """Return the point of coordinates from -1 to 1, where 0 is nominal."""
+    found = {}
+    for (name, extent), number in zip(space.extents.items(), numbers, strict=True):
+        assert isinstance(extent, Span)
+        usual = nominal(extent)
+        low, high = usual - extent.low, extent.high - usual
+        if low == 0.0 or high == 0.0:  # nominal is an end: use the absolute value
+            found[name] = usual + (high - low) * min(abs(number), 1.0)
+        else:
+            found[name] = usual + (high if number > 0 else low) * min(max(number, -1.0), 1.0)
+    return found
+
+
+def peer_run(one: Arena, seed: int, method: str, home: Path) -> list[Point]:
+    """Return the failing drifts of a peer's run, the nearest first."""
+    evaluator = one.evaluator(seed, BUDGET)
+    failing: dict[float, Point] = {}
+    with optimiser(method, len(one.space.extents), seed, home) as peer:
+        while (asked := peer.ask()) is not None:
+            point = placed(one.space, asked)
+            try:
+                margin = evaluator.examine(point, PROBES).margin
+            except BudgetSpentError:
+                break
+            away = distance(one.space, point)
+            if margin < 0.0:
+                failing[away] = point
+            peer.tell(asked, away / LARGEST if margin < 0.0 else 1.0 + margin)
+    return [failing[away] for away in sorted(failing)]
+
+
+def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
+    """Return the distance of the nearest point that fails on fresh seeds; None if none does."""
+    judge = one.evaluator(10_000 + seed, 10**9)
+    for k, point in enumerate(points[:OFFERS], 1):
+        if judge.confirm(point, "judge", RISK / (k * (k + 1))):
+            return distance(one.space, point)
+    return None
+
+
+def at_least_as_near(own: float | None, other: float | None) -> bool:
+    """Return whether our distance is not larger; finding nothing is as good as nothing."""
+    if own is None or other is None:
+        return other is None
+    return own <= other * (1 + 1e-9)
+
+
+def compare(one: Arena, methods: Sequence[str], seeds: int, home: Path) -> dict[str, list[float | None]]:
+    """Return the verified distance of each method at each seed."""
+    found: dict[str, list[float | None]] = {method: [] for method in methods}
+    for seed in range(seeds):
+        for method in methods:
+            points = ours(one, seed) if method == "ours" else peer_run(one, seed, method, home)
+            found[method].append(verified(one, seed, points))
+        told = " ".join(f"{method} {_shown(found[method][-1])}" for method in methods)
+        print(f"{one.task} {seed}: {told}", file=sys.stderr, flush=True)
+    return found
+
+
+def _shown(value: float | None) -> str:
+    return "none" if value is None else f"{value:.3f}"
+
+
+def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
+    """Return a task's line: the median distance of each method, and how often ours is at least as near as each."""
+    cells = []
+    for method, values in found.items():
+        known = [value for value in values if value is not None]
+        cell = f"{_shown(median(known) if known else None)} ({len(known)})"
+        if method != "ours":
+            near = sum(map(at_least_as_near, found["ours"], values))
+            cell += f", {near} of {len(values)}"
+        cells.append(cell)
+    return f"| {task} | {' | '.join(cells)} |"
+
+
+def main() -> None:
+    """Print a line per task, and the sums."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("tasks", nargs="*", default=[*WORLDS, *TASKS])
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
+    parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
+    arguments = parser.parse_args()
+    methods: list[str] = arguments.methods
+    every: dict[str, list[float | None]] = {method: [] for method in methods}
+    print(f"| task | {' | '.join(methods)} |\n|---|{'---|' * len(methods)}")
+    for task in arguments.tasks:
+
+        def visitor(stage: Stage) -> dict[str, list[float | None]]:
+            return compare(arena(stage), methods, arguments.seeds, arguments.home)
+
+        if task in WORLDS:
+            found = compare(formula(task), methods, arguments.seeds, arguments.home)
+        else:
+            found = visit(task, visitor, None, HERE / "drift")
+        print(row(task, found), flush=True)
+        for method in methods:
+            every[method] += found[method]
+    print(row("all", every))
+
+
+if __name__ == "__main__":
+    main()

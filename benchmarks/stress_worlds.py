@@ -1,0 +1,92 @@
+"""Worlds of four directions as formulas, in which the nearest failing drift is known up to noise.
+
+The reward has noise that a seed shares between drifts, as in a simulation, and a quarter as much that it does not. Each
+world takes a drift x in units of the ranges, 0 nominal, and random numbers, and returns whether the episode passes and
+its reward. The guarantee: 95 % of the episodes pass, and at most TOLERANCE of the reward is lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.seeds import generator
+from pytest_tarl.spaces import Space, Span
+
+Vector = NDArray[np.float64]
+World = Callable[[Vector, np.random.Generator], tuple[bool, float]]
+TOLERANCE = 0.5
+SHARED, NOISE = 0.2, 0.05  # standard deviations of the reward
+NAMES = ("a", "b", "c", "d")
+_NONE = np.zeros(0, np.int32)
+
+
+def plane(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose reward in proportion to three directions of different weight."""
+    return True, 10.0 - TOLERANCE * float(np.abs(x) @ [1.2, 0.9, 0.6, 0.0]) / 0.8 + draws.normal(0.0, NOISE)
+
+
+def product(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose reward where two directions change together, with a little from a third."""
+    lost = 6.0 * x[0] * x[1] + 0.5 * abs(x[2])
+    return True, 10.0 - TOLERANCE * float(lost) + draws.normal(0.0, NOISE)
+
+
+def corner(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Fail, without a sign before, where the sum of three directions is large."""
+    return bool(np.abs(x[:3]).sum() + draws.normal(0.0, 0.03) < 1.2), 1.0
+
+
+def ellipsoid(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose reward by a quadratic form whose axes are no directions."""
+    along, across = (x[0] + x[1] + x[2]) / np.sqrt(3), (x[0] - x[1]) / np.sqrt(2)
+    lost = (along / 0.45) ** 2 + (across / 0.9) ** 2 + (x[3] / 0.8) ** 2
+    return True, 10.0 - TOLERANCE * float(lost) + draws.normal(0.0, NOISE)
+
+
+def rare(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Fail with a probability that grows smoothly with two directions and their product."""
+    risk = 1.0 / (1.0 + np.exp(6.0 - 9.0 * abs(x[0]) - 6.0 * abs(x[1]) - 8.0 * abs(x[0] * x[1])))
+    return bool(draws.random() > risk), 1.0
+
+
+def island(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose reward only around one drift, where no single direction shows it."""
+    away = np.linalg.norm(x - [0.35, -0.35, 0.3, 0.0])
+    return True, 10.0 - TOLERANCE * 2.0 * float(np.exp(-((away / 0.3) ** 2))) + draws.normal(0.0, NOISE)
+
+
+WORLDS: Mapping[str, World] = {one.__name__: one for one in (plane, product, corner, ellipsoid, rare, island)}
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A rollout of a world."""
+
+    world: World
+    workers = 1
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode."""
+        assert plan.point is not None
+        passed, total = self.world(
+            np.array(list(plan.point.values())), generator(plan.seed, f"world {plan.point}")
+        )
+        total += float(generator(plan.seed, "shared").normal(0.0, SHARED))
+        trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
+        return EpisodeRun(plan, trace, passed)
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Return an episode that runs when its result is requested."""
+        return Deferred(self, plan)
+
+
+def space() -> Space:
+    """Return four directions, two of which go both ways."""
+    spans = (Span(-0.5, 0.5, 0.0), Span(-0.5, 0.5, 0.0), Span(0.0, 1.0, 0.0), Span(0.0, 1.0, 0.0))
+    return Space(dict(zip(NAMES, spans, strict=True)), {})

@@ -1,0 +1,37 @@
+"""Evolve drifts towards low margins with CMA-ES, from the package `cma`."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from math import nan
+
+import numpy as np
+
+from pytest_tarl.stressing.coordinates import Vector
+
+
+def evolve(
+    start: Vector, spread: float, draws: np.random.Generator, margin: Callable[[Vector], float | None]
+) -> None:
+    """Call `margin` with vectors, from a normal distribution that adapts to low margins, until it returns None.
+
+    `spread` is the first standard deviation. `cma` would seed numpy's global generator, which nodes may use, so that
+    it takes its numbers from `draws` instead.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it warns when matplotlib is not installed
+        import cma
+
+        strategy = cma.CMAEvolutionStrategy(
+            start, spread, {"verbose": -9, "seed": nan, "randn": lambda *shape: draws.standard_normal(shape)}
+        )
+        while not strategy.stop():
+            vectors = strategy.ask()
+            found = []
+            for vector in vectors:
+                one = margin(vector)
+                if one is None:
+                    return
+                found.append(one)
+            strategy.tell(vectors, found)

@@ -1,0 +1,127 @@
+"""The search in several directions: the model, Hypothesis and CMA-ES."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl import Drift, extras
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.coordinates import Coordinates
+from pytest_tarl.stressing.evolving import evolve
+from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.generating import generate
+from pytest_tarl.stressing.prediction import Prediction, Sample
+from pytest_tarl.stressing.rays import distance, rays
+from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
+
+SPACE = space_of(
+    a=Drift.range(-1.0, 1.0, nominal=0.0),
+    b=Drift.range(0.0, 2.0, nominal=2.0),
+    camera=Drift.choice("up", "down"),
+)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-1.0, 0.0), st.sampled_from([0.0, 1.0]))
+@settings(max_examples=20)
+def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, camera: float) -> None:
+    point = {"a": 2.0 * a, "b": 2.0 + 2.0 * b, "camera": camera}
+    coordinates = Coordinates(SPACE, point)
+    assert coordinates.vector(point) == pytest.approx([a, b])
+    back = coordinates.point(coordinates.vector(point))
+    assert back == pytest.approx(point, abs=1e-9)
+    near = coordinates.within(np.array([a, b]), 1.05)
+    assert near is not None
+    assert distance(SPACE, coordinates.point(near)) <= 1.05 + 1e-9
+    assert coordinates.within(np.array([a, b]), 0.9) is None or camera == 0.0
+
+
+def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
+    weights = {"a": 1.0, "b": 2.0}
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
+    evaluator = evaluator_of(
+        lambda point, _: (True, 10.0 - 0.5 * sum(weights[name] * point[name] for name in weights)), space
+    )
+    curves = [Curve(ray) for ray in rays(space, {})]
+    for curve in curves:
+        curve.evidence.update({t: evaluator.examine(curve.ray.point(t), 4) for t in curve.ray.places})
+    coordinates = Coordinates(space, space.nominal)
+    points = [curve.ray.point(t) for curve in curves for t in curve.evidence]
+    samples = [Sample(coordinates.vector(point), *evaluator.measured(point)) for point in points]
+    model = Prediction(coordinates, curves, samples)
+    assert model.margins(np.array([[0.2, 0.4]]))[0] == pytest.approx(0.0, abs=0.1)
+    vector, gain = model.promising(0.5, np.random.default_rng(0))
+    assert gain > 0.0
+    assert 0.35 < np.linalg.norm(vector) < 0.5  # the true distance is 1 / √5 = 0.447
+    assert vector[1] > vector[0]
+
+
+def test_generated_drifts_are_the_same_for_a_seed_and_lie_in_the_space() -> None:
+    def drawn(seed: int) -> list[Point]:
+        found: list[Point] = []
+
+        def margin(point: Point) -> float | None:
+            found.append(point)
+            return -abs(point["a"])
+
+        generate(SPACE, seed, 12, margin)
+        return found
+
+    one = drawn(3)
+    assert one == drawn(3)
+    assert one != drawn(4)
+    assert len({tuple(point.values()) for point in one}) > 5
+    for point in one:
+        assert -1.0 <= point["a"] <= 1.0
+        assert 0.0 <= point["b"] <= 2.0
+        assert point["camera"] in (0.0, 1.0)
+
+
+def test_an_error_in_a_generated_drift_is_raised_once() -> None:
+    calls: list[Point] = []
+
+    def margin(point: Point) -> float | None:
+        calls.append(point)
+        raise LookupError("spent")
+
+    with pytest.raises(LookupError, match="spent"):
+        generate(SPACE, 0, 12, margin)
+    assert len(calls) == 1
+
+
+def test_evolution_leaves_the_global_generator_alone() -> None:
+    """Nodes may draw from it in the process of the search, but not in workers."""
+    reached: list[list[float]] = []
+    for state in (1, 2):
+        np.random.seed(state)
+        before = np.random.get_state()[1].tolist()  # type: ignore[index, union-attr]
+        seen: list[float] = []
+
+        def margin(vector: np.ndarray, seen: list[float] = seen) -> float | None:
+            seen.append(float(np.sum(vector**2)))
+            return seen[-1] if len(seen) < 60 else None
+
+        evolve(np.array([0.5, 0.5]), 0.2, np.random.default_rng(0), margin)
+        assert np.random.get_state()[1].tolist() == before  # type: ignore[index, union-attr]
+        reached.append(seen)
+    assert reached[0] == reached[1]
+    assert min(reached[0]) < 0.05
+
+
+def test_two_directions_that_multiply_fail_near_their_true_boundary() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return True, 10.0 - 0.5 * 4.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.1))
+
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
+    nearest = stressed(world, space, budget=500).failures[0]
+    assert nearest.distance < 1.1 * sqrt(0.5)  # 4 a b = 1 at a = b = 0.5
+
+
+def test_without_the_extra_the_message_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert extras.missing_stress("--tarl-stress") is None
+    monkeypatch.setattr(extras, "STRESS", ("cma", "no_such_package"))
+    assert "--tarl-stress needs no_such_package" in str(extras.missing_stress("--tarl-stress"))
