@@ -116,6 +116,16 @@ def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None
             status = pytest.main(arguments, [guest])
     finally:
         os.chdir(before)
+        _forget(where)
     if len(guest.found) != 1:
         raise RuntimeError(f"{task}: pytest ended with {status!r} and {len(guest.found)} results.")
     return guest.found[0]
+
+
+def _forget(folder: Path) -> None:
+    """Remove a task's modules, since the test of another task may have the same name."""
+    own = folder.resolve()
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None)
+        if file is not None and own in Path(file).resolve().parents:
+            del sys.modules[name]
