@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from pytest_tarl.commands.fleet import add_ingest, add_merge
+from pytest_tarl.commands.fleet import add_fleet, add_ingest, add_merge
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.commands.robots import add_observe, add_watch
 from pytest_tarl.errors import RefusedError, TarlError
@@ -105,7 +105,9 @@ def parser() -> Parser:
     for command in commands.choices.values():
         command.set_defaults(parser=command, needs=missing_extra)
     add_ingest(commands)
-    commands.choices["ingest"].set_defaults(parser=commands.choices["ingest"], needs=missing_fleet)
+    add_fleet(commands)
+    for name in ("ingest", "fleet"):
+        commands.choices[name].set_defaults(parser=commands.choices[name], needs=missing_fleet)
     workspace = commands.add_parser(
         "workspace", help="list the packages of a ROS workspace, as TARL reads them"
     )

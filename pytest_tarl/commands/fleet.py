@@ -1,12 +1,15 @@
-"""Commands for fleets: `tarl merge`, `tarl ingest`, `tarl fleet`."""
+"""Commands for fleets: `tarl merge`, `tarl ingest` and `tarl fleet`."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from datetime import date
 from pathlib import Path
 
 from pytest_tarl.commands.parser import Parser
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.printable import printable, printable_line
 
 
@@ -83,3 +86,91 @@ def _ingest(arguments: argparse.Namespace) -> int:
         print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}"))
     print(printable_line(f"{order.to}: {found} missions added"))
     return 2 if refused else 0
+
+
+def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Declare `tarl fleet`."""
+    fleet = commands.add_parser(
+        "fleet", help="judge the missions of a fleet's data set, by group and by robot"
+    )
+    flag = fleet.add_argument
+    flag("data", metavar="DIR", help="data set of `tarl ingest`: a folder or a URL")
+    flag(
+        "--fixture",
+        type=Path,
+        metavar="FILE",
+        help="recording to compare with (default: the one that the missions were ingested with)",
+    )
+    flag(
+        "--by",
+        default="version,site",
+        metavar="NAMES",
+        help="divide missions by version, site, robot or month (default version,site)",
+    )
+    flag("--since", metavar="DATE", help="only missions from this day on (UTC), such as 2026-10-01")
+    flag(
+        "--robot",
+        default="",
+        metavar="NAME",
+        help="only missions of this robot, and those with the lowest reward",
+    )
+    flag(
+        "--alpha",
+        type=float,
+        default=0.05,
+        metavar="P",
+        help="error rate of the verdicts, and false discovery rate of the robots named (default 0.05)",
+    )
+    flag(
+        "--tolerance",
+        type=float,
+        metavar="R",
+        help="tolerated loss of reward per mission (default 5 %% of the recorded)",
+    )
+    flag("--json", type=Path, metavar="FILE", help="write the result to this file; - for standard output")
+    flag(
+        "--fail-if",
+        action="append",
+        default=[],
+        choices=("degraded", "drifted", "robot"),
+        help="exit with 1 if a group is degraded, a group is drifted or degraded, or a robot is named; repeatable",
+    )
+    fleet.set_defaults(run=_fleet)
+
+
+def _fleet(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.fleet import document, words
+    from pytest_tarl.fleet.question import Question, answer
+
+    question = Question(
+        data=arguments.data,
+        fixture=arguments.fixture,
+        by=tuple(one.strip() for one in arguments.by.split(",") if one.strip()),
+        since=_day(arguments.since),
+        robot=arguments.robot,
+        alpha=arguments.alpha,
+        tolerance=arguments.tolerance,
+    )
+    found = answer(question)
+    if arguments.json == Path("-"):
+        sys.stdout.write(printable(document.text(found)))
+    else:
+        if arguments.json is not None:
+            _write(arguments.json, document.text(found))
+        for line in words.lines(found):
+            print(printable_line(line))
+    return int(any(found.meets(rule) for rule in arguments.fail_if))
+
+
+def _day(text: str | None) -> date | None:
+    try:
+        return None if text is None else date.fromisoformat(text)
+    except ValueError:
+        raise SettingsError(f"--since must be a day such as 2026-10-01, got {text}.") from None
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        write_atomically(path, text.encode())
+    except OSError as problem:
+        raise SettingsError(f"{path} cannot be written ({problem.strerror}): {advice_on(problem)}") from None

@@ -1,0 +1,93 @@
+"""The answer of `tarl fleet` as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from typing import Any
+
+from pytest_tarl.fleet.groups import Group
+from pytest_tarl.fleet.question import Answer
+from pytest_tarl.fleet.robots import Robot
+from pytest_tarl.model import Bound
+from pytest_tarl.monitoring.status import Evidence
+
+FORMAT = 1
+
+
+def text(answer: Answer) -> str:
+    """Return the document; numbers that are not finite are null."""
+    return json.dumps(document(answer), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def document(answer: Answer) -> dict[str, Any]:
+    """Return the document. Evidence is log2 of e-values; times are seconds since 1970."""
+    question, found = answer.question, answer.robots
+    return {
+        "format": FORMAT,
+        "test": answer.fixture.test,
+        "missions": answer.missions,
+        "copies": answer.copies,
+        "by": list(question.by),
+        "since": None if question.since is None else question.since.isoformat(),
+        "robot": question.robot or None,
+        "sensors": [sensor.name for sensor in answer.fixture.sensors],
+        "groups": [_group(one) for one in answer.groups],
+        "false_discovery_rate": found.q,
+        "drifted": [one.name for one in found.drifted],
+        "below": [one.name for one in found.below],
+        "robots": [_robot(one) for one in found.every],
+        "left_out": dict(answer.left_out),
+        "lowest": [asdict(one) for one in answer.lowest],
+    }
+
+
+def _group(one: Group) -> dict[str, Any]:
+    verdict = one.verdict
+    return {
+        "values": list(one.values),
+        "missions": one.missions,
+        "robots": one.robots,
+        "passed": one.passed,
+        "reward": one.reward,
+        "success": _bound(one.success),
+        "mean": _bound(one.mean),
+        "compared": one.compared,
+        "result": None if verdict is None else verdict.result,
+        "loss": None if verdict is None else verdict.loss,
+        "p_loss": None if verdict is None else verdict.p_loss,
+        "p_drift": None if verdict is None else verdict.p_drift,
+        "cells": [list(cell) for cell in one.region.cells],
+        "new": [list(cell) for cell in one.region.novel],
+    }
+
+
+def _bound(one: Bound) -> dict[str, Any]:
+    ends = {"low": _finite(one.low), "high": _finite(one.high)}
+    return ends | {"confidence": one.confidence, "method": one.method, "exact": one.exact}
+
+
+def _robot(one: Robot) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "robot": one.name,
+        "missions": one.missions,
+        "passed": one.passed,
+        "world": one.world,
+        "bound": one.bound,
+    }
+    if one.status is not None:
+        found["since"] = _since(one.status.world)
+        found["cells"] = [list(cell) for cell in one.status.cells]
+        found["new"] = [list(cell) for cell in one.status.new]
+    return found
+
+
+def _since(evidence: Evidence) -> dict[str, Any] | None:
+    return (
+        None if evidence.since is None else {"mission": evidence.since.mission, "time": evidence.since.time}
+    )
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

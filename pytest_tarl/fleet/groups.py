@@ -1,0 +1,131 @@
+"""Groups of missions, such as those of one version and site: bounds, verdict and region by the method for one robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pytest_tarl.fleet import samples
+from pytest_tarl.fleet.database import Database
+from pytest_tarl.learning.bounds import Range, mean_of, rate
+from pytest_tarl.learning.drift import Difference, compare
+from pytest_tarl.learning.drift import judged as with_result
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.guarantees import CONFIDENCE
+from pytest_tarl.learning.multiple_testing import holm
+from pytest_tarl.learning.permutation import permutations_for
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.model import Bound, Region, Verdict
+from pytest_tarl.seeds import generator
+
+MOST = 1000  # missions of a group that are compared; bounds use all of them
+FEWEST = 2  # missions needed for a verdict
+
+
+@dataclass(frozen=True)
+class Group:
+    """A group: its values of the columns, missions, robots, bounds, and the verdict if there are enough missions."""
+
+    values: tuple[str, ...]
+    missions: int
+    robots: int
+    passed: int
+    reward: float  # mean total
+    success: Bound
+    mean: Bound
+    outside: int  # totals outside the declared range, for which the bound of the mean is not stated as exact
+    compared: int
+    verdict: Verdict | None
+    region: Region
+
+
+def judged(
+    database: Database,
+    fixture: Fixture,
+    by: Sequence[str],
+    *,
+    alpha: float,
+    tolerance: float | None,
+    seed: int = 0,
+) -> tuple[Group, ...]:
+    """Return all groups in order; verdicts are corrected for the number of groups (Holm)."""
+    columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
+    rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY
+    found = [
+        _group(database, fixture, number, row, alpha=alpha, groups=len(rows), tolerance=tolerance, seed=seed)
+        for number, row in enumerate(rows)
+    ]
+    return _corrected(found, alpha)
+
+
+def _group(
+    database: Database,
+    fixture: Fixture,
+    number: int,
+    row: tuple[object, ...],
+    *,
+    alpha: float,
+    groups: int,
+    tolerance: float | None,
+    seed: int,
+) -> Group:
+    *values, missions, robots = row
+    results = database.columns(
+        "SELECT passed, total FROM missions WHERE group_number = ? ORDER BY number", number
+    )
+    passed = int(np.count_nonzero(results["passed"]))
+    totals = np.asarray(results["total"], np.float64)
+    declared = _declared(fixture)
+    outside = 0 if declared is None else int(((totals < declared.low) | (totals > declared.high)).sum())
+    confidence = fixture.stated.success.confidence if fixture.stated else CONFIDENCE
+    sample = samples.group(database, number, MOST)
+    difference = None
+    if sample.episodes >= FEWEST:
+        difference = _compared(fixture, sample, "/".join(map(str, values)), alpha, groups, tolerance, seed)
+    return Group(
+        values=tuple(map(str, values)),
+        missions=int(str(missions)),
+        robots=int(str(robots)),
+        passed=passed,
+        reward=float(totals.mean()),
+        success=rate(passed, totals.size, confidence),
+        mean=mean_of(totals.tolist(), confidence, None if outside else declared),
+        outside=outside,
+        compared=sample.episodes,
+        verdict=difference.verdict if difference else None,
+        region=difference.region if difference else Region(),
+    )
+
+
+def _compared(
+    fixture: Fixture, sample: Sample, name: str, alpha: float, groups: int, tolerance: float | None, seed: int
+) -> Difference:
+    return compare(
+        replace(fixture.sample, lists=(), judgements=None),
+        sample,
+        alpha=alpha,
+        tolerance=tolerance,
+        generator=generator(seed, f"fleet/{name}"),
+        sensors=fixture.sensors,
+        permutations=permutations_for(alpha, groups),
+    )
+
+
+def _declared(fixture: Fixture) -> Range | None:
+    told = fixture.stated.declared if fixture.stated else None
+    return None if told is None else Range(*told)
+
+
+def _corrected(groups: Sequence[Group], alpha: float) -> tuple[Group, ...]:
+    verdicts = [one.verdict for one in groups if one.verdict is not None]
+    p_drift, p_loss = (iter(holm([getattr(one, name) for one in verdicts])) for name in ("p_drift", "p_loss"))
+    found = []
+    for one in groups:
+        if one.verdict is not None:
+            verdict = with_result(replace(one.verdict, p_drift=next(p_drift), p_loss=next(p_loss)), alpha)
+            region = one.region if verdict.result != "no difference" else Region()
+            one = replace(one, verdict=verdict, region=region)
+        found.append(one)
+    return tuple(found)

@@ -1,0 +1,167 @@
+"""`tarl fleet`: judge the missions of a data set, by group and by robot."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+
+from pytest_tarl.errors import FleetError, SettingsError
+from pytest_tarl.fleet import dataset, groups, robots
+from pytest_tarl.fleet.database import BY, Database, Filter, opened
+from pytest_tarl.fleet.dataset import Part
+from pytest_tarl.fleet.schema import Origin, origin
+from pytest_tarl.fleet.store import Store, store
+from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.sensors import Cell
+
+LOWEST = 10  # missions of one robot listed
+
+
+@dataclass(frozen=True)
+class Question:
+    """The arguments of the command line."""
+
+    data: str
+    fixture: Path | None = None
+    by: tuple[str, ...] = ("version", "site")
+    since: date | None = None
+    robot: str = ""
+    alpha: float = 0.05
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True)
+class Mission:
+    """A mission of one robot; `time` in seconds since 1970."""
+
+    time: float
+    passed: bool
+    total: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the data set says; `left_out` counts missions by the reason why they cannot be compared."""
+
+    question: Question
+    fixture: Fixture
+    missions: int
+    copies: int  # rows of missions that occur more than once, beyond the first
+    cells: tuple[Cell, ...]
+    groups: tuple[groups.Group, ...]
+    robots: robots.Robots
+    left_out: Mapping[str, int]
+    lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
+
+    def meets(self, rule: str) -> bool:
+        """Return whether a rule of --fail-if is met."""
+        results = {one.verdict.result for one in self.groups if one.verdict is not None}
+        return {
+            "degraded": "degraded" in results,
+            "drifted": bool(results & {"degraded", "drifted"}),
+            "robot": bool(self.robots.drifted or self.robots.below),
+        }[rule]
+
+
+def answer(question: Question) -> Answer:
+    """Judge the missions in question. Raise FleetError, FixtureError or SettingsError if there is nothing to judge."""
+    _check(question)
+    where = store(question.data)
+    parts = dataset.parts(where)
+    if not parts:
+        raise FleetError(
+            f"{where.shown('')} holds no missions: add some with `tarl ingest LOG --to {question.data}`."
+        )
+    fixture, own = _recording(question, where, parts)
+    fitting = [part for part in parts if part.origin.fits(own)]
+    if not fitting:
+        raise FleetError(
+            f"{where.shown('')} holds no mission that fits the recording of {fixture.test}: "
+            f"{'; '.join(_left_out(parts, own))}. Name the recording that the robots observed with --fixture."
+        )
+    which = Filter(question.robot, question.since)
+    with opened(where, fitting, fixture.sample.cells, question.by, which) as database:
+        if not database.missions:
+            raise FleetError(_nothing(where, question))
+        return Answer(
+            question=question,
+            fixture=fixture,
+            missions=database.missions,
+            copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
+            cells=database.cells,
+            groups=groups.judged(
+                database, fixture, question.by, alpha=question.alpha, tolerance=question.tolerance
+            ),
+            robots=robots.judged(database, fixture, question.alpha),
+            left_out=_left_out(parts, own),
+            lowest=_lowest(database) if question.robot else (),
+        )
+
+
+def _lowest(database: Database) -> tuple[Mission, ...]:
+    rows = database.names("SELECT time, passed, total, steps FROM missions ORDER BY total, number")
+    return tuple(Mission(*row) for row in rows[:LOWEST])
+
+
+def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
+    """Return the recording named, or the one that the data set keeps."""
+    if question.fixture is not None:
+        fixture = load(question.fixture)
+        return fixture, origin(fixture, question.fixture.read_bytes())
+    kinds = sorted({(part.origin.test, part.origin.sensors, part.origin.statements) for part in parts})
+    if len(kinds) > 1:
+        tests = sorted({test for test, _, _ in kinds})
+        raise FleetError(
+            f"{where.shown('')} holds missions of {len(kinds)} recordings (of {', '.join(tests)}): name one with "
+            "--fixture."
+        )
+    count: Counter[str] = Counter()
+    for part in parts:
+        count[part.origin.recording] += part.missions
+    digest = min(count, key=lambda one: (-count[one], one))
+    content = where.read(f"recordings/{digest}.npz")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{digest}.npz"
+        path.write_bytes(content)
+        fixture = load(path)
+    return fixture, origin(fixture, content)
+
+
+def _left_out(parts: Sequence[Part], own: Origin) -> dict[str, int]:
+    """Return the number of missions that cannot be compared, by the reason."""
+    found: Counter[str] = Counter()
+    for part in parts:
+        if part.origin.fits(own):
+            continue
+        test = part.origin.test
+        if test != own.test:
+            why = f"of {test}"
+        elif part.origin.sensors != own.sensors:
+            why = f"of {test} with other sensors or bins"
+        else:
+            why = f"of {test} with other statements"
+        found[why] += part.missions
+    return dict(sorted(found.items()))
+
+
+def _nothing(where: Store, question: Question) -> str:
+    of = f" of {question.robot}" if question.robot else ""
+    since = f" since {question.since}" if question.since else ""
+    return f"{where.shown('')} holds no mission{of}{since}: check --robot and --since."
+
+
+def _check(question: Question) -> None:
+    if not 0.0 < question.alpha < 1.0:
+        raise SettingsError(
+            f"--alpha must be a probability between 0 and 1, such as 0.05, got {question.alpha:g}."
+        )
+    wrong = [one for one in question.by if one not in BY]
+    if wrong or len(set(question.by)) < len(question.by):
+        raise SettingsError(
+            f"--by must name each of {', '.join(BY)} at most once, got {','.join(question.by)}."
+        )

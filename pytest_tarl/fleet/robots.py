@@ -1,0 +1,135 @@
+"""Which robots live in another world than recorded, and since when: the evidence of `tarl watch`, robot by robot.
+
+Each robot has a monitor of its own. The running maximum of each of its processes, adjusted (monitoring/e_bh.py), is an
+e-value at any time; their average, weighted by their shares of α, is one as well. e-BH over the robots then keeps the
+expected share of wrongly named robots at q or less, under any dependence, so that all monitors may start from the same
+recording. Against the bounds, the share may be larger by the probability that a stated bound is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pytest_tarl.fleet.database import Columns, Database
+from pytest_tarl.fleet.samples import following, part, watched
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.tables import Ints
+from pytest_tarl.monitoring import e_bh, e_process, restarts
+from pytest_tarl.monitoring.moments import Moments
+from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
+from pytest_tarl.monitoring.status import Status, status
+from pytest_tarl.sensors import Cell
+
+PORTION = 50_000  # missions read together
+
+
+@dataclass(frozen=True)
+class Robot:
+    """The evidence on one robot, as log2 of e-values: `world`, missions differ; `bound`, they are below a bound.
+
+    `status` is None if neither reaches 1/q, without which e-BH names no robot.
+    """
+
+    name: str
+    missions: int
+    passed: int
+    world: float
+    bound: float
+    status: Status | None
+
+
+@dataclass(frozen=True)
+class Robots:
+    """All robots, by name, and those that e-BH names at the false discovery rate `q`, most evidence first."""
+
+    q: float
+    every: tuple[Robot, ...]
+    drifted: tuple[Robot, ...]
+    below: tuple[Robot, ...]
+
+
+def judged(database: Database, fixture: Fixture, q: float, seed: int = 0) -> Robots:
+    """Judge each robot's missions in the order of their times.
+
+    Raise FixtureError if the recording has too few episodes.
+    """
+    first = begun(fixture, alpha=q, seed=seed)
+    every = tuple(_each(database, first, len(fixture.sample.cells), q))
+    return Robots(
+        q=q,
+        every=every,
+        drifted=_chosen(every, [one.world for one in every], q),
+        below=_chosen(every, [one.bound for one in every], q),
+    )
+
+
+def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tuple[Robot, ...]:
+    picked = np.flatnonzero(e_bh.chosen(np.array(evidence, np.float64), q)).tolist()
+    return tuple(every[n] for n in sorted(picked, key=lambda n: (-evidence[n], every[n].name)))
+
+
+def _each(database: Database, first: Monitor, recorded: int, q: float) -> Iterator[Robot]:
+    ends = database.columns(
+        "SELECT max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ALL"
+    )["ends"]
+    begin = 0
+    for portion in _portions(np.asarray(ends).astype(np.int64)):
+        rows, transitions = following(database, begin, int(portion[-1]))
+        sample = watched(rows, transitions, recorded)
+        low = 0
+        for high in (portion - begin).tolist():
+            monitor = fresh(first)
+            new = _new(database.cells, transitions, begin + low, begin + high, recorded)
+            monitor.take(part(sample, low, high), np.asarray(rows["time"][low:high], np.float64), new)
+            yield robot(str(rows["robot"][low]), monitor, q)
+            low = high
+        begin = int(portion[-1])
+
+
+def _portions(ends: Ints) -> Iterator[Ints]:
+    """Divide robots, given the number after each one's last mission, into portions of about PORTION missions."""
+    which = (ends - 1) // PORTION
+    for one in np.unique(which).tolist():
+        yield ends[which == one]
+
+
+def fresh(first: Monitor) -> Monitor:
+    """Return a monitor without missions, of the same recording."""
+    processes = restarts.begun(first.processes.threshold)
+    return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
+
+
+def _new(cells: Sequence[Cell], transitions: Columns, begin: int, end: int, recorded: int) -> list[Cell]:
+    """Return the cells that the recording lacks, once for each mission that visited them."""
+    low, high = np.searchsorted(transitions["number"], (begin, end)).tolist()
+    cell = np.asarray(transitions["cell"][low:high])
+    there = cell >= recorded
+    if not there.any():
+        return []
+    pairs = np.stack([np.asarray(transitions["number"][low:high])[there], cell[there]], axis=1)
+    return [cells[row] for row in np.unique(pairs, axis=0)[:, 1].tolist()]
+
+
+def robot(name: str, monitor: Monitor, q: float) -> Robot:
+    """Return the evidence of a monitor."""
+    stated = len(monitor.bounds)
+    adjusted = e_bh.adjusted(monitor.processes.peak)
+    weight = shares(stated, monitor.processes.count - stated)
+    testable = np.array([e_process.testable(float(one.share(one.least))) for one in monitor.bounds], bool)
+    world = _mean(adjusted[stated:], weight[stated:])
+    bound = _mean(adjusted[:stated][testable], weight[:stated][testable])
+    reached = max(world, bound) >= -np.log2(q)
+    counts = monitor.counts
+    return Robot(name, counts.missions, counts.passed, world, bound, status(monitor) if reached else None)
+
+
+def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: object) -> float:
+    """Return log2 of the weighted average of e-values; -1 without any."""
+    if not log_evidence.size:
+        return -1.0
+    share = np.asarray(weight, np.float64)
+    largest = float(log_evidence.max())
+    return largest + float(np.log2(np.exp2(log_evidence - largest) @ (share / share.sum())))

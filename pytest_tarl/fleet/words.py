@@ -1,0 +1,132 @@
+"""The answer of `tarl fleet` as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from datetime import datetime, timezone
+
+from pytest_tarl.fleet.groups import MOST, Group
+from pytest_tarl.fleet.question import Answer
+from pytest_tarl.fleet.robots import Robot
+from pytest_tarl.model import Bound
+from pytest_tarl.monitoring.status import Evidence
+from pytest_tarl.report.regions import Vocabulary
+
+NAMED = 20  # robots listed
+
+
+def lines(answer: Answer) -> Iterator[str]:
+    """Yield the report."""
+    question, found = answer.question, answer.robots
+    words = Vocabulary(answer.fixture.sensors, answer.cells)
+    since = f" since {question.since}" if question.since else ""
+    yield (
+        f"{question.data}: {answer.missions:,} missions of {_robots(len(found.every))}{since}, compared with "
+        f"{answer.fixture.sample.episodes} episodes of {answer.fixture.test}"
+    )
+    yield ""
+    yield from _table(answer, words)
+    yield ""
+    yield from _named(answer, found.drifted, "missions differ from the recording", "")
+    for one in found.drifted[:NAMED]:
+        yield _robot(one, one.world, one.status.world if one.status else None, words)
+    sure = " plus the risk that a recorded bound is wrong"
+    yield from _named(answer, found.below, "missions are below a recorded bound", sure)
+    for one in found.below[:NAMED]:
+        yield _robot(one, one.bound, _lower(one), words)
+    if answer.lowest:
+        yield ""
+        yield f"missions of {question.robot} with the lowest reward"
+        for mission in answer.lowest:
+            result = "passed" if mission.passed else "failed"
+            yield f"  {_time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
+    yield from _notes(answer)
+
+
+def _table(answer: Answer, words: Vocabulary) -> Iterator[str]:
+    titles = [*answer.question.by, "missions", "robots", "pass rate", "mean reward", "verdict", "where"]
+    rows = [titles, *(_row(one, words) for one in answer.groups)]
+    widths = [max(len(row[n]) for row in rows) for n in range(len(titles))]
+    for row in rows:
+        yield "  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+
+
+def _row(one: Group, words: Vocabulary) -> list[str]:
+    region = (*one.region.cells, *one.region.novel)
+    return [
+        *one.values,
+        f"{one.missions:,}",
+        f"{one.robots:,}",
+        f"{100 * one.passed / one.missions:.1f} % ({_interval(one.success, 100)})",
+        f"{one.reward:.4g} ({_interval(one.mean, 1)})",
+        _verdict(one),
+        words.words(region) if region else "",
+    ]
+
+
+def _verdict(one: Group) -> str:
+    if one.verdict is None:
+        return "too few missions"
+    if one.verdict.result == "degraded":
+        return f"degraded by {one.verdict.loss:.3g} (p {one.verdict.p_loss:.2g})"
+    return f"{one.verdict.result} (p {one.verdict.p_drift:.2g})"
+
+
+def _interval(bound: Bound, unit: float) -> str:
+    return f"{unit * bound.low:.4g} to {unit * bound.high:.4g}{'' if bound.exact else ', approximate'}"
+
+
+def _named(answer: Answer, robots: Sequence[Robot], what: str, more: str) -> Iterator[str]:
+    rate = f"false discovery rate at most {100 * answer.robots.q:g} %{more}"
+    end = ", most evidence first:" if robots else ""
+    yield f"{len(robots):,} of {_robots(len(answer.robots.every))}: {what} ({rate}){end}"
+    if len(robots) > NAMED:
+        yield f"  the first {NAMED}; --json lists all"
+
+
+def _robot(one: Robot, log2: float, evidence: Evidence | None, words: Vocabulary) -> str:
+    text = f"  {one.name}: {one.passed:,} of {one.missions:,} missions passed, evidence {_evidence(log2)}"
+    if evidence is not None and evidence.since is not None:
+        text += f", changed before mission {evidence.since.mission:,} ({_time(evidence.since.time or 0.0)})"
+    if one.status is not None and one.status.cells:
+        text += f", {words.words(one.status.cells)}"
+    return text
+
+
+def _lower(one: Robot) -> Evidence | None:
+    """Return the evidence against the bound that has most of it."""
+    told = [evidence for _, evidence in one.status.bounds if evidence is not None] if one.status else []
+    return max(told, key=lambda evidence: evidence.highest, default=None)
+
+
+def _evidence(log2: float) -> str:
+    return f"2^{log2:.0f}" if log2 >= 10 else f"{2**log2:.3g}"
+
+
+def _time(seconds: float) -> str:
+    return f"{datetime.fromtimestamp(seconds, timezone.utc):%Y-%m-%d %H:%M}" if seconds > 0 else "no time"
+
+
+def _robots(count: int) -> str:
+    return f"{count:,} robot{'s' if count != 1 else ''}"
+
+
+def _notes(answer: Answer) -> Iterator[str]:
+    confidence = answer.groups[0].success.confidence
+    yield ""
+    yield (
+        f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for {len(answer.groups)} "
+        "groups (Holm)."
+    )
+    if any(one.compared < one.missions for one in answer.groups):
+        yield f"note: verdicts compare {MOST:,} missions of a larger group, chosen by their digests."
+    if any(one.outside for one in answer.groups):
+        outside = sum(one.outside for one in answer.groups)
+        yield (
+            f"note: {outside:,} totals lie outside the recording's total_range; the bounds of their groups' means are "
+            "approximate."
+        )
+    if answer.copies:
+        yield f"note: {answer.copies:,} missions are in the data set more than once and count once."
+    for why, count in answer.left_out.items():
+        yield f"note: {count:,} missions {why} cannot be compared and are left out."

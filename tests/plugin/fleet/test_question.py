@@ -1,0 +1,264 @@
+"""`tarl fleet`: the method for one robot, applied to groups and robots; the same bits however the rows are stored."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+from random import Random
+
+import duckdb
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from pytest_tarl.commands.cli import main
+from pytest_tarl.errors import FleetError
+from pytest_tarl.fleet import document, groups, ingest, robots
+from pytest_tarl.fleet.ingest import Order
+from pytest_tarl.fleet.logged_samples import logged_samples
+from pytest_tarl.fleet.question import Answer, Question, answer
+from pytest_tarl.learning.drift import compare
+from pytest_tarl.learning.fixture import load
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.monitoring import watch
+from pytest_tarl.seeds import generator
+from tests.plugin.monitoring import missions
+
+DAY = 86_400.0
+DRIFTED = "r3"  # from its 41st mission on
+ROBOTS = 4
+EACH = 80
+
+
+def walks(robot: int) -> list[missions.Walk]:
+    """Return the missions of a robot; some visit a place that the recording lacks."""
+    found = missions.walks(EACH, 10 + robot)
+    if f"r{robot}" == DRIFTED:
+        found[40:] = missions.walks(EACH - 40, 90, 1.0)
+    strange = found[50]
+    found[50] = replace(strange, cells=(*strange.cells, (7, 0), (8, 0)), reward=(*strange.reward, 1.0, 0.5))
+    return found
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a recording, logs, and the data set of all of them."""
+    folder = tmp_path_factory.mktemp("fleet")
+    missions.fixture(folder / "test.npz", missions.walks(120, 1))
+    for robot in range(ROBOTS):
+        path = folder / f"r{robot}" / "missions.log"
+        file = missions.LogFile(path)
+        file.append(missions.start())
+        for n, one in enumerate(walks(robot)):
+            for record in missions.records(one, DAY * (20_000 + n / 4) + robot):
+                file.append(record)
+        file.close()
+    add(folder, range(ROBOTS), folder / "data")
+    return folder
+
+
+def add(folder: Path, some: range | list[int], to: Path | str) -> None:
+    for robot in some:
+        log = folder / f"r{robot}" / "missions.log"
+        order = Order((log,), str(to), folder / "test.npz", "{folder}", f"1.{robot % 2}", f"s{robot // 2}")
+        assert not [one.problem for one in ingest.ingest(order) if one.problem]
+
+
+@pytest.fixture(scope="module")
+def found(folder: Path) -> Answer:
+    return answer(Question(str(folder / "data")))
+
+
+def test_the_drifted_robot_is_found_with_its_onset_and_no_other(found: Answer) -> None:
+    assert [one.name for one in found.robots.below] == [DRIFTED]
+    (one,) = found.robots.below
+    assert one.status is not None
+    ((_, evidence),) = one.status.bounds
+    assert evidence is not None
+    assert evidence.since is not None
+    assert abs(evidence.since.mission - 41) <= 3
+    assert [one.name for one in found.robots.drifted] in ([], [DRIFTED])
+    results = {one.values: one.verdict.result for one in found.groups if one.verdict}
+    assert results == {
+        ("1.0", "s0"): "no difference",
+        ("1.0", "s1"): "no difference",
+        ("1.1", "s0"): "no difference",
+        ("1.1", "s1"): "degraded",
+    }
+
+
+def test_counts_and_bounds_are_those_of_the_missions(found: Answer) -> None:
+    assert found.missions == ROBOTS * EACH
+    for one, robot in zip(found.groups, (0, 2, 1, 3), strict=True):
+        own = walks(robot)
+        assert (one.missions, one.robots, one.passed) == (EACH, 1, sum(walk.passed for walk in own))
+        assert one.reward == pytest.approx(np.mean([sum(walk.reward) for walk in own]))
+        assert one.success.low <= one.passed / EACH <= one.success.high
+        assert one.mean.low < one.reward < one.mean.high
+        assert not one.mean.exact
+        assert one.success.exact
+
+
+@pytest.mark.parametrize("robot", [1, 3])
+def test_the_evidence_is_that_of_the_watch(folder: Path, tmp_path: Path, found: Answer, robot: int) -> None:
+    path = tmp_path / "state.npz"
+    log = folder / f"r{robot}" / "missions.log"
+    one = watch.begun([log], folder / "test.npz", path, alpha=found.robots.q, seed=0)
+    for _ in one.poll():
+        pass
+    one.close()
+    expected = robots.robot(f"r{robot}", one.monitor, found.robots.q)
+    assert found.robots.every[robot] == expected
+
+
+def test_the_verdict_is_that_of_the_comparison_of_one_log(folder: Path, found: Answer) -> None:
+    fixture = load(folder / "test.npz")
+    own = merge([one for _, one in logged_samples(folder / DRIFTED / "missions.log", fixture)])
+    expected = compare(
+        fixture.sample,
+        own,
+        alpha=0.05,
+        tolerance=None,
+        generator=generator(0, "fleet/1.1/s1"),
+        sensors=fixture.sensors,
+    )
+    group = found.groups[-1]
+    assert group.verdict is not None
+    assert group.verdict.loss == pytest.approx(expected.verdict.loss)
+    assert group.region.cells == expected.region.cells
+    assert expected.verdict.result == "degraded"
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
+    folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = Random(seed)
+    together = random.choice([1, 7, 50])
+    monkeypatch.setattr(ingest, "TOGETHER", together)
+    order = [*range(ROBOTS)]
+    random.shuffle(order)
+    add(folder, order, tmp_path / "data")
+    if seed:  # the same rows again, in files of another name
+        for path in sorted((tmp_path / "data").rglob("*.parquet")):
+            path.with_name(f"copy{path.name}").write_bytes(path.read_bytes())
+    monkeypatch.setattr(robots, "PORTION", random.choice([1, 100]))
+    connect = duckdb.connect
+    threads = (1, 7)[seed]
+    monkeypatch.setattr(
+        duckdb, "connect", lambda *args, config: connect(*args, config={**config, "threads": threads})
+    )
+    again = answer(Question(str(tmp_path / "data")))
+    assert again.copies == (ROBOTS * EACH if seed else 0)
+    assert document.text(replace(again, copies=0)) == document.text(found)
+
+
+def test_an_object_store_gives_the_same(folder: Path, found: Answer) -> None:
+    add(folder, [*range(ROBOTS)], "memory://fleet/one")
+    again = answer(Question("memory://fleet/one"))
+    assert document.text(again) == document.text(found)
+
+
+def test_large_groups_are_compared_by_a_part_that_does_not_depend_on_files(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(groups, "MOST", 60)
+    found = answer(Question(str(folder / "data"), by=()))
+    assert [(one.missions, one.compared, one.robots) for one in found.groups] == [(ROBOTS * EACH, 60, ROBOTS)]
+    by_month = answer(Question(str(folder / "data"), by=("month",)))
+    assert [one.values for one in by_month.groups] == [("2024-10",)]
+
+
+def test_since_and_robot_choose_missions(folder: Path) -> None:
+    found = answer(Question(str(folder / "data"), since=date(2024, 10, 14), robot="r1"))
+    assert found.missions == EACH - 40
+    assert [one.name for one in found.robots.every] == ["r1"]
+    totals = [one.total for one in found.lowest]
+    assert totals == sorted(totals)
+    assert len(totals) == 10
+
+
+def test_missions_that_do_not_fit_are_counted_and_named(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    to = tmp_path / "data"
+    add(folder, [0], to)
+    sensors = (replace(missions.SENSORS[0], bins=8), missions.SENSORS[1])
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(missions, "SENSORS", sensors)
+        missions.fixture(tmp_path / "fine.npz", missions.walks(20, 1))
+        log = missions.log(tmp_path / "r9" / "missions.log", missions.walks(6, 3))
+        argv = ["ingest", str(log), "--to", str(to), "--fixture", str(tmp_path / "fine.npz"), "--robot", "r9"]
+        assert main([*argv, "--version", "1.0"]) == 0
+    with pytest.raises(FleetError, match="holds missions of 2 recordings"):
+        answer(Question(str(to)))
+    capsys.readouterr()
+    assert main(["fleet", str(to), "--fixture", str(folder / "test.npz")]) == 0
+    out = capsys.readouterr().out
+    assert f"{to}: 80 missions of 1 robot" in out
+    assert "6 missions of test_walk.py::test_walk with other sensors or bins cannot be compared" in out
+
+
+def test_the_command_reports_and_fails_by_its_rules(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, result = str(folder / "data"), tmp_path / "fleet.json"
+    assert main(["fleet", data, "--json", str(result), "--fail-if", "degraded"]) == 1
+    out = capsys.readouterr().out
+    assert "1 of 4 robots: missions are below a recorded bound (false discovery rate at most 5 %" in out
+    assert "r3: " in out
+    told = json.loads(result.read_text())
+    assert told["below"] == [DRIFTED]
+    assert main(["fleet", data, "--robot", "r0", "--fail-if", "robot", "--fail-if", "drifted"]) == 0
+    assert "missions of r0 with the lowest reward" in capsys.readouterr().out
+    assert main(["fleet", data, "--fail-if", "robot", "--json", "-"]) == 1
+    assert json.loads(capsys.readouterr().out) == told
+
+
+@pytest.mark.parametrize(
+    ("argv", "said"),
+    [
+        (["{empty}"], "holds no missions: add some with `tarl ingest"),
+        (
+            ["{data}", "--by", "version,colour"],
+            "--by must name each of version, site, robot, month at most once",
+        ),
+        (["{data}", "--since", "yesterday"], "--since must be a day such as 2026-10-01"),
+        (["{data}", "--robot", "r77"], "holds no mission of r77: check --robot"),
+        (["{data}", "--alpha", "2"], "--alpha must be a probability"),
+        (["{data}", "--fixture", "absent.npz"], "absent.npz: no such recording"),
+        (["{data}", "--json", "{data}"], "cannot be written"),
+        (["nosuch://x"], "nosuch://x cannot be opened"),
+    ],
+)
+def test_wrong_input_is_one_sentence(
+    argv: list[str], said: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    filled = [one.replace("{data}", str(folder / "data")).replace("{empty}", str(tmp_path)) for one in argv]
+    assert main(["fleet", *filled]) == 2
+    err = capsys.readouterr().err
+    assert said in err
+    assert err.count("\n") == 1
+
+
+def test_files_that_are_incomplete_or_foreign_are_named(folder: Path, tmp_path: Path) -> None:
+    to = tmp_path / "data"
+    add(folder, [0], to)
+    first = min((to / "cells").rglob("*.parquet"))
+    content = first.read_bytes()
+    first.unlink()
+    with pytest.raises(FleetError, match=r"is missing, so .* cannot be judged"):
+        answer(Question(str(to)))
+    first.write_bytes(content[:-20])
+    with pytest.raises(FleetError, match="cannot be read"):
+        answer(Question(str(to)))
+    first.write_bytes(content)
+    mission = min((to / "missions").rglob("*.parquet"))
+    table = pq.read_table(mission)
+    for schema, said in (("", "was not written by `tarl ingest`"), ("9", "has schema 9")):
+        about = {**table.schema.metadata, b"tarl.schema": schema.encode()}
+        pq.write_table(table.replace_schema_metadata(about), mission)
+        with pytest.raises(FleetError, match=said):
+            answer(Question(str(to)))
