@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.report.regions import Vocabulary, boxes, bridged
+from pytest_tarl.report.regions import Vocabulary, boxes, bridged, closed
 from pytest_tarl.sensors import Sensor
 
 X = Sensor("x", low=0, high=10, bins=10, unit="m")
@@ -36,6 +36,23 @@ def test_boxes_never_include_a_visited_cell_outside_the_region(cells, others):
     joined = inside(bridged(boxes(cells), others - cells))
     assert cells <= joined
     assert not joined & (others - cells)
+
+
+RING = st.sets(st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 1)), max_size=30)
+
+
+@given(RING)
+def test_boxes_of_an_angle_that_meet_at_its_ends_are_one(cells):
+    cover = boxes(cells)
+    joined = closed(cover, 1, 8)
+    assert {(x, angle % 8, z) for x, angle, z in inside(joined)} == cells
+    assert sum((d - c + 1) * (b - a + 1) * (f - e + 1) for (a, b), (c, d), (e, f) in joined) == len(cells)
+    ends = [(box[0], box[2]) for box in joined if box[1][1] == 7 and box[1][0] > 0]
+    assert not [box for box in joined if box[1][0] == 0 and (box[0], box[2]) in ends]
+
+
+def test_the_joined_box_of_an_angle_exceeds_the_range_by_what_lies_behind_its_end():
+    assert closed((((4, 4), (0, 1)), ((4, 4), (6, 7))), 1, 8) == (((4, 4), (6, 9)),)
 
 
 def test_a_full_rectangle_gives_one_box():
