@@ -73,7 +73,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         again = joins.joined(ctx, [head, *backs]) if backs else head
         if again == head:
             break
-        if ctx.worked > MAX_STATEMENTS:
+        if ctx.work.executed > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
             break  # the passes of nested loops multiply

@@ -37,19 +37,19 @@ def invoke(
     owner: Obj | None = None,
 ) -> Value:
     """Call a function. A call without data into a module that neither subscribes nor publishes has a limited budget."""
-    before, start = ctx.leisure, ctx.spent
+    before, start = ctx.work.leisure, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
         ctx.store.reads.whole = False
         return _again(ctx, closure, arguments)
     if matters:
-        ctx.leisure = None
+        ctx.work.leisure = None
     elif before is None:
-        ctx.leisure = start + max(0, min(LEISURE, ALL_LEISURE - ctx.idled))
+        ctx.work.leisure = start + max(0, min(LEISURE, ALL_LEISURE - ctx.work.idled))
     result = _invoke(ctx, closure, arguments, caller, call, owner)
     if not matters and before is None:
-        ctx.idled += ctx.spent - start
-    ctx.leisure = before + ctx.spent - start if matters and before is not None else before
+        ctx.work.idled += ctx.work.spent - start
+    ctx.work.leisure = before + ctx.work.spent - start if matters and before is not None else before
     return result
 
 
@@ -89,7 +89,7 @@ def _invoke(
 def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) -> Delta:
     """Execute a function's body in its own layer; return the changes that outlive the call."""
     function = frame.function
-    ctx.activations[function] = ctx.activations.get(function, 0) + 1
+    ctx.work.activations[function] = ctx.work.activations.get(function, 0) + 1
     ctx.store.push()
     depth = len(ctx.store.layers) - 1
     frame.depth_of_layers = depth

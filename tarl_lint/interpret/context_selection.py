@@ -20,23 +20,23 @@ def make_frame(
     if not isinstance(closure.info, tuple):
         return None
     function = closure.info[0]
-    runs = ctx.activations.get(function, 0) + 1
+    runs = ctx.work.activations.get(function, 0) + 1
     if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
         return None
-    if ctx.worked > ctx.limit:
+    if ctx.work.executed > ctx.work.limit:
         _cut(ctx)
         return None
     receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
     statement = caller.statement.id if caller.statement is not None else -1
     own = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
-    if ctx.worked > MANY and runs > OFTEN and shared_contexts.may_share(arguments):
+    if ctx.work.executed > MANY and runs > OFTEN and shared_contexts.may_share(arguments):
         ctx.widened.add(own)
     ctx.store.reads.ask(ctx.widened.__contains__, own)
     shares = own in ctx.widened
     key = shared_contexts.shared_key(own, ctx.store.root.key, arguments) if shares else own
     frame = ctx.frames.get(key)
     if frame is None:
-        made = ctx.frames_of[ctx.program] = ctx.frames_of.get(ctx.program, 0) + 1
+        made = ctx.work.frames_of[ctx.program] = ctx.work.frames_of.get(ctx.program, 0) + 1
         if made > MAX_FRAMES:
             _cut(ctx)
             return None

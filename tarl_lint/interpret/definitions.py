@@ -24,7 +24,7 @@ def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
             and decorator.name == "setter"
             and isinstance(s.target, ir.Name)
         ):
-            ctx.setters.add(s.target.name)
+            ctx.nullness.setters.add(s.target.name)
             ctx.store.put((expressions.holder(s.target, frame), f"{s.target.name}.setter"), value)
             return True
     ctx.ops.assign(ctx, s.target, decorated(ctx, value, s.function.decorators, s, frame), frame)

@@ -96,7 +96,7 @@ class Linker(Interpreter):
             for root in small or batch:
                 self.pending.pop(root, None)
                 late = self.hurried(root.program)
-                if late and (self.took.get(root, 0) > HASTE or self.totals[root.program] > 2 * PATIENCE):
+                if late and (self.took.get(root, 0) > HASTE or self.work.totals[root.program] > 2 * PATIENCE):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
@@ -117,12 +117,9 @@ class Linker(Interpreter):
         self.store = Store(self.shared, root, gather=self.gathered)
         self.graph.reads = self.store.reads
         self.stack = []
-        self.spent = self.saved = 0
-        self.limit = HASTE if self.hurried(root.program) else MAX_STATEMENTS
-        self.graph.edges = self.edges_of.get(root.program, 0)
-        self.graph.made = self.nodes_of.get(root.program, 0)
-        self.activations.clear()
-        self.leisure, self.idled = None, 0
+        self.work.begin(HASTE if self.hurried(root.program) else MAX_STATEMENTS)
+        self.graph.edges = self.work.edges_of.get(root.program, 0)
+        self.graph.made = self.work.nodes_of.get(root.program, 0)
         self.delivered = frozenset()
         try:
             run(root)
@@ -131,12 +128,12 @@ class Linker(Interpreter):
             self._failed(where.path, error)
             return
         finally:
-            self.totals[root.program] = self.totals.get(root.program, 0) + self.worked
-            self.edges_of[root.program] = self.graph.edges
-            self.nodes_of[root.program] = self.graph.made
+            self.work.totals[root.program] = self.work.totals.get(root.program, 0) + self.work.executed
+            self.work.edges_of[root.program] = self.graph.edges
+            self.work.nodes_of[root.program] = self.graph.made
             if self.graph.edges >= MAX_EDGES:
                 self.cut[root.program] = None
-            self.took[root] = self.spent
+            self.took[root] = self.work.spent
         for key in self.store.own():
             value = self._at_end(key)
             value = self.store.mine(key, value) if value is not None else None
@@ -163,7 +160,7 @@ class Linker(Interpreter):
             frame.root_waits = True
             self.stack.append(frame)
             if not program.takes_part:
-                self.leisure = LEISURE + len(program.body)
+                self.work.leisure = LEISURE + len(program.body)
             statements.run(self, frame)
 
         self.ops.add_root(self, root, run)

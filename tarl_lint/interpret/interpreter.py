@@ -9,14 +9,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Hashable, Iterable, Sequence
 
-from tarl_lint.interpret.budget import LOOKS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.interpret.budget import LOOKS
 from tarl_lint.interpret.operations import Operations
+from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Root, Shared, Store
-from tarl_lint.memory.value_flow_graph import MAX_EDGES, Graph, Place
+from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
 from tarl_lint.parameter_names import ParameterName
@@ -25,6 +26,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
 NONE_ONLY = frozenset([None])
+CHECK = "TARL_CHECK"  # environment variable: execute calls that could be replayed, and compare
 
 
 Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
@@ -57,40 +59,16 @@ class Interpreter:
         self.stack: list[Frame] = []
         self.senders: dict[Obj, object] = {}  # library objects that publish → their description
         self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
-        self.vacant: set[Key] = (
-            set()
-        )  # variables and fields that are None before the first message (nullness)
-        self.optional: set[Key] = set()  # variables and fields whose None may be computed from data
-        self.setters: set[str] = set()  # names of properties with a setter
-        self.doubtful: set[ir.Call] = set()  # calls whose None may be computed from data
-        self.came: dict[Key, set[int]] = {}  # copy of a vacant variable → nodes that decide whether it is set
-        self.came_out: dict[
-            ir.Call, set[int]
-        ] = {}  # call that returns such a copy → nodes that decide whether it is set
+        self.nullness = NullnessFacts()
         self.unchanged: set[ir.Call] = set()  # calls that return a value unchanged; only in thorough runs
-        self.settings: dict[
-            Obj, tuple[str, ir.Pos]
-        ] = {}  # value loaded from a file or the environment → path and position of the call
+        self.settings: dict[Obj, tuple[str, ir.Pos]] = {}  # loaded values → path and position of the call
         self.patient = True  # unknown values may still be stored by a later root
         self.waiting: dict[Root, None] = {}  # roots that read such an unknown value
-        self.doubts: dict[
-            int, dict[Root, None]
-        ] = {}  # node that no source reached → roots that relied on that
+        self.doubts: dict[int, dict[Root, None]] = {}  # unreached node → roots that relied on that
         self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
-        self.spent = 0  # work in this run of a root, in statements
-        self.saved = 0  # work in replayed calls, included in `spent`
-        self.totals: dict[str, int] = {}  # work of each program in earlier runs, without replayed calls
-        self.edges_of: dict[str, int] = {}  # edges made by each program
-        self.nodes_of: dict[str, int] = {}  # nodes made by each program
-        self.frames_of: dict[str, int] = {}  # call contexts of each program
+        self.work = Work()
         self.widened: set[Hashable] = set()  # calls that share a context
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
-        self.limit = MAX_STATEMENTS
-        self.idled = 0  # work in calls into modules without ROS calls, included in `spent`
-        self.leisure: int | None = (
-            None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
-        )
-        self.activations: dict[ir.Function, int] = {}  # function → number of executions in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
         self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
@@ -101,10 +79,7 @@ class Interpreter:
         self.guests: set[object] = set()  # classes instantiated only outside of the files
         self.plugins: set[object] = set()  # classes that a package declares as plugins
         self.ended: set[str] = set()  # classes outside of the files whose methods get data or callbacks
-        self.checking = os.environ.get("TARL_CHECK", "") not in (
-            "",
-            "0",
-        )  # execute calls that could be replayed, and compare
+        self.checking = os.environ.get(CHECK, "") not in ("", "0")
         self.parameter_names: list[ParameterName] | None = None  # parameters in texts; None: not followed
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
@@ -121,12 +96,7 @@ class Interpreter:
     @property
     def total(self) -> int:
         """Return the work of all earlier runs, in statements."""
-        return sum(self.totals.values())
-
-    @property
-    def worked(self) -> int:
-        """Return the work of this run of a root so far, without replayed calls."""
-        return self.spent - self.saved
+        return self.work.total
 
     @property
     def program(self) -> str:
@@ -135,25 +105,15 @@ class Interpreter:
 
     def hurried(self, program: str) -> bool:
         """Return whether a program has exceeded its budget."""
-        spent = self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
+        spent = self.work.exhausted(program)
         if spent:
             self.cut[program] = None
         return spent
 
     def count(self, looks: int = 0) -> None:
         """Convert object reads and graph operations to statements, and add them to the work."""
-        self.spent += (looks + self.graph.asked) // LOOKS
+        self.work.spent += (looks + self.graph.asked) // LOOKS
         self.graph.asked %= LOOKS
-
-    def absence(self, key: Key | None) -> tuple[bool, bool, int]:
-        """Return the nullness facts about a variable or field; without a key, whether any may be None by data."""
-        if key is None:
-            return False, bool(self.optional), 0
-        return key in self.vacant, key in self.optional, len(self.came.get(key, ()))
-
-    def given_back(self, call: ir.Call) -> tuple[bool, int]:
-        """Return the nullness facts about a call's result."""
-        return call in self.doubtful, len(self.came_out[call]) if call in self.came_out else -1
 
     def look(self, objects: Iterable[Obj]) -> None:
         """Note that the running call depends on these objects' stamps: meaning, fields and data."""

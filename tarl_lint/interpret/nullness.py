@@ -29,29 +29,29 @@ def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes |
 def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
     """Return the nodes that decide whether a value is set; None if data may decide."""
     if isinstance(expr, ir.Call):
-        ctx.store.reads.ask(ctx.given_back, expr)
-        if expr in ctx.came_out:
-            return None if expr in ctx.doubtful else frozenset(ctx.came_out[expr])
+        ctx.store.reads.ask(ctx.nullness.of_result, expr)
+        if expr in ctx.nullness.came_out:
+            return None if expr in ctx.nullness.doubtful else frozenset(ctx.nullness.came_out[expr])
     keys = list(_keys(ctx, expr, frame))
     for key in keys:
-        ctx.store.reads.ask(ctx.absence, key)
-    if any(k in ctx.optional for k in keys):
+        ctx.store.reads.ask(ctx.nullness.of_key, key)
+    if any(k in ctx.nullness.optional for k in keys):
         return None
     if isinstance(expr, (ir.Item, ir.Call)):
         known = bool(keys) and not _index_chosen(ctx, expr, frame)
     else:
-        known = any(k in ctx.vacant for k in keys)
-    return frozenset(n for k in keys for n in ctx.came.get(k, ())) if known else None
+        known = any(k in ctx.nullness.vacant for k in keys)
+    return frozenset(n for k in keys for n in ctx.nullness.came.get(k, ())) if known else None
 
 
 def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:
     """Record that a target gets None, or a value that may be None."""
     if value.consts == NONE_ONLY and not value.pts:
-        ctx.vacant.update(_keys(ctx, target, frame))
+        ctx.nullness.vacant.update(_keys(ctx, target, frame))
     elif _holds_data(ctx, value) and (decides := _absence(ctx, source, frame)) is not None:
         _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
     elif _may_be_none(ctx, source, frame):
-        ctx.optional.update(_keys(ctx, target, frame))
+        ctx.nullness.optional.update(_keys(ctx, target, frame))
 
 
 def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
@@ -68,9 +68,9 @@ def note_taken(
     """Record the same for a target that gets an element of a sequence."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
     for key in keys:
-        ctx.store.reads.ask(ctx.absence, key)
-    if any(k in ctx.vacant for k in keys):
-        decides = frozenset(n for k in keys for n in ctx.came.get(k, ()))
+        ctx.store.reads.ask(ctx.nullness.of_key, key)
+    if any(k in ctx.nullness.vacant for k in keys):
+        decides = frozenset(n for k in keys for n in ctx.nullness.came.get(k, ()))
         _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
 
 
@@ -81,8 +81,8 @@ def _note_copy(
     ctx.graph.choice(value.deps, there)
     ctx.graph.flow(decides, there)
     for key in keys:
-        ctx.vacant.add(key)
-        ctx.came.setdefault(key, set()).add(there)
+        ctx.nullness.vacant.add(key)
+        ctx.nullness.came.setdefault(key, set()).add(there)
 
 
 def _holds_data(ctx: Interpreter, value: Value) -> bool:
@@ -92,28 +92,28 @@ def _holds_data(ctx: Interpreter, value: Value) -> bool:
 
 def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: Frame) -> None:
     """Record a call whose result may be None by data, or is None only before the first message."""
-    ctx.store.reads.ask(ctx.absence, (frame, RETURNED))
+    ctx.store.reads.ask(ctx.nullness.of_key, (frame, RETURNED))
     without = [v.consts == NONE_ONLY and not v.pts for v in returned]
     if any(without) and not all(without):
-        ctx.doubtful.add(call)
-    elif (frame, RETURNED) in ctx.vacant:
-        ctx.came_out.setdefault(call, set()).update(ctx.came.get((frame, RETURNED), ()))
+        ctx.nullness.doubtful.add(call)
+    elif (frame, RETURNED) in ctx.nullness.vacant:
+        ctx.nullness.came_out.setdefault(call, set()).update(ctx.nullness.came.get((frame, RETURNED), ()))
 
 
 def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
     if isinstance(expr, ir.Call):
         name = expr.function.name if isinstance(expr.function, (ir.Attribute, ir.Name)) else ""
-        ctx.store.reads.ask(ctx.given_back, expr)
-        return expr in ctx.doubtful or name in catalog.MAY_BE_NONE
+        ctx.store.reads.ask(ctx.nullness.of_result, expr)
+        return expr in ctx.nullness.doubtful or name in catalog.MAY_BE_NONE
     if isinstance(expr, ir.Choice):
         return any(_none(arm) or _may_be_none(ctx, arm, frame) for arm in (expr.then, expr.other))
     if isinstance(expr, (ir.Name, ir.Attribute)):
-        keys = list(_keys(ctx, expr, frame)) if ctx.optional else []
+        keys = list(_keys(ctx, expr, frame)) if ctx.nullness.optional else []
         if not keys:
-            ctx.store.reads.ask(ctx.absence, None)
+            ctx.store.reads.ask(ctx.nullness.of_key, None)
         for key in keys:
-            ctx.store.reads.ask(ctx.absence, key)
-        return any(k in ctx.optional for k in keys)
+            ctx.store.reads.ask(ctx.nullness.of_key, key)
+        return any(k in ctx.nullness.optional for k in keys)
     return False
 
 

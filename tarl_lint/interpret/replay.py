@@ -49,8 +49,8 @@ def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[],
     last = frame.recorded
     same = isinstance(last, Run) and _same(ctx, last, passed, mode)
     if isinstance(last, Run) and same and not ctx.checking:
-        ctx.spent += last.cost
-        ctx.saved += last.cost - len(last.found) // READS
+        ctx.work.spent += last.cost
+        ctx.work.saved += last.cost - len(last.found) // READS
         if last.reads.waits:
             _wait_again(ctx, last.reads)
         ctx.store.reads.add(last.reads)
@@ -68,7 +68,7 @@ def _executed(
 ) -> Run:
     outer = ctx.store.reads
     reads = ctx.store.reads = ctx.graph.reads = Reads()
-    before, edges = ctx.spent, ctx.graph.edges
+    before, edges = ctx.work.spent, ctx.graph.edges
     delta = execute()
     store = ctx.store
     store.reads = ctx.graph.reads = outer
@@ -78,7 +78,7 @@ def _executed(
         reads.stored |= reads.keys
     found, stored = store.found_by(reads)
     return Run(
-        passed, mode, reads, found, stored, ctx.spent - before,
+        passed, mode, reads, found, stored, ctx.work.spent - before,
         join_all(returned), returned, list(frame.escapes), delta, ctx.graph.edges - edges,
         len(returned) == 1, store.heard() if reads.waits else {},
     )  # fmt: skip
@@ -131,7 +131,7 @@ def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
     """Return whether all reads of a run are unchanged."""
     if last.mode != mode or last.passed != passed:
         return False
-    if ctx.leisure is not None and ctx.spent + last.cost > ctx.leisure:
+    if ctx.work.leisure is not None and ctx.work.spent + last.cost > ctx.work.leisure:
         return False
     reads, store = last.reads, ctx.store
     if reads.waits and not _hears(store, last):

@@ -47,7 +47,7 @@ def block(ctx: Interpreter, body: Sequence[ir.Stmt], frame: Frame) -> bool:
     """Execute statements in order."""
     for statement in body:
         frame.statement = statement
-        ctx.spent += 1
+        ctx.work.spent += 1
         if ctx.graph.asked > LOOKS:
             ctx.count()
         if ctx.watch is not None:
@@ -141,8 +141,8 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
 def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
     """Call the setter if the attribute is a property."""
     done = False
-    ctx.store.reads.ask(ctx.setters.__contains__, target.name)
-    if target.name not in ctx.setters:
+    ctx.store.reads.ask(ctx.nullness.setters.__contains__, target.name)
+    if target.name not in ctx.nullness.setters:
         return done
     for obj in base.pts:
         cls = obj.info if obj.kind == "instance" else None

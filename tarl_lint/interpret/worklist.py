@@ -29,7 +29,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
     reads.wait(len(store.heard()))
     reads.keys.update((heeds & store.now.keys()) - reads.written)
     changed = show(ctx)
-    ctx.spent += len(changed) // EXCHANGED
+    ctx.work.spent += len(changed) // EXCHANGED
     for key in changed:
         news = store.others(key) if key in heeds else None
         if news is None:

@@ -35,7 +35,7 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
     keys: dict[tuple[Obj, str], None] = {}
     for delta in deltas:
         keys.update(dict.fromkeys(delta))
-    ctx.spent += len(keys) // JOINS
+    ctx.work.spent += len(keys) // JOINS
     result: Delta = {}
     for key in keys:
         value: Value | None = None

@@ -98,7 +98,7 @@ def test_programs_with_common_imports_have_separate_budgets(monkeypatch):
     machine = Linker(modules, Config(), thorough=False)
     with_deep_stack(machine.link)
     assert list(machine.cut) == ["large.py"]
-    assert machine.totals["small.py"] < 50
+    assert machine.work.totals["small.py"] < 50
 
 
 BRIDGED = (

@@ -1,0 +1,78 @@
+"""Parts of the interpreter's state: nullness facts, and the work done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tarl_lint.interpret.budget import MAX_STATEMENTS, PATIENCE
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.value_flow_graph import MAX_EDGES
+from tarl_lint.memory.values import Key
+
+
+@dataclass(slots=True, eq=False)
+class NullnessFacts:
+    """What is known about values that are None before the first message; all sets grow only."""
+
+    vacant: set[Key] = field(
+        default_factory=set
+    )  # variables and fields that are None before the first message
+    optional: set[Key] = field(
+        default_factory=set
+    )  # variables and fields whose None may be computed from data
+    setters: set[str] = field(default_factory=set)  # names of properties with a setter
+    doubtful: set[ir.Call] = field(default_factory=set)  # calls whose None may be computed from data
+    came: dict[Key, set[int]] = field(
+        default_factory=dict
+    )  # copy of a vacant variable → nodes that decide whether it is set
+    came_out: dict[ir.Call, set[int]] = field(
+        default_factory=dict
+    )  # call that returns such a copy → nodes that decide whether it is set
+
+    def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
+        """Return the facts about a variable or field; without a key, whether any may be None by data."""
+        if key is None:
+            return False, bool(self.optional), 0
+        return key in self.vacant, key in self.optional, len(self.came.get(key, ()))
+
+    def of_result(self, call: ir.Call) -> tuple[bool, int]:
+        """Return the facts about a call's result."""
+        return call in self.doubtful, len(self.came_out[call]) if call in self.came_out else -1
+
+
+@dataclass(slots=True, eq=False)
+class Work:
+    """The work done, in statements: in this run of a root, and by each program in earlier runs."""
+
+    spent: int = 0  # in this run
+    saved: int = 0  # in replayed calls, included in `spent`
+    idled: int = 0  # in calls into modules without ROS calls, included in `spent`
+    limit: int = MAX_STATEMENTS
+    leisure: int | None = (
+        None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
+    )
+    activations: dict[ir.Function, int] = field(default_factory=dict)  # executions in this run, by function
+    totals: dict[str, int] = field(default_factory=dict)  # in earlier runs by program, without replayed calls
+    edges_of: dict[str, int] = field(default_factory=dict)  # edges made by each program
+    nodes_of: dict[str, int] = field(default_factory=dict)  # nodes made by each program
+    frames_of: dict[str, int] = field(default_factory=dict)  # call contexts of each program
+
+    @property
+    def total(self) -> int:
+        """Return the work of all earlier runs."""
+        return sum(self.totals.values())
+
+    @property
+    def executed(self) -> int:
+        """Return the work of this run so far, without replayed calls."""
+        return self.spent - self.saved
+
+    def begin(self, limit: int) -> None:
+        """Start to count for a run of a root."""
+        self.spent = self.saved = self.idled = 0
+        self.limit, self.leisure = limit, None
+        self.activations.clear()
+
+    def exhausted(self, program: str) -> bool:
+        """Return whether a program has used its budget."""
+        return self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
