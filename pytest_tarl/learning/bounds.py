@@ -186,7 +186,7 @@ def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
     The result is a normal approximation; infinite if there are so few permutations of the episodes that no loss is
     significant.
     """
-    if risk * comb(offline.size + online.size, online.size) <= 1:
+    if comb(offline.size + online.size, online.size) <= 1 / risk:  # exact, where a float overflows
         return inf
     spread = np.sqrt(sum(one.var(ddof=1) / one.size for one in (offline, online) if one.size > 1))
     normal = NormalDist()

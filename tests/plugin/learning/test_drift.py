@@ -130,6 +130,11 @@ def test_equal_totals_that_cancel_out_are_ties() -> None:
     assert permuted_loss(totals, totals[:3], generator(0, "a")) == exact
 
 
+def test_a_thousand_episodes_can_be_compared() -> None:
+    many = np.arange(1200.0)
+    assert 0.0 < detectable_loss(many, many[:1000], 0.05) < np.inf
+
+
 def test_too_few_episodes_have_an_infinite_detectable_loss() -> None:
     few = np.array([1.0, 1.0])
     assert detectable_loss(few, few, 0.05) == np.inf
