@@ -291,7 +291,7 @@ def scores(told: dict[str, Any], recorded: Sample, data: Path) -> dict[str, floa
     assert told["missions"]
     return {
         name: (average - mean) / spread / np.sqrt(1 / count + 1 / recorded.episodes)
-        for name, average, count in duckdb.sql(query).fetchall()
+        for name, average, count in duckdb.connect().execute(query).fetchall()
     }
 
 
@@ -330,8 +330,8 @@ def main() -> None:
             missions = size * order.missions
             query, out = command("fleet", data, "--json", "-")
             print(
-                f"{missions:,} missions: {used / missions:.0f} bytes a mission, writing {missions / spent:,.0f} missions "
-                f"per CPU second, query {query:.1f} CPU seconds, peak {peak():.0f} MB"
+                f"{missions:,} missions: {used / missions:.0f} bytes a mission, writing {missions / spent:,.0f} "
+                f"missions a CPU second, query {query:.1f} CPU seconds, peak {peak():.0f} MB"
             )
         told = json.loads(out)
         print(f"named at a false discovery rate of at most {100 * told['false_discovery_rate']:g} %:")

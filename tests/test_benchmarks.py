@@ -24,6 +24,7 @@ SMALLEST = {
     "bags": ["--seconds", "1"],
     "editing": ["{tmp}"],
     "episodes": ["--episodes", "2"],
+    "fleet": ["--robots", "8", "--missions", "6", "--logs", "2"],
     "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "track", "--sizes", "0"],
     "limits": ["--share", "0.001"],
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
