@@ -10,7 +10,7 @@ from math import isclose
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import RAYS, SIZES, Evaluator
-from pytest_tarl.stressing.findings import Curve, Failure, confirmed, failure
+from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
 from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
@@ -28,6 +28,7 @@ class Together:
     curves: Sequence[Curve]
     found: list[Failure] = field(default_factory=list)
     tried: int = 0
+    margin_map: MarginMap | None = None
     tests: int = 0
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
@@ -92,6 +93,11 @@ class Combined:
         self._confirm()
         for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
             self.together.confirm([point], self.evaluator)
+
+    def draw(self) -> None:
+        """Predict the map from all episodes, if the budget sufficed to look at the rays."""
+        if all(curve.evidence for curve in self.together.curves):
+            self.together.margin_map = self.nearest.map()
 
     def _confirm(self) -> None:
         self.together.tried = len(self.nearest.tried)

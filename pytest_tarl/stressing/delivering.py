@@ -10,6 +10,7 @@ from pytest_tarl.files import slug, unwritten, write_atomically
 from pytest_tarl.stressing import json_result, kept, margins, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
+from pytest_tarl.stressing.map_figure import map_figure
 from pytest_tarl.stressing.search import Request, stress
 
 
@@ -64,6 +65,11 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
     if found.ended in ("", "budget"):
         jobs[folder / "margins" / f"{name}.json"] = lambda path: write_atomically(
             path, margins.text(margins.margins(found)).encode()
+        )
+    drawn = map_figure(found)
+    if drawn:
+        jobs[folder / "report" / f"{name}-stress-map.svg"] = lambda path: write_atomically(
+            path, drawn.encode()
         )
     if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
         jobs[memory] = lambda path: kept.write(found.failures, path)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pytest_tarl.spaces import Point, Space
+from pytest_tarl.spaces import Point, Space, Span
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
@@ -85,6 +85,19 @@ class Failure:
 
 
 @dataclass(frozen=True)
+class MarginMap:
+    """The predicted margins over two ranges: rows by the second one, ascending, and their standard deviations.
+
+    A value is that in the middle of a cell; the cells divide the ranges evenly.
+    """
+
+    names: tuple[str, str]
+    spans: tuple[Span, Span]
+    margins: tuple[tuple[float, ...], ...]
+    spreads: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
 class Stress:
     """The result of a stress run of one test and space."""
 
@@ -99,6 +112,7 @@ class Stress:
     combinations: tuple[Failure, ...] = ()
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # combinations
+    margin_map: MarginMap | None = None
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
 
     @property

@@ -18,8 +18,9 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 from pytest_tarl.stressing.evaluating import FRESH, SIZES, Evaluator
 from pytest_tarl.stressing.evolving import evolve
-from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.generating import generate
+from pytest_tarl.stressing.mapping import margin_map
 from pytest_tarl.stressing.prediction import Prediction, Sample
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
@@ -107,6 +108,10 @@ class Nearest:
         ]
         clearly = [best] if self.evaluator.measured(best)[0] <= -DEEP else []
         return [*clearly, *(coordinates.point(vector * shares[place]) for place in dict.fromkeys(places))]
+
+    def map(self) -> MarginMap | None:
+        """Return the map of margins by the model of all drifts that were tried."""
+        return margin_map(self.curves, self._model(), self._nominal())
 
     def _clearly_fails(self, point: Point) -> bool:
         """Return whether the episodes at a point show a failure, whatever the model makes of its neighbours."""

@@ -9,6 +9,8 @@ from itertools import groupby
 from pytest_tarl.spaces import Span, nominal
 from pytest_tarl.stressing.findings import Curve, Stress
 from pytest_tarl.stressing.guarantee import Evidence
+from pytest_tarl.stressing.map_figure import map_figure, map_words
+from pytest_tarl.stressing.tornado_figure import tornado, tornado_words
 from pytest_tarl.stressing.words import (
     ENDED,
     broken_promises,
@@ -44,6 +46,7 @@ def render(stress: Stress) -> str:
             f"<h1>{title}</h1>",
             *(f"<p>{escape(one)}</p>" for one in _opening(stress)),
             *(f'<p class="broken">{escape(one)}</p>' for one in broken_promises(stress)),
+            *_maps(stress),
             *_sections(stress),
             *_combinations(stress),
             "</html>\n",
@@ -58,6 +61,15 @@ def _opening(stress: Stress) -> Iterator[str]:
     elif stress.ended:
         yield ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)
     yield LEGEND
+
+
+def _maps(stress: Stress) -> Iterator[str]:
+    """Yield the tornado chart and the map, each with its text alternative."""
+    chart, drawn = tornado(stress), map_figure(stress)
+    if chart:
+        yield f"<h2>Directions</h2><p>{escape(tornado_words(stress))}</p>{chart}"
+    if drawn:
+        yield f"<h2>Map</h2><p>{escape(map_words(stress))}</p>{drawn}"
 
 
 def _sections(stress: Stress) -> Iterator[str]:

@@ -80,7 +80,7 @@ class Prediction:
         )
         vectors = vectors * shares[:, None]
         lengths = lengths * shares
-        mean, deviation = self._moments(vectors)
+        mean, deviation = self.moments(vectors)
         failing = 1.0 / (
             1.0 + np.exp(np.clip(1.702 * (mean + DEPTH) / deviation, -50, 50))
         )  # about the normal tail
@@ -90,9 +90,9 @@ class Prediction:
 
     def margins(self, vectors: Vector) -> Vector:
         """Return the predicted margins at vectors of shape (drifts, ranges)."""
-        return self._moments(vectors)[0]
+        return self.moments(vectors)[0]
 
-    def _moments(self, vectors: Vector) -> tuple[Vector, Vector]:
+    def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
         """Return the means and the standard deviations of the margins at vectors."""
         cross = _covariance(vectors, self._vectors)
         mean = self._added(vectors) + cross @ self._weights

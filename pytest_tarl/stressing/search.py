@@ -62,6 +62,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         combinations=tuple(together.found),
         must_hold=must_hold,
         tried=together.tried,
+        margin_map=together.margin_map,
         ended=ended,
     )
 
@@ -87,6 +88,9 @@ def explore(evaluator: Evaluator, together: Together, *, combined: bool = True) 
         return "budget"
     except KeyboardInterrupt:
         return "interrupted"
+    finally:
+        if several is not None:
+            several.draw()
     return "budget" if evaluator.short else ""
 
 

@@ -80,5 +80,6 @@ def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -
         curves=tuple(curves),
         combinations=tuple(together.found),
         tried=together.tried,
+        margin_map=together.margin_map,
         ended=ended,
     )

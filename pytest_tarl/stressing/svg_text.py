@@ -1,0 +1,16 @@
+"""Text of the figures as SVG."""
+
+from __future__ import annotations
+
+from html import escape
+
+INK = "#1c2333"  # text and lines; a contrast of at least 7 to every background of the figures
+
+
+def svg_text(x: float, y: float, text: str, anchor: str, *, bold: bool = False) -> str:
+    """Return a text element at a place, in px; `anchor` is start, middle or end."""
+    weight = ";font-weight:600" if bold else ""
+    return (
+        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" '
+        f'style="font:13px system-ui,sans-serif;fill:{INK}{weight}">{escape(text)}</text>'
+    )
