@@ -95,7 +95,7 @@ def read(content: bytes, where: str) -> Margins:
             _number(document["confidence"]),
             tuple(_side(one) for one in document["directions"]),
         )
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as problem:
+    except (ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError) as problem:
         raise FixtureError(
             f"{where}: not a file of margins ({problem}). Run pytest --tarl-stress again."
         ) from None

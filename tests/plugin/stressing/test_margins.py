@@ -6,14 +6,16 @@ import json
 import subprocess
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pytest_tarl import Drift
 from pytest_tarl.commands.cli import main
+from pytest_tarl.commands.margins_diff import lines
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.margin_changes import compared, words
@@ -47,6 +49,50 @@ def test_margins_read_back_as_written(found: Margins) -> None:
 def test_other_files_are_refused_with_a_sentence(content: bytes) -> None:
     with pytest.raises(FixtureError, match=r"a\.json: not a file of margins"):
         read(content, "a.json")
+
+
+KEYS: list[tuple[Any, ...]] = [(key,) for key in json.loads(text(FOUND))] + [
+    ("guarantee", "loss"),
+    ("directions", 0),
+]
+KEYS += [("directions", 1, key) for key in ("name", "nominal", "end", "holds_to", "fails_at")]
+VALUES = (
+    None,
+    True,
+    0,
+    1,
+    -1,
+    10**400,
+    -(10**400),
+    1e308,
+    float("nan"),
+    float("inf"),
+    "",
+    "1",
+    [],
+    [[]],
+    {},
+    {"end": 1},
+)
+
+
+@given(st.sampled_from(KEYS), st.sampled_from(VALUES))
+@example(("guarantee", "loss"), 10**400)
+def test_any_value_in_a_file_is_read_or_refused_with_a_sentence(key: tuple[Any, ...], value: Any) -> None:
+    document = json.loads(text(FOUND))
+    place = document
+    for part in key[:-1]:
+        place = place[part]
+    place[key[-1]] = value
+    try:
+        found = read(json.dumps(document).encode(), "a.json")
+    except FixtureError as refused:
+        message = str(refused)
+    else:
+        message = ""
+        assert read(text(found).encode(), "a.json") == found
+        assert all(isinstance(line, str) for line in lines(compared([FOUND], [found])))
+    assert message == "" or message.startswith("a.json: not a file of margins")
 
 
 def test_the_margins_of_a_run_hold_its_shown_values() -> None:
