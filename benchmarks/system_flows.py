@@ -1,8 +1,8 @@
 """Compare the flows of launched nodes with judgements made from the code, before the tool's report was seen.
 
-    python benchmarks/system_flows.py TREES
+    python benchmarks/system_flows.py TREES [--judged benchmarks/system_flows_2.json]
 
-TREES holds the repositories of `system_flows.json` as folders `owner+name`, at the commits named there. A judgement is
+TREES holds the repositories of the judgements as folders `owner+name`, at the commits named there. A judgement is
 (node, topic, topic, kind) for each pair of ends between which data passes in one node; flows of nodes that are not
 Python are not judged. A flow is right if node, ends and kind agree.
 """
@@ -27,10 +27,11 @@ def main() -> int:
     """Print the figures of each launch file and of all."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("trees", type=Path)
+    parser.add_argument("--judged", type=Path, default=JUDGED)
     parser.add_argument("--show", action="store_true", help="print every flow that is not right")
     options = parser.parse_args()
     right = every = 0
-    for place, rows in _launches(json.loads(JUDGED.read_text("utf-8")), options.trees):
+    for place, rows in _launches(json.loads(options.judged.read_text("utf-8")), options.trees):
         wanted = {(node, source, sink): kind for node, source, sink, kind in rows}
         found = _found(place, options.trees)
         good = [flow for flow in wanted if found.get(flow) == wanted[flow]]
