@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
+from types import MappingProxyType
 from typing import Final, cast
 
 from tarl_lint.evidence import Evidence
@@ -77,15 +78,17 @@ def trace(
     *,
     thorough: bool = True,
     parameters: list[ParameterName] | None = None,
+    fixed: Mapping[str, object] = MappingProxyType({}),
 ) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the interpreter that found them, which answers further queries if it was thorough.
 
-    With `parameters`, names of topics may contain parameters by their index in this list, which is filled.
+    With `parameters`, names of topics may contain parameters by their index in this list, which is filled. `fixed` are
+    values of parameters, DEFAULT for those that have their defaults.
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:
         machine = Linker(relevant(modules, config), config, thorough=thorough)
-        machine.parameter_names = parameters
+        machine.parameter_names, machine.fixed = parameters, fixed
         machine.link()
         return machine, Tracer(machine).flows()
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 MARK: Final = "\0"
+DEFAULT: Final = "\0default"  # the value of a parameter that is not set
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 

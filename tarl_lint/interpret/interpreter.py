@@ -7,7 +7,7 @@ and those of higher parts through `ctx.ops` (declared in `operations.py`, assign
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
 from tarl_lint.interpret.budget import LOOKS
 from tarl_lint.interpret.operations import Operations
@@ -81,6 +81,7 @@ class Interpreter:
         self.ended: set[str] = set()  # classes outside of the files whose methods get data or callbacks
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
         self.parameter_names: list[ParameterName] | None = None  # parameters in texts; None: not followed
+        self.fixed: Mapping[str, object] = {}  # parameters with known values, by name in the code
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 

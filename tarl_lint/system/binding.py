@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tarl_lint.model import Finding
-from tarl_lint.parameter_names import MARK, ParameterName, substituted
+from tarl_lint.parameter_names import DEFAULT, MARK, ParameterName, substituted
 from tarl_lint.system.model import Endpoint, Interface
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
@@ -26,6 +26,34 @@ def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapp
             whole = f"{full_name}/{name[1:].lstrip('/')}" if name.startswith("~") else name
             found.update(leaves({whole: value}))
     return found
+
+
+def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
+    """Return the values of parameters in a launched node by their names in the code, DEFAULT for those not set.
+
+    Parameters whose value is known only on the robot, or is no scalar, are left out.
+    """
+    namespace, _, own = full_name.rpartition("/")
+    found: dict[str, object] = {}
+    for name in names:
+        places = (resolved(name, namespace or "/", own), f"{full_name}/{name}")
+        below = any(one.startswith(f"{place}/") for place in places for one in values)
+        value = next((values[place] for place in places if place in values), None if below else DEFAULT)
+        if isinstance(value, str | bool | int | float):
+            found[name] = value
+    return found
+
+
+def with_prints(decided: Interface, every: Interface) -> Interface:
+    """Return an interface for known parameters with the fingerprints of the one for any, which no launch changes."""
+    prints = {_ends(one): one.fingerprint for one in every.flows}
+    flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
+    return replace(decided, flows=tuple(flows))
+
+
+def _ends(finding: Finding) -> object:
+    flow = finding.flow
+    return finding.code, flow and flow.source.span, flow and flow.sink.span
 
 
 def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:

@@ -88,7 +88,7 @@ class _Workbench:
         self.workspace = read(root)
         found = discover.find((root,), config)
         self.files: dict[Path, SourceFile] = {one.path.resolve(): one for one in found.files}
-        self._known: dict[Program, Interface | str] = {}
+        self._known: dict[tuple[Program, str], Interface | str] = {}
 
     @cached_property
     def scripts(self) -> Mapping[str, Script]:
@@ -96,13 +96,14 @@ class _Workbench:
         found, _ = runner.read(tuple(self.files.values()), tell=self.tell)
         return {one.path: one for one in found}
 
-    def interface(self, program: Program) -> Interface | str:
-        """Return the interface of a program, or the reason why it cannot be analysed."""
-        if program not in self._known:
-            self._known[program] = self._analysed(program)
-        return self._known[program]
+    def interface(self, program: Program, fixed: Mapping[str, object]) -> Interface | str:
+        """Return the interface of a program with these values of parameters, or why it cannot be analysed."""
+        known = program, repr(sorted(fixed.items(), key=lambda one: one[0]))
+        if known not in self._known:
+            self._known[known] = self._analysed(program, fixed)
+        return self._known[known]
 
-    def _analysed(self, program: Program) -> Interface | str:
+    def _analysed(self, program: Program, fixed: Mapping[str, object]) -> Interface | str:
         file = self.files.get(program.path.resolve())
         if file is None:
             return f"{shown(program.path)} is excluded, or not Python"
@@ -112,11 +113,11 @@ class _Workbench:
         owner = self.workspace.package_of(program.path)
         package = owner.name if owner is not None else ""
         imported = reached([script], [one for one in self.scripts.values() if one.path != script.path])
-        name = key(script, program.entry, package, imported)
+        name = key(script, program.entry, package, imported, fixed)
         found = kept(self.cache, name)
         if found is None:
             self.tell(f"Analysing {file.shown}")
-            found = interface(script, program.entry, package, imported, self.config)
+            found = interface(script, program.entry, package, imported, self.config, fixed)
             keep(self.cache, name, found)
         return found
 

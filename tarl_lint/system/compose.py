@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
-from tarl_lint.system.binding import bound, parameter_values
+from tarl_lint.system.binding import bound, fixed, parameter_values, with_prints
 from tarl_lint.system.calls import part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
@@ -24,7 +24,8 @@ _SILENT: Final = frozenset(
      "state_publisher", "rviz", "rviz2", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
 )  # fmt: skip
 
-Reader = Callable[[Program], Interface | str]  # returns a program's interface, or why it cannot be analysed
+# returns a program's interface for known values of parameters, or why it cannot be analysed
+Reader = Callable[[Program, Mapping[str, object]], Interface | str]
 
 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
@@ -61,12 +62,16 @@ def _instance(
     node: LaunchedNode, launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader
 ) -> Instance:
     found = program(node, workspace, files)
-    interface = read(found) if isinstance(found, Program) else found
+    interface = read(found, {}) if isinstance(found, Program) else found
     own = interface.name if isinstance(interface, Interface) else ""
     name = full_name(node, own)
     if isinstance(interface, Interface):
+        values = parameter_values(launch, node, name)
+        if interface.deciding and isinstance(found, Program):
+            decided = read(found, fixed(interface.deciding, values, name))
+            interface = with_prints(decided, interface) if isinstance(decided, Interface) else interface
         resolve = Instance(node, name).resolve
-        return Instance(node, name, bound(interface, parameter_values(launch, node, name), name, resolve))
+        return Instance(node, name, bound(interface, values, name, resolve))
     package = workspace.package(node.package) if node.kind == "node" else None
     seen = (
         named_topics(package, node.executable)

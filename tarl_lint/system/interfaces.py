@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Final
 
 from tarl_lint import engine
@@ -28,7 +29,7 @@ from tarl_lint.system.calls import CLIENTS, called_services
 from tarl_lint.system.fields import misfits
 from tarl_lint.system.imports import closed
 from tarl_lint.system.model import Endpoint, Interface
-from tarl_lint.system.parameters import reads_named_parameters, words
+from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.staleness import stale
 
@@ -36,11 +37,17 @@ _OWN: Final = "__main__"
 
 
 def interface(
-    script: Script, entry: str, package: str, others: Sequence[Script], config: Config
+    script: Script,
+    entry: str,
+    package: str,
+    others: Sequence[Script],
+    config: Config,
+    fixed: Mapping[str, object] = MappingProxyType({}),
 ) -> Interface | str:
     """Return the interface of a program, or the reason why it cannot be analysed.
 
-    `entry` is the function that starts it, "" for the file itself; `others` are the files that it may import.
+    `entry` is the function that starts it, "" for the file itself; `others` are the files that it may import. `fixed`
+    are known values of parameters.
     """
     first = parsed(script)
     if isinstance(first, SourceError):
@@ -50,7 +57,7 @@ def interface(
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
     plain = replace(config, remaps=())  # names as in the code
     parameters: list[ParameterName] = []
-    machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters)
+    machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters, fixed=fixed)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
     texts = Texts({module.path: module for module in modules})  # also of modules in which nothing runs
@@ -75,6 +82,7 @@ def interface(
         closed=quiet,
         whole=quiet and named and not machine.cut,
         stale=stale(found, modules),
+        deciding=deciding(modules),
         in_names=tuple(parameters),
         misfits=tuple(one for each in modules for one in misfits(each, outlines[each.path], texts)),
     )

@@ -14,14 +14,16 @@ from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 SPARE: Final = 1000  # entries of other launch files and of earlier texts that stay
 
 
-def key(script: Script, entry: str, package: str, imported: Sequence[Script]) -> str:
+def key(
+    script: Script, entry: str, package: str, imported: Sequence[Script], fixed: Mapping[str, object]
+) -> str:
     """Return the key of a program: everything that its interface depends on, besides the settings."""
     scripts = [
         part
         for one in (script, *imported)
         for part in (one.path, one.name, str((one.is_package, one.installed, one.started)), one.text)
     ]
-    return digest([entry, package, *scripts])
+    return digest([entry, package, repr(sorted(fixed.items(), key=lambda one: one[0])), *scripts])
 
 
 def kept(cache: Cache, name: str) -> Interface | str | None:
@@ -63,5 +65,6 @@ _PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "stale": _findings,
     "words": frozenset,
     "misfits": lambda entries: tuple(map(_misfit, entries)),
+    "deciding": tuple,
     "in_names": lambda entries: tuple(ParameterName(*one) for one in entries),
 }

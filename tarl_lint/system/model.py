@@ -64,8 +64,8 @@ class Interface:
     `words` are all strings of its code. `parameters` says whether they include every parameter that it reads.
     `closed` says that it imports nothing that could use topics on its own, `whole` that besides all topics have
     constant names and that the analysis was complete.
-    `in_names` are the parameters that names contain. `stale` are publish calls that go on without new messages,
-    `misfits` uses of fields that a message type does not have.
+    `in_names` are the parameters that names contain, `deciding` those that stand in conditions.
+    `stale` are publish calls that go on without new messages, `misfits` uses of fields that a message type lacks.
     """
 
     path: str
@@ -79,6 +79,7 @@ class Interface:
     whole: bool = False
     stale: tuple[Finding, ...] = ()
     misfits: tuple[Misfit, ...] = ()
+    deciding: tuple[str, ...] = ()
     in_names: tuple[ParameterName, ...] = ()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.read.source import Module
@@ -39,6 +39,41 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
         if any(call.args and _computed(call.args[0]) for call in calls):
             return False
     return True
+
+
+def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
+    """Return the parameters, by their names in the code, whose variables stand in a condition, sorted."""
+    found: set[str] = set()
+    for module in modules:
+        nodes = list(ast.walk(module.tree))
+        conditions = [node.test for node in nodes if isinstance(node, ast.If | ast.IfExp | ast.While)]
+        tests = {one for condition in conditions for one in _variables(condition)}
+        found |= {name for condition in conditions for name in _read_in(condition)}
+        for node in nodes:
+            if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                if any(one in tests for target in targets for one in _variables(target)):
+                    found |= set(_read_in(node.value))
+    return tuple(sorted(found))
+
+
+def _variables(expr: ast.AST) -> Iterator[str]:
+    """Yield the last names of variables and attributes in an expression."""
+    for node in ast.walk(expr):
+        if isinstance(node, ast.Attribute):
+            yield node.attr
+        elif isinstance(node, ast.Name) and node.id != "self":
+            yield node.id
+
+
+def _read_in(expr: ast.AST) -> Iterator[str]:
+    """Yield the literal names of the parameters that an expression reads."""
+    for node in ast.walk(expr):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name) and node.args:
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
+            first = node.args[0]
+            if name in READERS and isinstance(first, ast.Constant) and isinstance(first.value, str):
+                yield first.value
 
 
 def _computed(argument: ast.expr) -> bool:

@@ -16,6 +16,7 @@ from tarl_lint.memory.parameter_names import text_of_parameter
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
 from tarl_lint.models import containers, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions
+from tarl_lint.parameter_names import DEFAULT
 
 
 def ros_call(ctx: Interpreter, it: Invocation) -> Value:
@@ -105,7 +106,17 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
 def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
     """Return the text that stands for a parameter in names of topics, if the call names one parameter."""
     names = it.argument(it.fact.topic).texts()
-    return text_of_parameter(ctx.parameter_names, names[0], default) if len(names) == 1 else None
+    return _value_of(ctx, names[0], default) if len(names) == 1 else None
+
+
+def _value_of(ctx: Interpreter, name: str, default: Value) -> Consts:
+    """Return the known value of a parameter, else the text that stands for it in names of topics."""
+    if name not in ctx.fixed:
+        return text_of_parameter(ctx.parameter_names, name, default)
+    value = ctx.fixed[name]
+    if value is not DEFAULT:
+        return frozenset([value])
+    return default.consts if default.fixed() else None
 
 
 def _default_of(
@@ -161,7 +172,7 @@ def declare_all(ctx: Interpreter, it: Invocation) -> Value:
             written.get(number),
             it.frame,
             ("parameter", it.call.slot, number),
-            consts=text_of_parameter(ctx.parameter_names, names[0], parts[1]) if len(names) == 1 else None,
+            consts=_value_of(ctx, names[0], parts[1]) if len(names) == 1 else None,
         )
         for obj in found.pts:
             ctx.store.put((obj, "value"), value)
