@@ -29,8 +29,8 @@ from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
 from pytest_tarl.model import Comparison, FormulaRow, ListComparison, Region, Sizes, TaintList
 from pytest_tarl.options import Options
-from pytest_tarl.recording import Progress, Recorded, Tell, mean_flows, run_episodes, sarsa_tables
-from pytest_tarl.rollout import Rollout
+from pytest_tarl.recording import Progress, Recorded, Tell, mean_flows, repeated, run_episodes, sarsa_tables
+from pytest_tarl.rollout import EpisodePlan, Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.settling import within
@@ -82,7 +82,9 @@ def run_online(
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = _compared(_current(fixture, plan), tables, chosen)
     ranked = localize.prior((one.slices for one in lists), changeable)
-    notes = (*side.notes, *recorded.notes, *remarks.early(recorded.sample, count))
+    again = EpisodePlan(side.seeds[0], drift, record=True)
+    spread = repeated(side.rollout, again, recorded) if recorded.simulator else ()
+    notes = (*side.notes, *recorded.notes, *spread, *remarks.early(recorded.sample, count))
     comparison = Comparison(
         test=fixture.test,
         drift=drift,

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from pytest_tarl.bags.replay import Judgement, Replay
+    from pytest_tarl.external.simulator import Call, Simulator
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.instrumentation.trace import Trace
@@ -71,6 +72,7 @@ class Tarl:
         self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
         self.topics = self._situation.topics
         self.values = self._situation.values
+        self.simulator: Simulator | None = None  # an external one
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -109,7 +111,7 @@ class Tarl:
     @property
     def now(self) -> float:
         """Virtual seconds since the episode began."""
-        return self.ros.now
+        return self.ros.now if self.simulator is None else self._now / 1e9
 
     def start(
         self,
@@ -153,6 +155,62 @@ class Tarl:
         self.drives_ros = True
         self._starter.launch(file, arguments or {}, only, replace or {}, parameters or {})
 
+    def external(
+        self,
+        command: str | Sequence[str],
+        *,
+        ready: str | Sequence[str],
+        clock: str = "/clock",
+        step: str | Call | None = None,
+        reset: str | Call | None = None,
+        every_step: Sequence[str] = (),
+        environment: Mapping[str, str] | None = None,
+        timeout: float = 60.0,
+        patience: float = 10.0,
+    ) -> Simulator:
+        """Start a simulator, a program on a real ROS 2, as the world of this episode; call it before `start`.
+
+        Nodes hear what the simulator publishes, and it hears what they publish. `tarl.step` runs both.
+
+        Args:
+            command: The program, run in the test's folder. It gets its own ROS_DOMAIN_ID and TARL_SEED.
+            ready: Topics that the simulator publishes or subscribes to once it is ready.
+            clock: The topic of its time; the nodes' clocks show it.
+            step: The service that runs it for one step. Without it, the simulator runs in its own time.
+            reset: The service that resets it between episodes. Without it, each episode starts it anew.
+            every_step: Topics that it publishes in each step; a step has ended once all of them have come.
+            environment: Further environment variables.
+            timeout: Seconds of real time for it to become ready.
+            patience: Seconds of real time without an answer or progress of its clock, after which it hangs.
+
+        Raises:
+            SettingsError: The arguments are invalid, rclpy is not installed, or a node is already running.
+            SimulatorError: The simulator ended or did not become ready.
+        """
+        from pytest_tarl.external.simulator import Simulator, setup
+
+        if self.drives_ros or self._replay is not None or self.simulator is not None:
+            raise SettingsError(
+                "tarl.external belongs before tarl.start, once in a test, and not into a replay."
+            )
+        arguments = setup(
+            command,
+            self._folder,
+            environment={**(environment or {}), **({} if reset else {"TARL_SEED": str(self.seed)})},
+            clock=clock,
+            ready=ready,
+            step=step,
+            reset=reset,
+            every_step=every_step,
+            timeout=timeout,
+            patience=patience,
+        )
+        self.simulator = Simulator(arguments, self.ros, [*self._situation.subscribed])
+        self._open.callback(self.simulator.end)
+        self.simulator.begin()
+        self._origin = self.ros.scheduler.time
+        return self.simulator
+
     def step(self, dt: float) -> None:
         """Run the nodes and advance virtual time by `dt` seconds, until every node waits again.
 
@@ -163,7 +221,7 @@ class Tarl:
             raise SettingsError(f"tarl.step got {dt!r}: give a finite number of seconds, such as 0.1.")
         if self._replay is not None:
             self._replayed(self._replay, seconds)
-        self.ros.step(seconds)
+        (self.ros.step if self.simulator is None else self.simulator.advance)(seconds)
         self._stepped()
 
     def _replayed(self, replay: Replay, dt: float) -> None:

@@ -27,6 +27,14 @@ class RecordingError(TarlError):
     """A test run cannot be recorded: no reward, silent sensor, node that fails to start."""
 
 
+class SimulatorError(RecordingError):
+    """An external simulator cannot be started or does not fit the test."""
+
+
+class SimulatorLostError(SimulatorError):
+    """An external simulator died or hung; its episode is run again with a new one."""
+
+
 class RequirementError(AssertionError):
     """A formula does not hold in an episode, so the mission failed."""
 

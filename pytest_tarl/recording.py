@@ -59,6 +59,7 @@ class Recorded:
     failures: tuple[str, ...]
     learner: str = "sarsa"
     notes: tuple[str, ...] = ()
+    simulator: bool = False  # whether an external simulator was the world
 
     @property
     def success(self) -> float:
@@ -103,11 +104,10 @@ def record(
     learner = options.learner or "sarsa"
     footprint = Footprint(settling.asked, tell)
     recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settling, footprint)
-    again = rollout(EpisodePlan(seeds[0], drift, record=True))
     notes = [
         *broken,
         *recorded.notes,
-        *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]),
+        *repeated(rollout, EpisodePlan(seeds[0], drift, record=True), recorded),
     ]
     refused = _refused(settling, recorded)
     if refused:
@@ -129,6 +129,23 @@ def record(
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes), new.stated)
+
+
+def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
+    """Run the first episode again; return a note if the result differs, for a simulator with the spread."""
+    again = sound(rollout(plan))
+    if identical(recorded.first, again.trace):
+        return []
+    if not recorded.simulator:
+        return [NOT_REPRODUCIBLE]
+    once, twice = float(recorded.first.reward.sum()), float(again.trace.reward.sum())
+    between = f"{recorded.sample.total.std(ddof=1):.3g}" if recorded.sample.episodes > 1 else "unknown"
+    note = (
+        f"the simulator is not reproducible: two episodes with the same seed earned {once:.4g} and {twice:.4g}, "
+        f"{abs(once - twice):.3g} apart; the standard deviation over all episodes is {between}. It contains this "
+        "noise, so verdicts and bounds hold, but a smaller loss needs more episodes."
+    )
+    return [note]
 
 
 def _refused(settling: Settling, recorded: Recorded) -> str:
@@ -170,6 +187,7 @@ def run_episodes(
     footprint = footprint or Footprint(len(seeds))
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
+    simulator = False
     samples: list[Sample] = []
     failures: list[str] = []
     notes: dict[str, None] = {}
@@ -178,7 +196,7 @@ def run_episodes(
     for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
         progress(done, len(seeds), drift or "episodes")
         run = sound(episode.result())
-        first = first or run.trace
+        first, simulator = first or run.trace, run.simulator
         counted = sample(run.trace, seed, run.passed, members)
         samples.append(replace(counted, judgements=judgements(run.judged)))
         footprint.add(samples[-1])
@@ -193,7 +211,9 @@ def run_episodes(
     if first is None:
         raise RecordingError("There is nothing to learn from: 0 episodes were requested.")
     notes |= dict.fromkeys([footprint.warning] if footprint.warning else [])
-    return Recorded(first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes))
+    return Recorded(
+        first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes), simulator
+    )
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:

@@ -10,7 +10,7 @@ import inspect
 import signal
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType
@@ -21,7 +21,14 @@ from _pytest.runner import runtestprotocol
 
 from pytest_tarl import ini
 from pytest_tarl.designation import Designation, designation
-from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
+from pytest_tarl.errors import (
+    NodeError,
+    RequirementError,
+    SettingsError,
+    SimulatorLostError,
+    StuckNodeError,
+    TarlError,
+)
 from pytest_tarl.formula_calls import said
 from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
@@ -65,10 +72,12 @@ class Episode:
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
     older: tuple[Path, ...] = ()  # edited files of which the previous text ran
+    simulator: bool = False  # whether an external simulator was its world
 
 
 EPISODE = pytest.StashKey[Episode]()
 LIMIT = pytest.StashKey[Any]()  # the settings of pytest-timeout for an item
+SIMULATORS = 3  # external simulators that an episode may lose, as workers
 INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # exceptions that end the whole run
 
 
@@ -132,6 +141,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.problem = tarl.problem()
             episode.replayed = replay is not None and replay.done
+            episode.simulator = tarl.simulator is not None
         finally:
             tarl.close()
             episode.notes, episode.older = tarl.notes(), imports.older
@@ -231,7 +241,16 @@ class ItemRollout:
         return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C."""
+        """Run one episode, anew if its simulator is lost, at most SIMULATORS times.
+
+        Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C.
+        """
+        for _ in range(SIMULATORS - 1):
+            with suppress(SimulatorLostError):
+                return self._once(plan)
+        return self._once(plan)
+
+    def _once(self, plan: EpisodePlan) -> EpisodeRun:
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
         self.item._report_sections.clear()  # do not collect and show the output of all episodes
@@ -351,6 +370,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         values=episode.values,
         judged=episode.judged,
         older=episode.older,
+        simulator=episode.simulator,
     )
 
 

@@ -40,6 +40,8 @@ class EpisodeRun:
 
     `older` lists files of the overlay whose previous text ran: such an episode says nothing about the overlay.
 
+    `simulator` says that an external simulator was the world, which may give the same plan another result.
+
     `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
 
@@ -55,6 +57,7 @@ class EpisodeRun:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     judged: tuple[Judged, ...] = ()
     older: tuple[Path, ...] = ()
+    simulator: bool = False
 
 
 class Pending(Protocol):

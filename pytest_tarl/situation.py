@@ -40,6 +40,13 @@ class Situation:
         """Return whether any sensor has received a value."""
         return bool(self._bins)
 
+    @property
+    def subscribed(self) -> tuple[str, ...]:
+        """Return the topics that sensors and signals read."""
+        named = [sensor.topic for sensor in self._sensors]
+        named += [signal.topic for signal in self._requirements.signals]
+        return tuple(dict.fromkeys(topic for topic in named if topic is not None))
+
     def hear(self, topic: str, message: Any) -> None:
         """Read sensors and signals from a delivered message."""
         changed = False

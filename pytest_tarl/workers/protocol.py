@@ -17,7 +17,7 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
-TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values")
+TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
 ALIVE = b""  # heartbeat: the worker's threads run
@@ -71,6 +71,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "topics": dict(run.topics),
         "crashed": run.crashed,
         "stuck": run.stuck,
+        "simulator": run.simulator,
         "notes": run.notes,
         "values": dict(run.values),
         "judged": run.judged,

@@ -1,0 +1,91 @@
+"""The test's end of a guardian: commands go out, events come in, the simulator's output lies in a file."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import Any
+
+PACKAGES = Path(__file__).resolve().parents[2]
+PATIENCE = 10.0  # s for the guardian to end, which first ends the simulator
+TAIL = 3  # lines of the simulator's output in a message
+
+Event = dict[str, Any]
+
+
+class Client:
+    """One guardian process, which serves one simulator after another."""
+
+    def __init__(self) -> None:
+        self._log = TemporaryFile()  # noqa: SIM115 - as long as the process
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", "from pytest_tarl.external.guardian import main; main()"],
+            cwd=PACKAGES,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._log,
+            text=True,
+            encoding="utf-8",
+        )
+        self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
+        self._shown = 0
+        threading.Thread(target=self._read, name="tarl-simulator", daemon=True).start()
+
+    @property
+    def alive(self) -> bool:
+        """Return whether the guardian runs."""
+        return self._process.poll() is None
+
+    def do(self, what: str, **arguments: Any) -> None:
+        """Send a command; nothing happens if the guardian is gone, which an event has told."""
+        assert self._process.stdin is not None  # noqa: S101 - told to the type checker
+        with suppress(OSError, ValueError):
+            self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
+            self._process.stdin.flush()
+
+    def close(self) -> None:
+        """End simulator and guardian."""
+        assert self._process.stdin is not None  # noqa: S101
+        with suppress(OSError, ValueError):
+            self._process.stdin.close()
+        try:
+            self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        if self._process.stdout is not None:
+            self._process.stdout.close()
+        self._log.close()
+
+    def output(self) -> str:
+        """Return the output of the simulator since the last call."""
+        new = self._unread()
+        self._shown += len(new)
+        return new.decode(errors="replace")
+
+    def last_words(self) -> str:
+        """Return the last lines of the simulator's output, without taking them."""
+        lines = self._unread().decode(errors="replace").strip().splitlines()
+        return " | ".join(line.strip() for line in lines[-TAIL:])
+
+    def _unread(self) -> bytes:
+        with suppress(
+            OSError, ValueError
+        ):  # by pread, since the simulator writes at the offset of the same file
+            size = os.fstat(self._log.fileno()).st_size
+            return os.pread(self._log.fileno(), size - self._shown, self._shown)
+        return b""
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None  # noqa: S101
+        with suppress(OSError, ValueError):
+            for line in self._process.stdout:
+                self.events.put(json.loads(line))
+        self.events.put({"kind": "gone"})

@@ -1,0 +1,146 @@
+"""The guardian: a process that keeps a simulator. It reads commands and writes events, one JSON object a line.
+
+It ends the simulator's whole process group when the test says so, and when the test's process is gone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+from collections import deque
+from time import monotonic
+from typing import Any
+
+from pytest_tarl.external.group import Domain, Group
+from pytest_tarl.external.link import Link
+
+LOOK = 0.05  # s between two looks at the ROS graph, once a second after CALM
+CALM = 5.0  # s
+
+
+class Guardian:
+    """At most one simulator at a time."""
+
+    def __init__(self, events: int) -> None:
+        self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
+        self._commands: deque[dict[str, Any] | None] = deque()
+        self._arrival = threading.Event()
+        self._waking = threading.Lock()  # held while a link is woken or taken away
+        self._group: Group | None = None
+        self._domain: Domain | None = None
+        self._link: Link | None = None
+        self._begun = self._looked = 0.0
+        self._ended = False
+
+    def read(self) -> None:
+        """Read commands until the test's process is gone; runs in a thread."""
+        for line in sys.stdin:
+            self._put(json.loads(line))
+        self._put(None)
+
+    def run(self) -> None:
+        """Handle commands and events until there are no more commands."""
+        try:
+            while True:
+                while self._commands:
+                    command = self._commands.popleft()
+                    if command is None:
+                        return
+                    getattr(self, f"_do_{command.pop('do')}")(**command)
+                self._wait()
+        finally:
+            self._do_stop()
+
+    def _put(self, command: dict[str, Any] | None) -> None:
+        self._commands.append(command)
+        self._arrival.set()
+        with self._waking:
+            if self._link is not None:
+                self._link.wake()
+
+    def _wait(self) -> None:
+        if self._link is None:
+            self._arrival.wait()
+            self._arrival.clear()
+            return
+        now = monotonic()
+        if now - self._looked > (LOOK if now - self._begun < CALM else 1.0):
+            self._looked = now
+            self._link.look()
+        if not self._commands:
+            self._link.spin(LOOK)
+        if self._group is not None and not self._ended and self._group.status is not None:
+            self._ended = True
+            self.say({"kind": "ended", "status": self._group.status})
+
+    def say(self, event: dict[str, Any]) -> None:
+        """Write an event."""
+        try:
+            self._events.write(json.dumps(event, separators=(",", ":")) + "\n")
+        except OSError:  # the test's process is gone
+            self._commands.append(None)
+
+    def _do_start(
+        self, command: list[str], folder: str, environment: dict[str, str], clock: str, topics: list[str]
+    ) -> None:
+        self._do_stop()
+        self._domain = Domain()
+        own = {
+            "ROS_DOMAIN_ID": str(self._domain.number),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # shared memory would leave files in /dev/shm after a kill
+        }
+        os.environ.update(own)
+        self._ended = False
+        try:
+            self._group = Group(command, folder, {**environment, **own})
+        except OSError as problem:
+            self.say({"kind": "failed", "reason": problem.strerror or str(problem)})
+            return
+        self._begun = monotonic()
+        self._link = Link(self._domain.number, clock, self.say)
+        self._link.subscribe(topics)
+
+    def _do_stop(self) -> None:
+        with self._waking:
+            link, self._link = self._link, None
+        if self._group is not None:
+            self._group.end()
+        if link is not None:
+            link.close()
+        if self._domain is not None:
+            self._domain.release()
+        self._group = self._domain = None
+        self.say({"kind": "stopped"})
+
+    def _do_subscribe(self, topics: list[str]) -> None:
+        if self._link is not None:
+            self._link.subscribe(topics)
+            self._link.look()
+            self._begun = monotonic()
+
+    def _do_send(self, topic: str, data: dict[str, Any]) -> None:
+        if self._link is not None:
+            self._link.send(topic, data)
+
+    def _do_call(self, **asked: Any) -> None:
+        if self._link is not None:
+            self._link.call(asked)
+
+
+def main() -> None:
+    """Reserve stdout for events, and ignore Ctrl-C, which the test's process handles."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    events = os.dup(1)
+    os.dup2(2, 1)
+    guardian = Guardian(events)
+    threading.Thread(target=guardian.read, daemon=True).start()
+    guardian.run()
+    os._exit(0)  # threads of the middleware do not delay the end
+
+
+if __name__ == "__main__":
+    main()

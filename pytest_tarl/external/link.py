@@ -1,0 +1,165 @@
+"""The guardian's node on the simulator's domain: topics, services and clock of an unpatched rclpy."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+from pytest_tarl.external.plain import filled, to_plain
+
+NAME = "tarl_link"
+OWN = ("/rosout", "/parameter_events")
+DEPTH = 1000
+
+Say = Callable[[dict[str, Any]], None]
+
+
+class Link:
+    """A node in a context of its own; `say` passes events on. Used in one thread."""
+
+    def __init__(self, domain: int, clock: str, say: Say) -> None:
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+
+        self._context = Context()
+        self._context.init(args=[], domain_id=domain, initialize_logging=False)
+        self._node = Node(
+            NAME,
+            context=self._context,
+            use_global_arguments=False,
+            start_parameter_services=False,
+            enable_rosout=False,
+        )
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._waker = self._node.create_guard_condition(lambda: None)
+        self._say, self._clock = say, clock
+        self._wanted: dict[str, Any] = {clock: None}  # topic → subscription
+        self._publishers: dict[str, Any] = {}
+        self._clients: dict[str, Any] = {}
+        self._calls: list[dict[str, Any]] = []  # calls of services that are not there yet
+        self._known: dict[str, Any] = {}
+
+    def spin(self, seconds: float) -> None:
+        """Handle one event, waiting for it at most this time."""
+        self._executor.spin_once(seconds)
+
+    def wake(self) -> None:
+        """End a wait; may be called in any thread."""
+        self._waker.trigger()
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._executor.shutdown()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def subscribe(self, topics: list[str]) -> None:
+        """Pass on messages of further topics, as soon as the simulator publishes them; report the graph anew."""
+        for topic in topics:
+            self._wanted.setdefault(topic, None)
+        self._known = {}
+
+    def send(self, topic: str, data: dict[str, Any]) -> None:
+        """Publish a message to the simulator."""
+        publisher = self._publishers.get(topic)
+        if publisher is not None:
+            publisher.publish(filled(publisher.msg_type(), data, _message_class))
+
+    def call(self, asked: dict[str, Any]) -> None:
+        """Call a service now, or once it is there.
+
+        What was sent before arrives before: both go by UDP to one port of the simulator's participant. Waiting for
+        acknowledgements in addition costs 0.8 s a call, the period of the middleware's heartbeats.
+        """
+        self._calls.append(asked)
+        self._start_calls()
+
+    def look(self) -> None:
+        """Connect to what the simulator publishes, subscribes to and serves; report changes."""
+        kinds = {name: types[0] for name, types in self._node.get_topic_names_and_types() if types}
+        published, subscribed = [], []
+        for topic, kind in sorted(kinds.items()):
+            if topic in OWN:
+                continue
+            if offered := _others(self._node.get_publishers_info_by_topic(topic)):
+                published.append(topic)
+                self._listen(topic, kind, offered[0].qos_profile)
+            if wanting := _others(self._node.get_subscriptions_info_by_topic(topic)):
+                self._offer(topic, kind, wanting[0].qos_profile)
+                if topic in self._publishers and self._publishers[topic].get_subscription_count():
+                    subscribed.append(topic)
+        connected = [topic for topic, end in self._wanted.items() if end and end.get_publisher_count()]
+        now = {"published": published, "subscribed": subscribed, "connected": connected}
+        if now != self._known:
+            self._known = now
+            self._say({"kind": "graph", **now})
+        self._start_calls()
+
+    def _listen(self, topic: str, kind: str, offered: Any) -> None:
+        from rclpy.qos import QoSProfile
+
+        if topic not in self._wanted or self._wanted[topic] is not None:
+            return
+        profile = QoSProfile(depth=DEPTH, reliability=offered.reliability, durability=offered.durability)
+        heard = self._on_clock if topic == self._clock else self._on_message(topic, kind)
+        self._wanted[topic] = self._node.create_subscription(_class(kind), topic, heard, profile)
+
+    def _on_clock(self, message: Any) -> None:
+        self._say({"kind": "clock", "time": message.clock.sec * 10**9 + message.clock.nanosec})
+
+    def _on_message(self, topic: str, kind: str) -> Callable[[Any], None]:
+        return lambda message: self._say(
+            {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message)}
+        )
+
+    def _offer(self, topic: str, kind: str, wanted: Any) -> None:
+        from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+        if topic not in self._publishers:
+            profile = QoSProfile(
+                depth=DEPTH, reliability=ReliabilityPolicy.RELIABLE, durability=wanted.durability
+            )
+            self._publishers[topic] = self._node.create_publisher(_class(kind), topic, profile)
+
+    def _start_calls(self) -> None:
+        waiting, self._calls = self._calls, []
+        for asked in waiting:
+            client = self._client(asked["service"])
+            if client is None or not client.service_is_ready():
+                self._calls.append(asked)
+                continue
+            request = filled(client.srv_type.Request(), asked["request"], _message_class)
+            future = client.call_async(request)
+            future.add_done_callback(self._answered(asked["id"]))
+
+    def _answered(self, number: int) -> Callable[[Any], None]:
+        def answer(future: Any) -> None:
+            problem = future.exception()
+            told = {"error": str(problem)} if problem else {"response": to_plain(future.result())}
+            self._say({"kind": "answer", "id": number, **told})
+
+        return answer
+
+    def _client(self, service: str) -> Any:
+        if service not in self._clients:
+            kinds = dict(self._node.get_service_names_and_types())
+            if service not in kinds:
+                return None
+            self._clients[service] = self._node.create_client(_class(kinds[service][0]), service)
+        return self._clients[service]
+
+
+def _others(ends: list[Any]) -> list[Any]:
+    return [end for end in ends if end.node_name != NAME]
+
+
+def _class(kind: str) -> Any:
+    package, part, name = kind.split("/")
+    return getattr(importlib.import_module(f"{package}.{part}"), name)
+
+
+def _message_class(package: str, name: str) -> Any:
+    return _class(f"{package}/msg/{name}")

@@ -1,0 +1,401 @@
+"""An external simulator in an episode: started or reset, stepped or followed, with the nodes held to its clock."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import queue
+import shlex
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.machinery import PathFinder
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.errors import SettingsError, SimulatorError, SimulatorLostError
+from pytest_tarl.external.client import Client, Event
+from pytest_tarl.external.plain import filled, to_plain
+from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.messages import find_class, unknown_type
+from pytest_tarl.ros.messages.snapshot import snapshot, type_name
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros import Ros
+
+SETTLED = 0.3  # s of wall time without a change of the ROS graph, after which a simulator has started
+
+
+@dataclass(frozen=True)
+class Call:
+    """A service of the simulator and the fields of its request; its type is the one that the simulator offers."""
+
+    service: str
+    request: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Setup:
+    """The arguments of `tarl.external`; see there."""
+
+    command: tuple[str, ...]
+    folder: Path
+    environment: Mapping[str, str]
+    clock: str
+    ready: tuple[str, ...]
+    step: Call | None
+    reset: Call | None
+    every_step: tuple[str, ...]
+    timeout: float
+    patience: float
+
+    @property
+    def shown(self) -> str:
+        """Return the command as typed in a shell."""
+        return shlex.join(self.command)
+
+
+def setup(
+    command: str | Sequence[str],
+    folder: Path,
+    *,
+    environment: Mapping[str, str] | None,
+    clock: str,
+    ready: str | Sequence[str],
+    step: str | Call | None,
+    reset: str | Call | None,
+    every_step: Sequence[str],
+    timeout: float,
+    patience: float,
+) -> Setup:
+    """Return checked arguments. Raise SettingsError for an empty command, no topic in `ready`, or without rclpy."""
+    parts = shlex.split(command) if isinstance(command, str) else [os.fspath(part) for part in command]
+    topics = (ready,) if isinstance(ready, str) else tuple(ready)
+    if not parts or not topics:
+        raise SettingsError(
+            "tarl.external needs a command and a topic that shows that the simulator is ready, such as "
+            'tarl.external("ros2 launch my_robot simulation.launch.py", ready="/odom").'
+        )
+    if PathFinder.find_spec("rclpy") is None:
+        raise SettingsError(
+            "tarl.external talks to the simulator by rclpy, which is not installed: source the setup.bash of your "
+            "ROS 2, or pip install 'ros-rclpy[fastrtps]'."
+        )
+    return Setup(
+        tuple(parts),
+        folder,
+        dict(environment or {}),
+        clock,
+        topics,
+        Call(step) if isinstance(step, str) else step,
+        Call(reset) if isinstance(reset, str) else reset,
+        tuple(every_step),
+        timeout,
+        patience,
+    )
+
+
+class Kept:
+    """The guardian of this process, and the simulator that runs in it for further episodes."""
+
+    def __init__(self) -> None:
+        self.client: Client | None = None
+        self.running: Setup | None = None
+
+    def opened(self) -> Client:
+        """Return the guardian; start it at first use."""
+        if self.client is None or not self.client.alive:
+            self.close()
+            self.client = Client()
+        return self.client
+
+    def close(self) -> None:
+        """End guardian and simulator."""
+        if self.client is not None:
+            self.client.close()
+        self.client = self.running = None
+
+
+KEPT = Kept()
+atexit.register(KEPT.close)
+
+
+class Simulator:
+    """The simulator of one episode. `latest(topic)` returns what it published last."""
+
+    def __init__(self, setup: Setup, ros: Ros, watched: Sequence[str]) -> None:
+        self.setup = setup
+        self._ros = ros
+        self._client = KEPT.opened()
+        self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
+        self._heard: Counter[str] = Counter()
+        self._latest: dict[str, Any] = {}
+        self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
+        self._forwarded: set[str] = set()
+        self._answers: dict[int, Event] = {}
+        self._calls = 0
+        self._clock: int | None = None
+        self._target = 0
+        self._tick = 0
+        self._waiting: list[Event] | None = []  # messages to deliver later; None: at once
+        self._usable = False  # whether the last step ended well
+        self._current = False  # whether events are about this episode's simulator
+
+    @property
+    def clock(self) -> float:
+        """Return the simulator's time, in s."""
+        return seconds(self._clock or 0)
+
+    def latest(self, topic: str) -> Any | None:
+        """Return the simulator's newest message on a topic, None before the first.
+
+        Topics that no node, sensor or argument names are heard from the first call on.
+        """
+        if topic not in self._topics:
+            self._want([topic])
+        return self._latest.get(topic)
+
+    def begin(self) -> None:
+        """Start the simulator or reset the running one. Raise SimulatorError if it does not become ready."""
+        if self.setup.reset is None or KEPT.running != self.setup or not self._reset(self.setup.reset):
+            self._start()
+        self._wait(self._ready, self.setup.timeout, self._unready)
+        self._settle()
+        assert self._clock is not None  # noqa: S101 - it is ready
+        self._ros.scheduler.time = self._target = self._clock
+        KEPT.running = self.setup
+
+    def advance(self, dt: float) -> None:
+        """Run simulator and nodes for `dt` seconds of the simulator's time. Raise SimulatorLostError if it stops."""
+        self._usable = False
+        self._connect()
+        self._target += nanoseconds(dt)
+        if self.setup.step is not None:
+            self._stepped(self.setup.step)
+        else:
+            if self._target <= self._time:  # the simulator ran on while the test did something else
+                self._target = self._time + nanoseconds(dt)
+            self._deliver(self._released())
+            self._wait(lambda: self._time >= self._target, self.setup.patience, self._hung)
+        self._usable = True
+
+    def end(self) -> None:
+        """End the simulator, unless a reset makes it usable for further episodes; print its output."""
+        if self.setup.reset is None or not self._usable:
+            self._client.do("stop")
+            KEPT.running = None
+        if output := self._client.output().strip():
+            print(f"output of {self.setup.shown}:\n{output}")
+
+    @property
+    def _time(self) -> int:
+        return -1 if self._clock is None else self._clock
+
+    def _start(self) -> None:
+        one = self.setup
+        KEPT.running = None
+        environment = {**os.environ, **one.environment}
+        self._client.do(
+            "start",
+            command=list(one.command),
+            folder=str(one.folder),
+            environment=environment,
+            clock=one.clock,
+            topics=list(self._topics),
+        )
+        self._wait(lambda: self._current, self.setup.timeout, self._unready)
+
+    def _reset(self, reset: Call) -> bool:
+        """Reset the running simulator; return whether it answered."""
+        self._current = True
+        try:
+            self._client.do("subscribe", topics=list(self._topics))
+            self._call(reset)
+        except SimulatorError:
+            self._current = False
+            return False
+        self._heard.clear()
+        self._clock = None
+        self._waiting = []
+        return True
+
+    def _ready(self) -> bool:
+        connected = {*self._graph["subscribed"], *self._heard}
+        return self._time > 0 and all(topic in connected for topic in self.setup.ready)
+
+    def _settle(self) -> None:
+        """Wait until the ROS graph no longer changes, so that early commands are not lost."""
+        calm = monotonic()
+        while monotonic() - calm < SETTLED:
+            event = self._next(SETTLED / 4)
+            if event is not None and event["kind"] == "graph":
+                calm = monotonic()
+
+    def _connect(self) -> None:
+        """Hear what nodes subscribe to, and forward to the simulator what it subscribes to."""
+        for topic in sorted(self._graph["subscribed"] - self._forwarded - {self.setup.clock}):
+            self._forwarded.add(topic)
+            self._ros.bus.subscribe(topic, self._forward(topic))
+        self._want(sorted(self._ros.bus.subscribed - {*self._topics, self.setup.clock}))
+
+    def _want(self, topics: Sequence[str]) -> None:
+        """Hear further topics; wait until those that the simulator publishes are connected."""
+        if not topics:
+            return
+        self._topics.update(dict.fromkeys(topics))
+        self._client.do("subscribe", topics=list(topics))
+        theirs = self._graph["published"].intersection(topics)
+        self._wait(lambda: theirs <= self._graph["connected"], self.setup.patience, self._hung)
+
+    def _forward(self, topic: str) -> Callable[[Any], None]:
+        return lambda message: self._client.do("send", topic=topic, data=to_plain(_in_ros2(message)))
+
+    def _stepped(self, step: Call) -> None:
+        """Run the nodes up to the end of the simulator's next step, then the simulator."""
+        self._deliver(self._released())
+        while self._time < self._target:
+            before, heard = self._time, self._heard.copy()
+            self._run_nodes(min(self._target, before + self._tick) if self._tick else self._target)
+            self._waiting = []
+            self._call(step)
+            self._wait(lambda: self._over(before, heard), self.setup.patience, self._hung)  # noqa: B023 - called now
+            self._tick = self._time - before
+            self._run_nodes(self._time)
+            self._deliver(self._released())
+            self._waiting = []
+
+    def _over(self, before: int, heard: Mapping[str, int]) -> bool:
+        """Return whether a step has ended: the clock moved, and each of its topics brought a message."""
+        return self._time > before and all(
+            self._heard[topic] > heard.get(topic, 0) for topic in self.setup.every_step
+        )
+
+    def _released(self) -> list[Event]:
+        """Return the messages that wait, in an order that does not depend on the network."""
+        waiting, self._waiting = self._waiting or [], None
+        return sorted(waiting, key=lambda event: str(event["topic"]))
+
+    def _deliver(self, events: Sequence[Event]) -> None:
+        for event in events:
+            self._ros.bus.publish(event["topic"], self._latest[event["topic"]])
+
+    def _run_nodes(self, until: int) -> None:
+        if until > self._ros.scheduler.time:
+            self._ros.step(seconds(until - self._ros.scheduler.time))
+
+    def _call(self, call: Call) -> None:
+        """Call a service and wait for the answer."""
+        self._calls += 1
+        number = self._calls
+        self._client.do("call", id=number, service=call.service, request=dict(call.request))
+        self._wait(lambda: number in self._answers, self.setup.patience, lambda: self._unanswered(call))
+        answer = self._answers.pop(number)
+        if "error" in answer:
+            raise SimulatorLostError(f"The simulator's service {call.service} failed: {answer['error']}")
+
+    def _wait(self, done: Callable[[], bool], limit: float, late: Callable[[], SimulatorError]) -> None:
+        """Handle events until a condition holds. Raise the error of `late` after `limit` s without progress."""
+        deadline, progress = monotonic() + limit, self._time
+        while not done():
+            self._next(0.2)
+            if self._time > progress:
+                deadline, progress = monotonic() + limit, self._time
+            if monotonic() > deadline:
+                raise late()
+
+    def _next(self, limit: float) -> Event | None:
+        try:
+            event = self._client.events.get(timeout=limit)
+        except queue.Empty:
+            return None
+        if self._current or event["kind"] in ("stopped", "gone"):
+            getattr(self, f"_on_{event['kind']}")(event)
+        return event
+
+    def _on_clock(self, event: Event) -> None:
+        if self._clock is not None and event["time"] < self._clock and self._waiting is None:
+            raise SimulatorLostError(
+                f"{self.setup.clock} went back from {self.clock:g} s to {seconds(event['time']):g} s during an "
+                "episode: something else reset the simulator."
+            )
+        self._clock = event["time"]
+        if self._waiting is None:
+            self._run_nodes(self._time)
+
+    def _on_message(self, event: Event) -> None:
+        topic, (package, _, name) = event["topic"], event["type"].split("/")
+        kind = find_class("ros2", package, name)
+        if kind is None:
+            raise unknown_type(package, name)
+        self._latest[topic] = filled(kind(), event["data"], _message_class)
+        self._heard[topic] += 1
+        if self._waiting is None:
+            self._ros.bus.publish(topic, self._latest[topic])
+        else:
+            self._waiting = [*(one for one in self._waiting if one["topic"] != topic), event]
+
+    def _on_graph(self, event: Event) -> None:
+        self._graph = {name: {*event[name]} for name in self._graph}
+
+    def _on_answer(self, event: Event) -> None:
+        self._answers[event["id"]] = event
+
+    def _on_stopped(self, _: Event) -> None:
+        self._current = True
+
+    def _on_failed(self, event: Event) -> None:
+        raise SimulatorError(
+            f"The simulator {self.setup.shown} cannot be started ({event['reason']}): check the command of "
+            "tarl.external."
+        )
+
+    def _on_ended(self, event: Event) -> None:
+        early = not self._ready()
+        kind = SimulatorError if early else SimulatorLostError
+        when = "before it was ready" if early else f"at {self.clock:g} s of its time"
+        raise kind(
+            f"The simulator {self.setup.shown} ended with status {event['status']} {when}{self._words()}."
+        )
+
+    def _on_gone(self, _: Event) -> None:
+        raise SimulatorLostError(f"The process that keeps the simulator has ended{self._words()}.")
+
+    def _unready(self) -> SimulatorError:
+        missing = [one for one in self.setup.ready if one not in {*self._graph["subscribed"], *self._heard}]
+        what = f"no message on {missing[0]}" if missing else f"no time on {self.setup.clock}"
+        there = ", ".join(sorted(self._graph["published"])) or "nothing"
+        return SimulatorError(
+            f"The simulator {self.setup.shown} was not ready after {self.setup.timeout:g} s: {what}; it publishes "
+            f"{there}. Check `ready` and `clock`, or raise `timeout`{self._words()}."
+        )
+
+    def _hung(self) -> SimulatorError:
+        return SimulatorLostError(
+            f"The simulator {self.setup.shown} hung at {self.clock:g} s of its time: nothing new came within "
+            f"{self.setup.patience:g} s{self._words()}."
+        )
+
+    def _unanswered(self, call: Call) -> SimulatorError:
+        return SimulatorLostError(
+            f"The simulator did not answer on {call.service} within {self.setup.patience:g} s{self._words()}."
+        )
+
+    def _words(self) -> str:
+        words = self._client.last_words()
+        return f"; its last output: {words}" if words else ""
+
+
+def _message_class(package: str, name: str) -> Any:
+    found = find_class("ros2", package, name)
+    if found is None:
+        raise unknown_type(package, name)
+    return found
+
+
+def _in_ros2(message: Any) -> Any:
+    """Return a node's message in its ROS 2 class."""
+    if hasattr(message, "get_fields_and_field_types"):
+        return message
+    package, _, name = type_name(type(message)).partition("/")
+    return snapshot(message, _message_class(package, name))

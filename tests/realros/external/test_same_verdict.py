@@ -1,0 +1,41 @@
+"""One test on the in-process ROS, on real rclpy in lock-step, and against an external simulator: the same verdict."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from importlib.machinery import PathFinder
+from pathlib import Path
+
+import pytest
+
+from tests.realros.external.tank_project import write
+
+pytestmark = pytest.mark.skipif(
+    PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
+)
+KINDS = {"in-process": (), "lock-step": ("--tarl-ros=real",), "external": ()}
+
+
+def run(folder: Path, *options: str) -> str:
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *options]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600)
+    return done.stdout + done.stderr
+
+
+def test_three_worlds_give_the_same_verdict(tmp_path: Path) -> None:
+    verdicts = {}
+    for kind, flags in KINDS.items():
+        folder = write(tmp_path / kind, external=kind == "external")
+        told = run(folder, "--tarl-record", "--tarl-episodes=4", *flags)
+        assert "1 passed" in told, told
+        assert "not reproducible" not in told
+        told = run(folder, "--tarl-online", "--tarl-episodes=4", *flags)
+        (path,) = (folder / ".tarl" / "results").glob("*.json")
+        found = json.loads(path.read_text())
+        verdicts[kind] = found["verdict"]
+    inside, outside = verdicts["in-process"], verdicts["external"]
+    assert verdicts["lock-step"] == inside
+    assert outside["result"] == inside["result"] == "degraded"
+    assert outside["loss"] == pytest.approx(inside["loss"], rel=0.01)
