@@ -52,7 +52,8 @@ def ingest(order: Order) -> Iterator[Ingested]:
     """
     _check(order)
     fixture = load(order.fixture)
-    into = _Writer(store(order.to), order.version, origin(fixture, order.fixture.read_bytes()), fixture)
+    recording = order.fixture.read_bytes()
+    into = _Writer(store(order.to), order.version, origin(fixture, recording), fixture, recording)
     for log in order.logs:
         robot = named(order, log)
         try:
@@ -63,7 +64,6 @@ def ingest(order: Order) -> Iterator[Ingested]:
             continue
         yield Ingested(log, robot, added, len(rows) - added)
     into.write()
-    into.keep(order.fixture.read_bytes())
 
 
 def named(order: Order, log: Path) -> str:
@@ -82,6 +82,7 @@ class _Writer:
     version: str
     origin: Origin
     fixture: Fixture
+    recording: bytes
     rows: dict[str, list[Row]] = field(default_factory=lambda: defaultdict(list))  # by day
     known: dict[str, dict[int, str]] = field(default_factory=dict)  # day → mission → its robot
     waiting: int = 0
@@ -118,7 +119,9 @@ class _Writer:
         return self.known[day]
 
     def write(self) -> None:
-        """Write the missions that wait, those of each day into files of their own."""
+        """Write the missions that wait, those of each day into files of their own, and before them the recording."""
+        if self.rows and not self.store.holds(kept := f"recordings/{self.origin.recording}.npz"):
+            self.store.write(kept, self.recording)
         for day, rows in sorted(self.rows.items()):
             name, contents = files(rows, self.origin, self.fixture.lists)
             for table in TABLES:
@@ -126,11 +129,6 @@ class _Writer:
                 self.store.write(path, contents[table])
         self.rows.clear()
         self.waiting = 0
-
-    def keep(self, recording: bytes) -> None:
-        """Keep the recording beside the missions, so that `tarl fleet` finds it."""
-        if any(part.origin.recording == self.origin.recording for part in dataset.parts(self.store)):
-            self.store.write(f"recordings/{self.origin.recording}.npz", recording)
 
 
 def _rows(log: Path, fixture: Fixture, robot: str, site: str) -> Iterator[Row]:

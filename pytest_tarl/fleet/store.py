@@ -57,6 +57,13 @@ class Store:
             raise FleetError(f"{self.shown(path)} cannot be read ({problem}): {ADVICE}") from problem
         return content
 
+    def holds(self, path: str) -> bool:
+        """Return whether a file is there. Raise FleetError if the store does not answer."""
+        try:
+            return bool(self.fs.exists(f"{self.root}/{path}"))
+        except Exception as problem:
+            raise FleetError(f"{self.shown(path)} cannot be read ({problem}): {ADVICE}") from problem
+
     def opened(self, path: str) -> Any:
         """Return a file opened for reading at any place."""
         return self.fs.open(f"{self.root}/{path}", "rb")

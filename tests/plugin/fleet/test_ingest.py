@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from random import Random
 
@@ -73,6 +74,23 @@ def test_the_rows_are_the_missions_of_the_logs(tmp_path: Path) -> None:
     assert dates == [("1.2", "1970-01-11"), ("1.2", "1970-01-12"), ("1.2", "1970-01-13")]
 
 
+def test_the_examples_in_the_docs_read_it_without_tarl(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    guide = Path(__file__).parents[3] / "docs" / "howto" / "fleet-logs.md"
+    blocks = [one for one in guide.read_text("utf-8").split("```python\n")[1:] if "fleet/missions" in one]
+    examples = {one.split("import ")[1].split()[0]: one.split("```")[0] for one in blocks}
+    assert {*examples} == {"duckdb", "pandas"}
+    test, logs = world(tmp_path)
+    list(ingest(order(test, logs, tmp_path / "fleet")))
+    monkeypatch.chdir(tmp_path)
+    exec(examples["duckdb"], {})
+    assert "north" in capsys.readouterr().out
+    if find_spec("pandas") is not None:
+        exec(examples["pandas"], {})
+        assert "r2" in capsys.readouterr().out
+
+
 def test_pandas_reads_it_without_tarl(tmp_path: Path) -> None:
     pandas = pytest.importorskip("pandas")
     test, logs = world(tmp_path)
@@ -127,6 +145,8 @@ def test_interrupted_repeated_and_reordered_runs_give_the_same_rows(
             random.shuffle(picked)
             with suppress(Killed):
                 list(ingest(order(test, picked, to)))
+            if any((to / "missions").rglob("*.parquet")):
+                assert any((to / "recordings").iterdir())
         patched.setattr(Store, "write", write)
         random.shuffle(logs)
         list(ingest(order(test, logs, to)))
