@@ -30,7 +30,10 @@ REPAIR = (
 )
 
 
-def test_a_repair_moves_the_boundary_and_can_be_applied(tank: pytest.Pytester) -> None:
+def test_a_repair_moves_the_boundary_and_can_be_applied(
+    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(boundary_repairs, "DRAWS", 10)  # fewer episodes
     changed(tank, "test_tank", "import Sensor", "import Drift, Sensor")
     changed(tank, "test_tank", '{"clogged": 0.25}', SPACE)
     changed(tank, "test_tank", "1.0 if tarl_drift is None else tarl_drift", 'tarl_drift["pump"]')
@@ -40,7 +43,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(tank: pytest.Pytester) -
     told = done.stdout.str()
     assert re.search(r"  repair     pump from 0\.9\d+ to 0\.1: GAIN → ", told)
     assert re.search(r"pump to 0\.1: not beyond 0\.9\d+ → no failure shown", told)
-    before, now = map(int, re.findall(r"(\d+) instead of (\d+) of 60 fresh draws", told)[0][::-1])
+    before, now = map(int, re.findall(r"(\d+) instead of (\d+) of 10 fresh draws", told)[0][::-1])
     assert now > before
     (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")
     tank.run("git", "apply", str(patch))
