@@ -1,6 +1,7 @@
 """The nearest failing drift in four directions, by a stress run and by other searches with the same episodes.
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
+    python benchmarks/stress_dimensions.py --harmless 100           # false failures
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
 
 The worlds of stress_worlds.py are formulas. Each task of benchmarks/drift has its own drift, from the nominal value to
@@ -32,7 +33,7 @@ sys.path[:0] = [str(HERE / "drift"), str(HERE)]
 from peers import Cma  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
 from stress import nominal_of  # noqa: E402
-from stress_worlds import TOLERANCE, WORLDS, Formula  # noqa: E402
+from stress_worlds import TOLERANCE, WORLDS, Formula, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
@@ -56,6 +57,9 @@ RISK = 0.05  # of the test on fresh seeds
 SIZE = "size"
 SCENARIO = "stress"
 LARGEST = 2.0  # no drift of four directions is farther
+FORMULA = Designation(
+    (), (), min_success=0.95, tolerance=TOLERANCE
+)  # the test of a world of stress_worlds.py
 PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
@@ -119,8 +123,7 @@ def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> 
 
 def formula(name: str) -> Arena:
     """Return a world of stress_worlds.py."""
-    marked = Designation((), (), min_success=0.95, tolerance=TOLERANCE)
-    return recorded(name, Formula(WORLDS[name]), world_space(), marked)
+    return recorded(name, Formula(WORLDS[name]), world_space(), FORMULA)
 
 
 def ours(one: Arena, seed: int) -> list[Point]:
@@ -256,6 +259,16 @@ def _shown(value: float | None) -> str:
     return "none" if value is None else f"{value:.3f}"
 
 
+def harmless_runs(runs: int) -> str:
+    """Return in how many runs a failure is reported although nothing in the space breaks the guarantee."""
+    one = recorded("harmless", Formula(harmless), world_space(), FORMULA)
+    false = 0
+    for number in range(1, runs + 1):
+        false += bool(ours(one, number))
+        print(f"{false} of {number}", file=sys.stderr, flush=True)
+    return f"A failure was reported in {false} of {runs} harmless runs."
+
+
 def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
     """Return a task's line: the median distance of each method, and how often ours is at least as near as each."""
     cells = []
@@ -276,7 +289,11 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
+    parser.add_argument("--harmless", type=int, default=0, help="only runs where nothing breaks, so many")
     arguments = parser.parse_args()
+    if arguments.harmless:
+        print(harmless_runs(arguments.harmless))
+        return
     methods: list[str] = arguments.methods
     every: dict[str, list[float | None]] = {method: [] for method in methods}
     print(f"| task | {' | '.join(methods)} |\n|---|{'---|' * len(methods)}")

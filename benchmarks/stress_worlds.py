@@ -61,6 +61,12 @@ def island(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - TOLERANCE * 2.0 * float(np.exp(-((away / 0.3) ** 2))) + draws.normal(0.0, NOISE)
 
 
+def harmless(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose at most 62 % of the tolerated reward, and fail 1 episode in 100 everywhere."""
+    _, total = plane(0.3 * x, draws)
+    return bool(draws.random() < 0.99), total
+
+
 WORLDS: Mapping[str, World] = {one.__name__: one for one in (plane, product, corner, ellipsoid, rare, island)}
 
 

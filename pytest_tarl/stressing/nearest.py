@@ -40,6 +40,7 @@ DEPTHS = (
     9.0,
 )  # predicted margins below 0 of the drifts to confirm, in standard deviations on fresh seeds
 SHALLOW, DEEP = 0.03, 1.2  # limits of these margins
+TRIFLE = 0.15  # a component below this share of the distance is left out of a drift to confirm: noise may explain it
 FARTHEST = 1.6  # in units of the best distance, for confirmation
 
 
@@ -70,7 +71,7 @@ class Nearest:
     def best(self) -> Point | None:
         """Return the nearest drift, tried or on a ray, that fails by the model of all of them; None without one."""
         coordinates = self._nominal()
-        own = [point for point in self._known() if coordinates.covers(point)]
+        own = [point for point in self._known() if coordinates.covers(point) and self._distance(point) > 0.0]
         other = [
             point
             for point in self._known()
@@ -97,7 +98,7 @@ class Nearest:
         coordinates = Coordinates(self.evaluator.space, best)
         if not self._nominal().covers(best):
             return [best]
-        vector, model = coordinates.vector(best), self._model()
+        vector, model = _without_trifles(coordinates.vector(best)), self._model()
         shares = np.linspace(0.9, FARTHEST, 141)
         margins = model.margins(shares[:, None] * vector)
         noise = self.evaluator.noise(best) / sqrt(FRESH[-1])
@@ -106,7 +107,7 @@ class Nearest:
             int(np.argmax(margins <= depth)) if (margins <= depth).any() else len(shares) - 1
             for depth in depths
         ]
-        clearly = [best] if self.evaluator.measured(best)[0] <= -DEEP else []
+        clearly = [coordinates.point(vector)] if self.evaluator.measured(best)[0] <= -DEEP else []
         return [*clearly, *(coordinates.point(vector * shares[place]) for place in dict.fromkeys(places))]
 
     def map(self) -> MarginMap | None:
@@ -204,3 +205,10 @@ class Nearest:
                 coordinates.vector(best) if best is not None else 0.5 * (coordinates.high + coordinates.low)
             )
             evolve(start, SPREAD * (self._distance(best) if best is not None else 1.0), draws, margin)
+
+
+def _without_trifles(vector: Vector) -> Vector:
+    """Return a vector of the same length without its smallest components."""
+    length = float(np.linalg.norm(vector))
+    kept: Vector = np.where(np.abs(vector) < TRIFLE * length, 0.0, vector)
+    return kept * length / float(np.linalg.norm(kept))

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
-from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Stress
+from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # combinations
@@ -69,11 +69,24 @@ def together(stress: Stress) -> Iterator[str]:
     found = sorted(stress.combinations, key=lambda one: (one.distance, one.names))
     for one in found[:MOST_SHOWN]:
         where = of_point(stress.space, one.point)
-        yield f"Fails with {where} (distance {one.distance:.2g}), although each alone holds."
+        yield f"Fails with {where} (distance {one.distance:.2g}){_alone(stress, one)}."
     if len(found) > MOST_SHOWN:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
     if not found and stress.tried:
         yield f"No combination was found that fails although each direction alone holds ({stress.tried} tried)."
+
+
+def _alone(stress: Stress, one: Failure) -> str:
+    """Return the addition that each direction of a failure alone holds, if the search found no failure there."""
+    for curve in stress.curves:
+        (name,) = curve.ray.names
+        extent = stress.space.extents[name]
+        usual = nominal(extent)
+        way, moved = curve.ray.value(1.0) - usual, one.point[name] - usual
+        reached = moved / way if isinstance(extent, Span) else float(moved == way)
+        if reached > 0.0 and (not curve.swept or any(t <= reached + ROUNDING for t in curve.failing)):
+            return ""
+    return ", although each alone holds"
 
 
 def broken_promises(stress: Stress) -> list[str]:

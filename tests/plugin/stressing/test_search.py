@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import sqrt
 
 import jsonschema
@@ -14,6 +15,7 @@ from pytest_tarl import Drift
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import json_result, page, words
+from pytest_tarl.stressing.findings import failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refuted
 from pytest_tarl.stressing.rays import distance, rays
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
@@ -118,6 +120,19 @@ def test_two_directions_that_fail_only_together_are_found() -> None:
     # the true distance is 1.2 / √2, or larger because slope ends at 0.5: (0.7, 0.5)
     assert sqrt(0.7**2 + 0.5**2) * 0.98 <= nearest.distance < sqrt(0.7**2 + 0.5**2) * 1.12
     assert "although each alone holds" in "\n".join(words.together(found))
+
+
+def test_a_combination_whose_direction_fails_alone_is_not_said_to_hold_alone() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        return bool((1.0 - point["mud"]) + abs(point["slope"]) < 0.6), float(draws.normal(1.0, 0.01))
+
+    found = stressed(world, space_of(mud=MUD, slope=SLOPE), budget=800)
+    both = {"mud": 0.3, "slope": 0.2}  # mud = 0.4 fails already
+    told = list(words.together(replace(found, combinations=(failure(found.space, both),))))
+    assert told == ["Fails with mud=0.3 and slope=0.2 (distance 0.73)."]
+    apart = {"mud": 0.6, "slope": 0.3}
+    told = list(words.together(replace(found, combinations=(failure(found.space, apart),))))
+    assert told == ["Fails with mud=0.6 and slope=0.3 (distance 0.5), although each alone holds."]
 
 
 def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
