@@ -251,9 +251,10 @@ def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float])
         share = 100 * counts[-1] / max(1, len(some))
         print(f"| {method} | " + " | ".join(map(str, counts)) + f" | {share:.1f} % |")
     away = [
-        abs(one["since"]["mission"] - 1 - truth[one["robot"]].onset)
+        abs(one[since]["mission"] - 1 - truth[one["robot"]].onset)
         for one in told["robots"]
-        if one["robot"] in named["e-BH, either"] and truth[one["robot"]].onset >= 0 and one.get("since")
+        for since in ["bound_since" if one["robot"] in told["below"] else "world_since"]
+        if one["robot"] in named["e-BH, either"] and truth[one["robot"]].onset >= 0
     ]
     if away:
         print(

@@ -9,7 +9,7 @@ from typing import Any
 
 from pytest_tarl.fleet.groups import Group
 from pytest_tarl.fleet.question import Answer
-from pytest_tarl.fleet.robots import Robot
+from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
 
@@ -77,16 +77,17 @@ def _robot(one: Robot) -> dict[str, Any]:
         "bound": one.bound,
     }
     if one.status is not None:
-        found["since"] = _since(one.status.world)
+        found["world_since"] = _since(one.status.world)
+        found["bound_since"] = _since(lower(one.status))
         found["cells"] = [list(cell) for cell in one.status.cells]
         found["new"] = [list(cell) for cell in one.status.new]
     return found
 
 
-def _since(evidence: Evidence) -> dict[str, Any] | None:
-    return (
-        None if evidence.since is None else {"mission": evidence.since.mission, "time": evidence.since.time}
-    )
+def _since(evidence: Evidence | None) -> dict[str, Any] | None:
+    if evidence is None or evidence.since is None:
+        return None
+    return {"mission": evidence.since.mission, "time": evidence.since.time}
 
 
 def _finite(value: float) -> float | None:

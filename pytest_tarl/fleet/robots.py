@@ -20,7 +20,7 @@ from pytest_tarl.learning.tables import Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
-from pytest_tarl.monitoring.status import Status, status
+from pytest_tarl.monitoring.status import Evidence, Status, status
 from pytest_tarl.sensors import Cell
 
 PORTION = 50_000  # missions read together
@@ -133,3 +133,9 @@ def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: ob
     share = np.asarray(weight, np.float64)
     largest = float(log_evidence.max())
     return largest + float(np.log2(np.exp2(log_evidence - largest) @ (share / share.sum())))
+
+
+def lower(found: Status) -> Evidence | None:
+    """Return the evidence against the bound that has most of it; None if no bound can be tested."""
+    told = [evidence for _, evidence in found.bounds if evidence is not None]
+    return max(told, key=lambda evidence: evidence.highest, default=None)

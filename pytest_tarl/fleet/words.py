@@ -7,7 +7,7 @@ from datetime import datetime, timezone
 
 from pytest_tarl.fleet.groups import MOST, Group
 from pytest_tarl.fleet.question import Answer
-from pytest_tarl.fleet.robots import Robot
+from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
 from pytest_tarl.report.regions import Vocabulary
@@ -33,7 +33,7 @@ def lines(answer: Answer) -> Iterator[str]:
     sure = " plus the risk that a recorded bound is wrong"
     yield from _named(answer, found.below, "missions are below a recorded bound", sure)
     for one in found.below[:NAMED]:
-        yield _robot(one, one.bound, _lower(one), words)
+        yield _robot(one, one.bound, lower(one.status) if one.status else None, words)
     if answer.lowest:
         yield ""
         yield f"missions of {question.robot} with the lowest reward"
@@ -91,12 +91,6 @@ def _robot(one: Robot, log2: float, evidence: Evidence | None, words: Vocabulary
     if one.status is not None and one.status.cells:
         text += f", {words.words(one.status.cells)}"
     return text
-
-
-def _lower(one: Robot) -> Evidence | None:
-    """Return the evidence against the bound that has most of it."""
-    told = [evidence for _, evidence in one.status.bounds if evidence is not None] if one.status else []
-    return max(told, key=lambda evidence: evidence.highest, default=None)
 
 
 def _evidence(log2: float) -> str:

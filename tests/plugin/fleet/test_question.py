@@ -211,6 +211,7 @@ def test_the_command_reports_and_fails_by_its_rules(
     assert "r3: " in out
     told = json.loads(result.read_text())
     assert told["below"] == [DRIFTED]
+    assert abs(told["robots"][3]["bound_since"]["mission"] - 41) <= 3
     assert main(["fleet", data, "--robot", "r0", "--fail-if", "robot", "--fail-if", "drifted"]) == 0
     assert "missions of r0 with the lowest reward" in capsys.readouterr().out
     assert main(["fleet", data, "--fail-if", "robot", "--json", "-"]) == 1
