@@ -12,7 +12,7 @@ from pytest_tarl.stressing.svg_text import INK, svg_text
 SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130  # px: of the map, and the margins around it
 COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # backgrounds of dark marks
 NAMES = {"holds": "holds", "unsure": "undecided", "fails": "fails"}
-SURE = 1.645  # standard deviations from margin 0 at which a cell is decided, 95 % one-sided
+SURE = 2.0  # standard deviations of the prediction from margin 0, below which a cell is drawn as undecided
 
 
 def map_figure(stress: Stress) -> str:

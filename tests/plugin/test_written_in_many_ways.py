@@ -144,4 +144,7 @@ def test_an_interrupt_between_episodes_keeps_the_old_recording_only(
     assert run.returncode == pytest.ExitCode.INTERRUPTED, told
     assert "KeyboardInterrupt" in told
     assert fixture_file(tank).read_bytes() == before
-    assert sorted(path for path in tank.path.rglob("*") if "__pycache__" not in path.parts) == files
+    unfinished = tank.path / ".tarl" / "unfinished"
+    left = [path for path in tank.path.rglob("*") if not {"__pycache__", "unfinished"} & {*path.parts}]
+    assert sorted(left) == files
+    assert [path.suffix for path in unfinished.iterdir()] == [".episodes"]

@@ -45,7 +45,7 @@ def test_the_map_shows_the_two_most_important_directions_with_the_true_boundary(
                 assert told in ("unsure", "holds" if true > 0.0 else "fails")
     assert "over a and b" in map_words(found())
     held = float(re.findall(r"holds in (\d+) %", map_words(found()))[0])
-    assert 25 < held < 50  # the true share is 42 %
+    assert 20 < held < 50  # the true share is 42 %, of which cells near the boundary are undecided
 
 
 def test_the_tornado_has_the_most_important_direction_on_top() -> None:
