@@ -262,7 +262,7 @@ def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> Non
     (worn.path / "test_again.py").write_text(test.replace("test_fills", "test_fills_again"))
     changed(worn, "test_tank", 'nodes=["keeper.py"]', 'nodes=["keeper.py", "settings.py"]')
     worn.runpytest(*RECORD).assert_outcomes(passed=2, deselected=2)
-    done = worn.runpytest(*REPAIR)
+    done = worn.runpytest(*REPAIR, "--tarl-budget=40")
     told = " ".join(done.stdout.str().split())
     assert "GAIN at settings.py:1 is also used by tool.py" in told
     (patch,) = worn.path.glob(".tarl/patches/test-tank-*.patch")

@@ -165,7 +165,9 @@ def test_{name}(tarl, shared):
 def test_another_recorded_test_of_the_node_must_not_lose(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_pipe=TEST[: TEST.index("@pytest")] + NEIGHBOUR.format(name="pipe", most=2.3))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
-    done = tank.runpytest("--tarl-online", "--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=12")
+    done = tank.runpytest(
+        "--tarl-online", "--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=12", "--tarl-budget=90"
+    )
     done.assert_outcomes(failed=1, deselected=2)
     told = " ".join(done.stdout.str().split())
     assert not result(tank)["repair"]["accepted"]
@@ -219,11 +221,12 @@ def test_a_plugged_in_search_is_reproducible(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine=OWN)
     tank.runpytest(*RECORD)
     told = tank.path / "told"
-    tank.runpytest(*REPAIR, "--tarl-search=mine:Draws").assert_outcomes(failed=1, deselected=1)
+    search = (*REPAIR, "--tarl-search=mine:Draws")
+    tank.runpytest(*search).assert_outcomes(failed=1, deselected=1)
     assert result(tank)["repair"]["accepted"]
     first, found = told.read_text(), result(tank)
     told.unlink()
-    tank.runpytest(*REPAIR, "--tarl-search=mine:Draws")
+    tank.runpytest(*search)
     assert told.read_text() == first
     assert result(tank) == found
 

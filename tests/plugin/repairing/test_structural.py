@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from tests.plugin.tank import RECORD, result
 
 REPAIR = ("--tarl-online", "--tarl-episodes=10", "--tarl-repair")
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 NODE = """\
 import rospy
 from std_msgs.msg import Float64
@@ -128,14 +130,14 @@ def prepared(pytester: pytest.Pytester, case: str) -> None:
     pytester.runpytest(*RECORD).assert_outcomes(passed=1)
 
 
-@pytest.mark.parametrize(
-    ("case", "words"),
-    [
-        ("sign", ("turn the sign of",)),
-        ("limit", ("limit", "at most", "smooth")),
-        ("integral", ("the sum of",)),
-    ],
-)
+REPAIRED = [
+    ("sign", ("turn the sign of",)),
+    ("limit", ("limit", "at most", "smooth")),
+    ("integral", ("the sum of",)),
+]
+
+
+@pytest.mark.parametrize(("case", "words"), REPAIRED if SLOW else REPAIRED[:1])
 def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
     pytester: pytest.Pytester, case: str, words: tuple[str, ...]
 ) -> None:
@@ -152,13 +154,15 @@ def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
     pytester.runpytest(*RECORD, "--tarl-drift=changed").assert_outcomes(passed=1)
 
 
+@pytest.mark.skipif(not SLOW, reason="a quarter of a minute of CPU time: set TARL_SLOW=1")
 def test_the_search_can_be_limited_to_constants(pytester: pytest.Pytester) -> None:
     prepared(pytester, "sign")
-    done = pytester.runpytest(*REPAIR, "--tarl-constants")
+    done = pytester.runpytest(*REPAIR, "--tarl-constants", "--tarl-budget=60")
     assert not result(pytester)["repair"]["accepted"]
     done.stdout.fnmatch_lines(["*--tarl-constants*"])
 
 
+@pytest.mark.skipif(not SLOW, reason="a quarter of a minute of CPU time: set TARL_SLOW=1")
 def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     prepared(pytester, "sign")
     folder = pytester.mkdir("tarl_templates")
@@ -168,7 +172,7 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     done = pytester.runpytest(*REPAIR)
     assert "mirror msg.data" in " ".join(done.stdout.str().split())
     (folder / "mirrored.toml").write_text("summary = 3")
-    done = pytester.runpytest(*REPAIR)
+    done = pytester.runpytest(*REPAIR, "--tarl-budget=60")
     assert "mirrored.toml: not a template" in " ".join(done.stdout.str().split())
 
 
