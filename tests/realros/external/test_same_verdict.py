@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from importlib.machinery import PathFinder
@@ -12,9 +13,14 @@ import pytest
 
 from tests.realros.external.tank_project import write
 
-pytestmark = pytest.mark.skipif(
-    PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
-)
+pytestmark = [
+    pytest.mark.skipif(
+        PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
+    ),
+    pytest.mark.skipif(
+        not os.environ.get("TARL_SLOW"), reason="twenty seconds in real time: set TARL_SLOW=1"
+    ),
+]
 KINDS = {"in-process": (), "lock-step": ("--tarl-ros=real",), "external": ()}
 
 
