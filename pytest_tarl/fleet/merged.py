@@ -74,7 +74,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
     differing = {
         "test": (design.test, other.test),
         "sensors or bins": (design.sensors, other.sensors),
-        "statements": (_sites(design), _sites(other)),
+        "statements": (design.statements, other.statements),
         "signals": (design.signals, other.signals),
         "permanent drifts": (design.design, other.design),
     }
@@ -84,10 +84,6 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
             f"{path} and {first} cannot be merged: they differ in their {' and '.join(found)}.",
             "Merge recordings of the same test, node and sensors; record the older one again.",
         )
-
-
-def _sites(fixture: Fixture) -> list[tuple[str, str, list[str]]]:
-    return [(one.source, one.sink, [place.id for place in one.sites]) for one in fixture.lists]
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:

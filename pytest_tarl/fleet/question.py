@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import Origin, origin
 from pytest_tarl.fleet.store import Store, store
-from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.sensors import Cell
 
 LOWEST = 10  # missions of one robot listed
@@ -104,8 +103,8 @@ def answer(question: Question) -> Answer:
 
 
 def _lowest(database: Database) -> tuple[Mission, ...]:
-    rows = database.names("SELECT time, passed, total, steps FROM missions ORDER BY total, number")
-    return tuple(Mission(*row) for row in rows[:LOWEST])
+    query = f"SELECT time, passed, total, steps FROM missions ORDER BY total, number LIMIT {LOWEST}"  # noqa: S608
+    return tuple(Mission(*row) for row in database.names(query))
 
 
 def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
@@ -124,11 +123,9 @@ def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple
     for part in parts:
         count[part.origin.recording] += part.missions
     digest = min(count, key=lambda one: (-count[one], one))
-    content = where.read(f"recordings/{digest}.npz")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{digest}.npz"
-        path.write_bytes(content)
-        fixture = load(path)
+    path = f"recordings/{digest}.npz"
+    content = where.read(path)
+    fixture = parsed(content, where.shown(path))
     return fixture, origin(fixture, content)
 
 

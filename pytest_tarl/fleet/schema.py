@@ -84,7 +84,7 @@ class Origin:
 
 def origin(fixture: Fixture, content: bytes) -> Origin:
     """Return the digests of a recording; `content` are the bytes of its file."""
-    sites = json.dumps([[one.source, one.sink, [place.id for place in one.sites]] for one in fixture.lists])
+    sites = json.dumps(fixture.statements)
     return Origin(
         fixture.test,
         binning_digest(fixture.sensors),

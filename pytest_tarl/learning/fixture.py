@@ -43,6 +43,7 @@ from pytest_tarl.sensors import Sensor
 
 FORMAT_VERSION = 2
 HEADER = "header"
+RECORD_AGAIN = "Record it again with `pytest --tarl-record`."
 TUPLES = ("categories", "edges")  # fields of a sensor that are lists in JSON
 
 
@@ -64,6 +65,11 @@ class Fixture:
     world: Mapping[str, Mapping[str, str]] = field(
         default_factory=dict
     )  # file → definition → digest, see modules_of_tests.py
+
+    @property
+    def statements(self) -> list[tuple[str, str, list[str]]]:
+        """Return source, sink and the ids of the statements of each taint list."""
+        return [(one.source, one.sink, [place.id for place in one.sites]) for one in self.lists]
 
 
 def save(fixture: Fixture, path: Path) -> None:
@@ -114,15 +120,24 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 def load(path: Path) -> Fixture:
     """Read a recording. Raise FixtureError if it is missing, damaged or of another format."""
-    advice = "Record it again with `pytest --tarl-record`."
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise FixtureError(f"{path}: no such recording.", advice) from None
+        raise FixtureError(f"{path}: no such recording.", RECORD_AGAIN) from None
     except IsADirectoryError:
         raise FixtureError(f"{path} is a folder.", "Name a file in it, such as NAME.npz.") from None
     except OSError as problem:
-        raise FixtureError(f"The recording {path} cannot be read: {problem.strerror}.", advice) from problem
+        raise FixtureError(
+            f"The recording {path} cannot be read: {problem.strerror}.", RECORD_AGAIN
+        ) from problem
+    return parsed(content, str(path))
+
+
+def parsed(content: bytes, path: str) -> Fixture:
+    """Return the recording in a file's content; `path` names it in messages.
+
+    Raise FixtureError if it is damaged or of another format.
+    """
     try:
         columns = read_arrays(content)
         header = json.loads(numbers(columns, HEADER, None).tobytes().decode())
@@ -149,7 +164,7 @@ def load(path: Path) -> Fixture:
     try:
         if header.pop("digest", None) != _digest(header, columns):
             raise FixtureError(
-                f"The recording {path} is damaged: its digest does not match its content.", advice
+                f"The recording {path} is damaged: its digest does not match its content.", RECORD_AGAIN
             )
         with np.errstate(all="ignore"):
             fixture = _fixture(header, columns)
@@ -159,7 +174,7 @@ def load(path: Path) -> Fixture:
     except Exception as problem:  # a matching digest does not make the content valid
         raise FixtureError(
             f"The recording {path} is not valid in format {FORMAT_VERSION}{_why(problem)}.",
-            advice,
+            RECORD_AGAIN,
         ) from problem
     return fixture
 

@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.errors import FleetError
+from pytest_tarl.errors import FixtureError, FleetError
 from pytest_tarl.fleet import document, groups, ingest, robots
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
@@ -263,3 +263,12 @@ def test_files_that_are_incomplete_or_foreign_are_named(folder: Path, tmp_path: 
         pq.write_table(table.replace_schema_metadata(about), mission)
         with pytest.raises(FleetError, match=said):
             answer(Question(str(to)))
+
+
+def test_a_damaged_recording_of_the_data_set_is_named_by_its_place(folder: Path, tmp_path: Path) -> None:
+    to = tmp_path / "data"
+    add(folder, [0], to)
+    recording = min((to / "recordings").glob("*.npz"))
+    recording.write_bytes(recording.read_bytes()[:-20])
+    with pytest.raises(FixtureError, match=rf"recordings/{recording.name} is damaged"):
+        answer(Question(str(to)))
