@@ -7,21 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from pytest_tarl.learning import drift
 from pytest_tarl.learning.bounds import detectable_loss
-from pytest_tarl.learning.drift import judged
-from pytest_tarl.learning.multiple_testing import holm
 from pytest_tarl.learning.permutation import least_p_value, permutations_for
 from pytest_tarl.model import Comparison, Region, Verdict
 
 
 def corrected(comparisons: Sequence[Comparison], alpha: float) -> list[Comparison]:
     """Return the comparisons of one run with p-values and verdicts corrected by Holm's method."""
-    verdicts = [one.verdict for one in comparisons]
-    count = len(comparisons)
-    p_drift, p_loss = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_loss"))
+    verdicts = drift.corrected([one.verdict for one in comparisons], alpha)
     return [
-        _with_verdict(one, judged(replace(one.verdict, p_drift=drift, p_loss=loss), alpha), count, alpha)
-        for one, drift, loss in zip(comparisons, p_drift, p_loss, strict=True)
+        _with_verdict(one, verdict, len(comparisons), alpha)
+        for one, verdict in zip(comparisons, verdicts, strict=True)
     ]
 
 

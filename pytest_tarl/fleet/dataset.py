@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -79,16 +80,12 @@ def _columns(where: Store, path: str, names: Sequence[str]) -> Any:
         return pq.read_table(file, columns=list(names))
 
 
-class _readable:  # noqa: N801 - a context manager
-    def __init__(self, where: Store, path: str) -> None:
-        self.shown = where.shown(path)
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, _kind: object, problem: object, _trace: object) -> None:
-        if isinstance(problem, (pa.ArrowInvalid, OSError)):
-            raise FleetError(
-                f"{self.shown} is damaged or cannot be read ({str(problem).splitlines()[0]}): delete it and ingest its "
-                "logs again."
-            ) from problem
+@contextmanager
+def _readable(where: Store, path: str) -> Iterator[None]:
+    try:
+        yield
+    except (pa.ArrowInvalid, OSError) as problem:
+        raise FleetError(
+            f"{where.shown(path)} is damaged or cannot be read ({str(problem).splitlines()[0]}): delete it and ingest "
+            "its logs again."
+        ) from problem

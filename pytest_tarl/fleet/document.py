@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import asdict
 from typing import Any
 
@@ -12,6 +11,7 @@ from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
+from pytest_tarl.report.json_result import finite
 
 FORMAT = 1
 
@@ -64,7 +64,7 @@ def _group(one: Group) -> dict[str, Any]:
 
 
 def _bound(one: Bound) -> dict[str, Any]:
-    ends = {"low": _finite(one.low), "high": _finite(one.high)}
+    ends = {"low": finite(one.low), "high": finite(one.high)}
     return ends | {"confidence": one.confidence, "method": one.method, "exact": one.exact}
 
 
@@ -88,7 +88,3 @@ def _since(evidence: Evidence | None) -> dict[str, Any] | None:
     if evidence is None or evidence.since is None:
         return None
     return {"mission": evidence.since.mission, "time": evidence.since.time}
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

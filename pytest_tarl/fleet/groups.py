@@ -10,11 +10,9 @@ import numpy as np
 from pytest_tarl.fleet import samples
 from pytest_tarl.fleet.database import Database
 from pytest_tarl.learning.bounds import Range, mean_of, rate
-from pytest_tarl.learning.drift import Difference, compare
-from pytest_tarl.learning.drift import judged as with_result
+from pytest_tarl.learning.drift import Difference, compare, corrected
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
-from pytest_tarl.learning.multiple_testing import holm
 from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Bound, Region, Verdict
@@ -119,13 +117,10 @@ def _declared(fixture: Fixture) -> Range | None:
 
 
 def _corrected(groups: Sequence[Group], alpha: float) -> tuple[Group, ...]:
-    verdicts = [one.verdict for one in groups if one.verdict is not None]
-    p_drift, p_loss = (iter(holm([getattr(one, name) for one in verdicts])) for name in ("p_drift", "p_loss"))
-    found = []
-    for one in groups:
-        if one.verdict is not None:
-            verdict = with_result(replace(one.verdict, p_drift=next(p_drift), p_loss=next(p_loss)), alpha)
-            region = one.region if verdict.result != "no difference" else Region()
-            one = replace(one, verdict=verdict, region=region)
-        found.append(one)
-    return tuple(found)
+    verdicts = iter(corrected([one.verdict for one in groups if one.verdict is not None], alpha))
+    return tuple(one if one.verdict is None else _with_verdict(one, next(verdicts)) for one in groups)
+
+
+def _with_verdict(group: Group, verdict: Verdict) -> Group:
+    region = group.region if verdict.result != "no difference" else Region()
+    return replace(group, verdict=verdict, region=region)

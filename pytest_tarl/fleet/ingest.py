@@ -12,10 +12,11 @@ from pathlib import Path
 from pytest_tarl.errors import LogError, SettingsError
 from pytest_tarl.fleet import dataset
 from pytest_tarl.fleet.logged_samples import logged_samples
-from pytest_tarl.fleet.rows import Row, files, valid
+from pytest_tarl.fleet.rows import Row, files
 from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.monitoring.assembling import valid_time
 
 TOGETHER = 20_000  # missions held in memory until they are written
 FOLDER, FILE = "{folder}", "{file}"
@@ -133,7 +134,7 @@ class _Writer:
 
 def _rows(log: Path, fixture: Fixture, robot: str, site: str) -> Iterator[Row]:
     for time, sample in logged_samples(log, fixture):
-        yield Row(robot, site, valid(time), sample)
+        yield Row(robot, site, valid_time(time), sample)
 
 
 def _check(order: Order) -> None:

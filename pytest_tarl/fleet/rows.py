@@ -16,8 +16,6 @@ from pytest_tarl.fleet.schema import SCHEMAS, Origin, metadata, name_of
 from pytest_tarl.learning.tables import END, START, Sample
 from pytest_tarl.model import TaintList
 
-LATEST = 1e11  # seconds since 1970; later times come from a wrong clock
-
 
 @dataclass(frozen=True)
 class Row:
@@ -37,11 +35,6 @@ class Row:
     def date(self) -> str:
         """Return its day in UTC; 1970-01-01 if the clock was wrong."""
         return date(self.time)
-
-
-def valid(time: float) -> float:
-    """Return seconds since 1970, 0 if a clock was wrong."""
-    return time if 0.0 <= time < LATEST else 0.0
 
 
 def date(time: float) -> str:
@@ -161,9 +154,7 @@ def _codes(codes: Any, names: Sequence[str]) -> Any:
 
 
 def _named(names: Sequence[str]) -> Any:
-    distinct = sorted(set(names))
-    number = {name: place for place, name in enumerate(distinct)}
-    return _codes(np.array([number[name] for name in names], np.int64), distinct)
+    return _codes(np.arange(len(names)), names)
 
 
 def _repeated(rows: Sequence[Row], sizes: Sequence[int]) -> Any:

@@ -43,11 +43,10 @@ class Store:
                 write_atomically(Path(self.root) / path, content)
             else:
                 self.fs.pipe_file(f"{self.root}/{path}", content)
-        except OSError as problem:
-            advice = advice_on(problem) if self.protocol == "file" else ADVICE
-            raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {advice}") from problem
         except Exception as problem:
-            raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {ADVICE}") from problem
+            local = self.protocol == "file"
+            advice = advice_on(problem) if local and isinstance(problem, OSError) else ADVICE
+            raise FleetError(f"{self.shown(path)} cannot be written ({problem}): {advice}") from problem
 
     def read(self, path: str) -> bytes:
         """Return the content of a file. Raise FleetError if it cannot be read."""

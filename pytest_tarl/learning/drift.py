@@ -17,6 +17,7 @@ from pytest_tarl.learning.bounds import Range, detectable_loss, loss_between
 from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.multiple_testing import holm
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
@@ -88,6 +89,15 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
     elif verdict.p_drift < alpha:
         result = "drifted"
     return replace(verdict, result=result)
+
+
+def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
+    """Return the verdicts of several comparisons with p-values and results corrected by Holm's method."""
+    p_drift, p_loss = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_loss"))
+    return [
+        judged(replace(one, p_drift=drift, p_loss=loss), alpha)
+        for one, drift, loss in zip(verdicts, p_drift, p_loss, strict=True)
+    ]
 
 
 def loss_bounds(

@@ -103,7 +103,7 @@ class Assembly:
         else:
             steps = self._steps(json.loads(cells), cell, reward)
             self._text = cells
-        return self._ended(passed == b"true", _time(time), [steps], spot)
+        return self._ended(passed == b"true", valid_time(time), [steps], spot)
 
     def _ended(self, passed: bool, time: float, steps: list[Steps], spot: Spot) -> Mission:
         """Return a mission that ends with the record at this spot."""
@@ -116,7 +116,7 @@ class Assembly:
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":
-            self._mission = _time(record["time"]), []
+            self._mission = valid_time(record["time"]), []
             if not torn and (before is None or before == self._last):
                 return  # a mission begins where the last one ended
             last = before
@@ -144,7 +144,7 @@ def _new(steps: Sequence[Steps]) -> tuple[Cell, ...]:
     return tuple(sorted(found))
 
 
-def _time(told: float | bytes) -> float:
+def valid_time(told: float | bytes) -> float:
     """Return seconds since 1970; 0 if a clock was wrong."""
     time = float(told)
     return time if 0.0 <= time < LATEST else 0.0

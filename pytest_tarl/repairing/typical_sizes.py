@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.learning.tables import START, Sample
 from pytest_tarl.patching.document import document
 from pytest_tarl.repairing.request import Order
@@ -36,8 +37,8 @@ class TypicalSizes:
     def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
         """Return the size that follows from the sizes of the parts; of a sum, the largest; None if unknown."""
         if isinstance(node, ast.Constant):
-            number = isinstance(node.value, int | float) and not isinstance(node.value, bool)
-            return abs(float(node.value)) if number else None  # type: ignore[arg-type]
+            number = finite_number(node.value)
+            return None if number is None else abs(number)
         if isinstance(node, ast.UnaryOp):
             return self._estimated(site, node.operand)
         if isinstance(node, ast.BinOp):

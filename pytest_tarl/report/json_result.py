@@ -64,13 +64,13 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
         "drift": comparison.drift,
         "seed": comparison.seed,
         "episodes": {name: int(episodes.get(name, 0)) for name in COUNTED},
-        "atr": {world: _finite(atr(comparison, world)) for world in WORLDS},
+        "atr": {world: finite(atr(comparison, world)) for world in WORLDS},
         "verdict": {
             "result": verdict.result,
-            "p_drift": _finite(verdict.p_drift),
-            "p_loss": _finite(verdict.p_loss),
-            "loss": _finite(verdict.loss),
-            "detectable_loss": _finite(verdict.detectable_loss),
+            "p_drift": finite(verdict.p_drift),
+            "p_loss": finite(verdict.p_loss),
+            "loss": finite(verdict.loss),
+            "detectable_loss": finite(verdict.detectable_loss),
         },
         "bounds": {
             world: _guarantee(comparison.stated.get(world))
@@ -96,8 +96,8 @@ def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
             "part": row.band.part,
             "low": row.band.low,
             "high": row.band.high,
-            "online": _finite(row.before),
-            "repaired": _finite(row.after),
+            "online": finite(row.before),
+            "repaired": finite(row.after),
         }
         for row in size_rows(comparison)
     ]
@@ -120,7 +120,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
         return [sensor.categories[first], sensor.categories[last]]
     if not sensor.numeric:
         return [first, last]
-    return [_finite(round(end, 9)) for end in sensor.interval(first, last)]
+    return [finite(round(end, 9)) for end in sensor.interval(first, last)]
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
@@ -146,7 +146,7 @@ def _site(one: Slice) -> dict[str, Any]:
     return {
         **_place(one.site),
         "code": one.site.code,
-        **{name: _finite(value) for name, value in figures.items()},
+        **{name: finite(value) for name, value in figures.items()},
     }
 
 
@@ -154,24 +154,24 @@ def _culprit(culprit: Culprit) -> dict[str, Any]:
     operands = [
         {
             "code": one.code,
-            "value": _finite(one.value),
-            "best": _finite(expected(one.best)),
-            "effect": _finite(one.effect),
+            "value": finite(one.value),
+            "best": finite(expected(one.best)),
+            "effect": finite(one.effect),
         }
         for one in culprit.operands
     ]
-    evidence = {"score": _finite(culprit.score), "method": culprit.method, "operands": operands}
+    evidence = {"score": finite(culprit.score), "method": culprit.method, "operands": operands}
     return {**_place(culprit.site), **evidence}
 
 
 def _formula(row: FormulaRow) -> dict[str, Any]:
     worlds = {
         name: {
-            "robustness": _finite(world.robustness),
-            "least": _finite(world.least),
+            "robustness": finite(world.robustness),
+            "least": finite(world.least),
             "episodes": world.episodes,
             "violated": world.violated,
-            "first_violation": _finite(world.first),
+            "first_violation": finite(world.first),
         }
         for name, world in row.worlds.items()
     }
@@ -180,7 +180,7 @@ def _formula(row: FormulaRow) -> dict[str, Any]:
 
 def _repair(repair: Repair) -> dict[str, Any]:
     edits = [
-        {"path": edit.path, "line": edit.line, "code": edit.code, "value": _finite(edit.value)}
+        {"path": edit.path, "line": edit.line, "code": edit.code, "value": finite(edit.value)}
         for edit in repair.edits
     ]
     tried = [_tried(attempt) for attempt in repair.history]
@@ -198,10 +198,10 @@ def _partial(partial: Partial) -> dict[str, Any]:
     return {
         "what": partial.what,
         "patch": partial.patch,
-        "gain": _finite(partial.gain),
-        "low": _finite(partial.low),
-        "designed": _finite(partial.designed),
-        "designed_low": _finite(partial.designed_low),
+        "gain": finite(partial.gain),
+        "low": finite(partial.low),
+        "designed": finite(partial.designed),
+        "designed_low": finite(partial.designed_low),
     }
 
 
@@ -210,7 +210,7 @@ def _tried(attempt: Attempt) -> dict[str, Any]:
     return {
         "what": attempt.what,
         "reason": attempt.reason or None,
-        "mean": _finite(attempt.mean),
+        "mean": finite(attempt.mean),
         "episodes": attempt.episodes,
         "fresh": attempt.fresh,
     }
@@ -219,7 +219,7 @@ def _tried(attempt: Attempt) -> dict[str, Any]:
 def _guarantee(stated: Guarantee | None) -> dict[str, Any] | None:
     if stated is None:
         return None
-    quantile = {"share": stated.share, "low": _finite(stated.quantile), "episodes": stated.needed}
+    quantile = {"share": stated.share, "low": finite(stated.quantile), "episodes": stated.needed}
     return {
         "episodes": stated.episodes,
         "varied": stated.varied,
@@ -231,15 +231,15 @@ def _guarantee(stated: Guarantee | None) -> dict[str, Any] | None:
 
 def _bound(bound: Bound) -> dict[str, Any]:
     return {
-        "low": _finite(bound.low),
-        "high": _finite(bound.high),
+        "low": finite(bound.low),
+        "high": finite(bound.high),
         "confidence": bound.confidence,
         "method": bound.method,
         "exact": bound.exact,
     }
 
 
-def _finite(value: float | None) -> float | None:
+def finite(value: float | None) -> float | None:
     """Return a number as valid JSON: numpy scalars as Python's, NaN and infinities as null."""
     if value is None or not math.isfinite(value):
         return None

@@ -21,9 +21,13 @@ def importance(curves: Sequence[Curve]) -> dict[str, float]:
     for curve in curves:
         (name,) = curve.ray.names
         if isinstance(curve.ray.space.extents[name], Span):
-            lost = max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
-            found[name] = max(found.get(name, 0.0), lost)
+            found[name] = max(found.get(name, 0.0), lost(curve))
     return dict(sorted(found.items(), key=lambda one: -one[1]))
+
+
+def lost(curve: Curve) -> float:
+    """Return the largest margin that was lost along a ray."""
+    return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
 
 
 def margin_map(curves: Sequence[Curve], model: Prediction, coordinates: Coordinates) -> MarginMap | None:

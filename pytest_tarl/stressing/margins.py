@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 from pytest_tarl.errors import FixtureError
+from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.spaces import Choice, nominal, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Stress
 
@@ -139,9 +139,10 @@ def _side(one: Any) -> Margin:
 
 
 def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+    number = finite_number(value)
+    if number is None:
         raise ValueError(f"{value!r} is no number")
-    return float(value)
+    return number
 
 
 def _text(value: Any) -> str:

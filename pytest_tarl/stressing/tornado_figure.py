@@ -5,9 +5,8 @@ from __future__ import annotations
 from html import escape
 
 from pytest_tarl.stressing.findings import Curve, Stress
-from pytest_tarl.stressing.guarantee import LOWEST
 from pytest_tarl.stressing.map_figure import COLOURS
-from pytest_tarl.stressing.mapping import importance
+from pytest_tarl.stressing.mapping import importance, lost
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
 BAR, GAP, LABEL, WIDTH, END = 22, 12, 150, 640, 60  # px; END is the space for a value
@@ -20,7 +19,7 @@ def tornado(stress: Stress) -> str:
         return ""
     low = 8 + len(order) * (BAR + GAP)
     middle = LABEL + (WIDTH - LABEL) / 2
-    unit = ((WIDTH - LABEL) / 2 - END) / max(1.0, *(_lost(curve) for curve in stress.curves))
+    unit = ((WIDTH - LABEL) / 2 - END) / max(1.0, *(lost(curve) for curve in stress.curves))
     drawn = [
         (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {low + 50}" role="img" '
@@ -45,8 +44,8 @@ def tornado(stress: Stress) -> str:
 def _bar(curve: Curve, middle: float, unit: float, y: float) -> list[str]:
     """Return the bar of one end of a direction, and the value at which it ends."""
     up = curve.ray.value(1.0) > curve.ray.value(0.0)
-    length = max(_lost(curve), 0.0) * unit
-    colour = COLOURS["fails" if _lost(curve) > 1.0 else "holds"]
+    length = max(lost(curve), 0.0) * unit
+    colour = COLOURS["fails" if lost(curve) > 1.0 else "holds"]
     x, end = (middle, middle + length + 6) if up else (middle - length, middle - length - 6)
     return [
         f'<rect x="{x:.1f}" y="{y}" width="{max(length, 1.0):.1f}" height="{BAR}" fill="{colour}" stroke="{INK}"/>',
@@ -59,7 +58,7 @@ def tornado_words(stress: Stress) -> str:
     parts = []
     for name in importance(stress.curves):
         ends = [
-            f"{_lost(curve):.2g} up to {curve.ray.value(1.0):.3g}"
+            f"{lost(curve):.2g} up to {curve.ray.value(1.0):.3g}"
             for curve in stress.curves
             if curve.ray.names == (name,)
         ]
@@ -68,7 +67,3 @@ def tornado_words(stress: Stress) -> str:
     return (
         f"Largest margin that each direction alone loses; 1, the dashed limit, uses up the guarantee. {told}."
     )
-
-
-def _lost(curve: Curve) -> float:
-    return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
