@@ -32,10 +32,8 @@ from pytest_tarl.stressing.margins import margins
 from pytest_tarl.stressing.search import Request, stress
 from tarl_lint.api import Analysis
 
-REACH = (
-    1.0,
-    0.25,
-)  # shares of the way from the boundary to the end of the range that a repair is searched for
+# shares of the way from the boundary to the end of the range that a repair is searched for
+REACH = (1.0, 0.25)
 DIRECTIONS = 2  # directions to repair at most, the nearest boundary first
 DRAWS = 60  # fresh draws from the whole space
 CONFIDENCE = 0.95  # that a repair which is said to lose over the space does
@@ -240,9 +238,8 @@ def _words(fixed: Fixed) -> Iterator[str]:
         before, after = row.cells
         if before != after or row.change != "no significant change":
             yield f"  {'':10} {row.name}: {before} → {after}: {row.change}"
-    passed = (sum(one.passed for one in world) for world in (fixed.before, fixed.after))
-    means = (sum(one.total for one in world) / DRAWS for world in (fixed.before, fixed.after))
-    (usual, now), (earned, earns) = tuple(passed), tuple(means)
+    usual, now = (sum(one.passed for one in world) for world in (fixed.before, fixed.after))
+    earned, earns = (sum(one.total for one in world) / DRAWS for world in (fixed.before, fixed.after))
     yield (
         f"  {'':10} over the declared space: {now} instead of {usual} of {DRAWS} fresh draws pass, and each earns "
         f"{earns:.4g} instead of {earned:.4g}."

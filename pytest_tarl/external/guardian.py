@@ -140,7 +140,3 @@ def main() -> None:
     threading.Thread(target=guardian.read, daemon=True).start()
     guardian.run()
     os._exit(0)  # threads of the middleware do not delay the end
-
-
-if __name__ == "__main__":
-    main()

@@ -120,8 +120,6 @@ def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
     if not named and isinstance(parsed, dict):
         yield from map(str, parsed)
     for pattern, values in named:
-        own = [one for one in instances if matches(pattern, one.name)]
-        if own and not is_wildcard(
-            pattern
-        ):  # a section for all nodes is meant for those that have the parameter
+        # a section for all nodes is meant for those that have the parameter
+        if not is_wildcard(pattern) and any(matches(pattern, one.name) for one in instances):
             yield from dotted(values)

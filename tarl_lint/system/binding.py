@@ -33,15 +33,20 @@ def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Ma
 
     Parameters whose value is known only on the robot, or is no scalar, are left out.
     """
-    namespace, _, own = full_name.rpartition("/")
     found: dict[str, object] = {}
     for name in names:
-        places = (resolved(name, namespace or "/", own), f"{full_name}/{name}")
+        places = _places(name, full_name)
         below = any(one.startswith(f"{place}/") for place in places for one in values)
         value = next((values[place] for place in places if place in values), None if below else DEFAULT)
         if isinstance(value, str | bool | int | float):
             found[name] = value
     return found
+
+
+def _places(name: str, full_name: str) -> tuple[str, str]:
+    """Return the absolute names that a parameter in a node's code may have: in ROS 1, and in ROS 2."""
+    namespace, _, own = full_name.rpartition("/")
+    return resolved(name, namespace or "/", own), f"{full_name}/{name}"
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
@@ -97,7 +102,6 @@ class _Namer:
         self._resolve = resolve
         self._parameters = parameters
         self._values = values
-        self._namespace, _, self._own = full_name.rpartition("/")
         self._full_name = full_name
         self._depth = 0
 
@@ -135,11 +139,11 @@ class _Namer:
         if one.kind == "node":
             return self._full_name
         if one.kind == "namespace":
-            return f"{self._namespace}/"
+            return f"{self._full_name.rpartition('/')[0]}/"
         if one.kind == "resolved":
             name = self._deeper(one.name)
             return None if name is None else self._resolve(name)
-        places = (resolved(one.name, self._namespace or "/", self._own), f"{self._full_name}/{one.name}")
+        places = _places(one.name, self._full_name)
         given = next((self._values[place] for place in places if place in self._values), None)
         if given is not None:
             return str(given) if isinstance(given, str | int | float) else None
