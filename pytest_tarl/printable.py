@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 # Control characters, marks of writing direction (Boucher & Anderson 2021), line separators.
 _COMMANDS = re.compile(
@@ -19,6 +20,11 @@ def printable(text: str) -> str:
 def printable_line(text: str) -> str:
     """Return a text as one line, so that a name cannot forge lines of output."""
     return printable(text).replace("\n", "\\n")
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines that contain untrusted text: code, topics, headers of patches."""
+    print("\n".join(map(printable_line, lines)))
 
 
 def _escaped(found: re.Match[str]) -> str:
