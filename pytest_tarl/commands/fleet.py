@@ -58,6 +58,12 @@ def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
     flag("--version", default="unknown", metavar="NAME", help="version of the robots' software")
     flag("--site", default="unknown", metavar="NAME", help="where the robots work")
     flag(
+        "--repair",
+        default="",
+        metavar="NAME",
+        help="repair in the robots' software: a name, or a patch file of .tarl/patches (default: none)",
+    )
+    flag(
         "--hash-robots", default="", metavar="SALT", help="store keyed digests in place of the robots' names"
     )
     ingest.set_defaults(run=_ingest)
@@ -74,6 +80,7 @@ def _ingest(arguments: argparse.Namespace) -> int:
         version=arguments.version,
         site=arguments.site,
         salt=arguments.hash_robots,
+        repair=arguments.repair,
     )
     found, refused = 0, 0
     for one in ingest(order):
@@ -83,7 +90,8 @@ def _ingest(arguments: argparse.Namespace) -> int:
             continue
         found += one.missions
         known = f", {one.known} were there already" if one.known else ""
-        print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}"))
+        unjudged = f", {one.unjudged} not judged by every formula" if one.unjudged else ""
+        print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}{unjudged}"))
     print(printable_line(f"{order.to}: {found} missions added"))
     return 2 if refused else 0
 
@@ -105,7 +113,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--by",
         default="version,site",
         metavar="NAMES",
-        help="divide missions by version, site, robot or month (default version,site)",
+        help="divide missions by version, site, robot, repair, month or week (default version,site)",
     )
     flag("--since", metavar="DATE", help="only missions from this day on (UTC), such as 2026-10-01")
     flag(

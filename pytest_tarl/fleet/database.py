@@ -29,8 +29,12 @@ BY = {
     "version": "version",
     "site": "site",
     "robot": "robot",
+    "repair": "repair",
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
+    "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
+# Columns that files of schema 1 lack, and no row.
+EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 
 Columns = Mapping[str, Any]
@@ -118,10 +122,13 @@ def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: F
         FROM (
             SELECT *{"," if grouped else ""} {grouped}
             FROM (
-                SELECT mission, robot, site, version, time, passed, total, steps, {KEY} AS key,
+                SELECT mission, robot, site, version, coalesce(repair, '') AS repair, time, passed, total, steps,
+                    formulas, {KEY} AS key,
                     count(*) OVER same AS copies,
                     row_number() OVER (same ORDER BY version, robot, site, filename) AS copy
-                FROM read_parquet(?, filename = true, hive_partitioning = true, hive_types_autocast = false)
+                FROM (SELECT * FROM ({EMPTY}) UNION ALL BY NAME SELECT * FROM read_parquet(
+                    ?, filename = true, hive_partitioning = true, hive_types_autocast = false, union_by_name = true
+                ))
                 WINDOW same AS (PARTITION BY mission)
             )
             WHERE copy = 1 AND time >= ? AND (? = '' OR robot = ?)

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from pytest_tarl.errors import FleetError
-from pytest_tarl.fleet.schema import PREFIX, SCHEMA_VERSION, Origin
+from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
 from pytest_tarl.fleet.store import Store
 
 
@@ -62,10 +62,10 @@ def _origin(where: Store, path: str, told: dict[str, str]) -> Origin:
         raise FleetError(
             f"{where.shown(path)} was not written by `tarl ingest`: move it out of the data set."
         )
-    if schema != str(SCHEMA_VERSION):
+    if schema not in map(str, READABLE):
         raise FleetError(
-            f"{where.shown(path)} has schema {schema}, but this version of tarl reads {SCHEMA_VERSION}: use the "
-            "version of tarl that wrote it."
+            f"{where.shown(path)} has schema {schema}, but this version of tarl reads "
+            f"{' and '.join(map(str, READABLE))}: use the version of tarl that wrote it."
         )
     return Origin(**{one.name: told.get(f"{PREFIX}{one.name}", "") for one in fields(Origin)})
 

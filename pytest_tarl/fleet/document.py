@@ -60,6 +60,7 @@ def _group(one: Group) -> dict[str, Any]:
         "p_drift": None if verdict is None else verdict.p_drift,
         "cells": [list(cell) for cell in one.region.cells],
         "new": [list(cell) for cell in one.region.novel],
+        "formulas": [asdict(judged) for judged in one.formulas],
     }
 
 

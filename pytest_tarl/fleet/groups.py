@@ -23,6 +23,16 @@ FEWEST = 2  # missions needed for a verdict
 
 
 @dataclass(frozen=True)
+class Judged:
+    """A formula in a group: missions that judged it, those that violate it, and the least robustness."""
+
+    formula: str
+    missions: int
+    violated: int
+    least: float
+
+
+@dataclass(frozen=True)
 class Group:
     """A group: its values of the columns, missions, robots, bounds, and the verdict if there are enough missions."""
 
@@ -37,6 +47,7 @@ class Group:
     compared: int
     verdict: Verdict | None
     region: Region
+    formulas: tuple[Judged, ...] = ()
 
 
 def judged(
@@ -56,6 +67,13 @@ def judged(
         for number, row in enumerate(rows)
     ]
     return _corrected(found, alpha)
+
+
+FORMULAS = """
+    SELECT one.key, count(*), count_if(one.value <= 0), min(one.value)
+    FROM (SELECT unnest(map_entries(formulas)) AS one FROM missions WHERE group_number = {})
+    GROUP BY one.key ORDER BY ALL
+"""
 
 
 def _group(
@@ -94,6 +112,7 @@ def _group(
         compared=sample.episodes,
         verdict=difference.verdict if difference else None,
         region=difference.region if difference else Region(),
+        formulas=tuple(Judged(*each) for each in database.names(FORMULAS.format(number))),
     )
 
 

@@ -12,13 +12,14 @@ from pathlib import Path
 from pytest_tarl.errors import LogError, SettingsError
 from pytest_tarl.fleet import dataset
 from pytest_tarl.fleet.logged_samples import logged_samples
-from pytest_tarl.fleet.rows import Row, files
+from pytest_tarl.fleet.rows import Row, files, formulas_of
 from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.monitoring.assembling import valid_time
 
 TOGETHER = 20_000  # missions held in memory until they are written
+PATCH = ".patch"
 FOLDER, FILE = "{folder}", "{file}"
 
 
@@ -33,6 +34,7 @@ class Order:
     version: str = "unknown"
     site: str = "unknown"
     salt: str = ""  # replace names of robots by digests if given
+    repair: str = ""  # in the robots' software: a name, or a patch file of .tarl/patches
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,7 @@ class Ingested:
     missions: int = 0
     known: int = 0
     problem: str = ""
+    unjudged: int = 0  # missions without a verdict on each formula of the recording
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
@@ -55,16 +58,33 @@ def ingest(order: Order) -> Iterator[Ingested]:
     fixture = load(order.fixture)
     recording = order.fixture.read_bytes()
     into = _Writer(store(order.to), order.version, origin(fixture, recording), fixture, recording)
+    formulas = fixture.sample.judgements.formulas if fixture.sample.judgements else ()
+    repair = repair_of(order.repair)
     for log in order.logs:
         robot = named(order, log)
         try:
-            rows = list(_rows(log, fixture, robot, order.site))
+            rows = list(_rows(log, fixture, robot, order.site, repair))
             added = into.add(rows)
         except LogError as problem:
             yield Ingested(log, robot, problem=str(problem))
             continue
-        yield Ingested(log, robot, added, len(rows) - added)
+        unjudged = sum(len(formulas_of(row.sample)) < len(formulas) for row in rows)
+        yield Ingested(log, robot, added, len(rows) - added, unjudged=unjudged)
     into.write()
+
+
+def repair_of(name: str) -> str:
+    """Return the name of a repair: of a patch file, its name without the suffix.
+
+    Raise SettingsError if there is no such file.
+    """
+    if not name.endswith(PATCH):
+        return name.strip()
+    if not Path(name).is_file():
+        raise SettingsError(
+            f"{name}: no such patch. Name a file of .tarl/patches, or the repair, with --repair."
+        )
+    return Path(name).stem
 
 
 def named(order: Order, log: Path) -> str:
@@ -132,9 +152,9 @@ class _Writer:
         self.waiting = 0
 
 
-def _rows(log: Path, fixture: Fixture, robot: str, site: str) -> Iterator[Row]:
+def _rows(log: Path, fixture: Fixture, robot: str, site: str, repair: str) -> Iterator[Row]:
     for time, sample in logged_samples(log, fixture):
-        yield Row(robot, site, valid_time(time), sample)
+        yield Row(robot, site, valid_time(time), sample, repair)
 
 
 def _check(order: Order) -> None:

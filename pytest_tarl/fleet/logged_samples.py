@@ -5,11 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
-from pytest_tarl.errors import LogError
+from pytest_tarl.errors import LogError, SettingsError
+from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.lookback import judgeable, looked_back
+from pytest_tarl.formulas.parsing import formula
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.judgements import judgements
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
@@ -20,16 +25,32 @@ BYTES = 8  # of a mission's identity, which takes the place of an episode's seed
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
     """Yield start and statistics of each finished mission with rewards of a log and of its rotated parts.
 
-    The start is in seconds since 1970.
-
-    Raise LogError if the log does not belong to the recording, or holds no rewards.
+    The start is in seconds since 1970. A mission that violates a formula of the recording has failed, as an episode
+    has. Raise LogError if the log does not belong to the recording, or holds no rewards.
     """
     plan = plan_of(fixture)
     number = {place.id: n for n, place in enumerate(plan.places)}
+    required = requirements_of(fixture)
     for mission in missions(log, fixture):
         if mission.ended and any(chunk["step_cell"] for chunk in mission.chunks):
             found = trace(mission, number, fixture, None)
-            yield mission.time, sample(found, identity(mission), mission.passed, plan.members)
+            judged = looked_back(mission.followed, judgeable([mission.followed], required), required)
+            passed = mission.passed and not judged.violation
+            one = sample(found, identity(mission), passed, plan.members)
+            yield mission.time, replace(one, judgements=judgements(judged.judged))
+
+
+def requirements_of(fixture: Fixture) -> Requirements:
+    """Return the formulas of a recording; none if this Python has no parser for them."""
+    if fixture.sample.judgements is None:
+        return NOTHING_REQUIRED
+    sensors = (sensor.name for sensor in fixture.sensors if not sensor.categories)
+    names = (*sensors, *(signal.name for signal in fixture.signals))
+    try:
+        formulas = tuple(formula(fixture.test, text, names) for text in fixture.sample.judgements.formulas)
+    except SettingsError:
+        return NOTHING_REQUIRED
+    return Requirements(signals=fixture.signals, formulas=formulas, names=names)
 
 
 def plan_of(fixture: Fixture) -> Plan:

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,16 @@ from pytest_tarl.model import TaintList
 
 @dataclass(frozen=True)
 class Row:
-    """A mission: who ran it where, when it began, and its statistics; the sample has one episode."""
+    """A mission: who ran it where, when it began, with which repair, and its statistics.
+
+    The sample has one episode.
+    """
 
     robot: str
     site: str
     time: float
     sample: Sample
+    repair: str = ""  # in the robot's software
 
     @property
     def mission(self) -> int:
@@ -49,18 +54,24 @@ def files(rows: Sequence[Row], where: Origin, lists: Sequence[TaintList]) -> tup
     about = metadata(where)
     digest = hashlib.sha256(repr(sorted(about.items())).encode())
     for row in rows:
-        digest.update(f"{row.mission} {row.time!r} {row.robot!r} {row.site!r}\n".encode())
+        digest.update(f"{row.mission} {row.time!r} {row.robot!r} {row.site!r} {row.repair!r}\n".encode())
     found = {name: _parquet(name, columns, about) for name, columns in tables.items()}
     return digest.hexdigest()[:24], found
 
 
 def _parquet(name: str, columns: dict[str, Any], about: dict[str, str]) -> bytes:
     schema = SCHEMAS[name].with_metadata(about)
-    arrays = [pa.array(columns[one.name]).cast(one.type, safe=True) for one in schema]
+    arrays = [_array(columns[one.name], one.type) for one in schema]
     sink = pa.BufferOutputStream()
     pq.write_table(pa.Table.from_arrays(arrays, schema=schema), sink, compression="zstd")
     content: bytes = sink.getvalue().to_pybytes()
     return content
+
+
+def _array(column: Any, kind: Any) -> Any:
+    if isinstance(column, list):
+        return pa.array(column, kind)
+    return pa.array(column).cast(kind, safe=True)
 
 
 def _missions(rows: Sequence[Row]) -> dict[str, Any]:
@@ -72,7 +83,18 @@ def _missions(rows: Sequence[Row]) -> dict[str, Any]:
         "passed": np.array([bool(row.sample.passed[0]) for row in rows]),
         "total": np.array([float(row.sample.total[0]) for row in rows]),
         "steps": np.array([int(row.sample.steps[0]) for row in rows], np.int64),
+        "repair": _named([row.repair for row in rows]),
+        "formulas": [formulas_of(row.sample) for row in rows],
     }
+
+
+def formulas_of(sample: Sample) -> list[tuple[str, float]]:
+    """Return each formula that was judged in a mission, with its robustness."""
+    found = sample.judgements
+    if found is None:
+        return []
+    pairs = zip(found.formulas, found.robustness[0].tolist(), strict=True)
+    return [(formula, value) for formula, value in pairs if not isnan(value)]
 
 
 def _cells(rows: Sequence[Row]) -> dict[str, Any]:

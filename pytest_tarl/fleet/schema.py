@@ -8,6 +8,7 @@ KEY follows from the content. The file in `missions` is written last: without it
 
 SCHEMA_VERSION history:
 1  These three tables.
+2  `missions` has `repair` and `formulas`.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ from pytest_tarl.files import slug
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.sensors import Cell, binning_digest
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+READABLE = (1, 2)
 TABLES = ("statements", "cells", "missions")  # in the order in which they are written
 PREFIX = "tarl."
 _NAME = pa.dictionary(pa.int32(), pa.string())
@@ -38,6 +40,8 @@ SCHEMAS = {
             ("passed", pa.bool_()),
             ("total", pa.float64()),
             ("steps", pa.int64()),
+            ("repair", _NAME),  # the repair in the robot's software; empty without one
+            ("formulas", pa.map_(pa.string(), pa.float64())),  # robustness, above 0 if the formula holds
         ]
     ),
     "cells": pa.schema(

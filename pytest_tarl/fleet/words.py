@@ -26,6 +26,7 @@ def lines(answer: Answer) -> Iterator[str]:
     )
     yield ""
     yield from _table(answer, words)
+    yield from _formulas(answer)
     yield ""
     yield from _named(answer, found.drifted, "missions differ from the recording", "")
     for one in found.drifted[:NAMED]:
@@ -41,6 +42,22 @@ def lines(answer: Answer) -> Iterator[str]:
             result = "passed" if mission.passed else "failed"
             yield f"  {_time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
     yield from _notes(answer)
+
+
+def _formulas(answer: Answer) -> Iterator[str]:
+    """Yield the groups that violate a formula."""
+    found = [(group, one) for group in answer.groups for one in group.formulas if one.violated]
+    if not any(group.formulas for group in answer.groups):
+        return
+    yield ""
+    if not found:
+        yield "No mission violates a formula."
+    for group, one in sorted(found, key=lambda pair: (-pair[1].violated / pair[1].missions, pair[0].values)):
+        where = f" in {' '.join(group.values)}" if group.values else ""
+        yield (
+            f"{one.formula}: violated by {one.violated:,} of {one.missions:,} missions{where}, "
+            f"least robustness {one.least:.3g}"
+        )
 
 
 def _table(answer: Answer, words: Vocabulary) -> Iterator[str]:

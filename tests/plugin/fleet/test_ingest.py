@@ -11,6 +11,7 @@ from random import Random
 
 import duckdb
 import hypothesis.strategies as st
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
@@ -19,6 +20,9 @@ from pytest_tarl.commands.cli import main
 from pytest_tarl.fleet import ingest as ingesting
 from pytest_tarl.fleet.ingest import Order, ingest
 from pytest_tarl.fleet.store import Store
+from pytest_tarl.formulas.signals import Signal
+from pytest_tarl.learning.fixture import save
+from pytest_tarl.learning.tables import Judgements
 from pytest_tarl.sensors import binning_digest
 from tests.plugin.monitoring import missions
 
@@ -104,7 +108,7 @@ def test_the_metadata_names_schema_and_recording(tmp_path: Path) -> None:
     list(ingest(order(test, logs, tmp_path / "data")))
     for path in (tmp_path / "data").rglob("*.parquet"):
         about = pq.read_schema(path).metadata
-        assert about[b"tarl.schema"] == b"1"
+        assert about[b"tarl.schema"] == b"2"
         assert about[b"tarl.test"] == missions.TEST.encode()
         assert about[b"tarl.sensors"] == binning_digest(missions.SENSORS).encode()
 
@@ -289,3 +293,63 @@ def test_other_commands_import_none_of_its_packages() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+FORMULA = "always (gap > 0.3)"
+
+
+def judged_log(folder: Path, gaps: list[float]) -> Path:
+    """Write a log whose missions follow a signal that falls to each of the gaps."""
+    path = folder / "r0" / "missions.log"
+    file = missions.LogFile(path)
+    file.append(missions.start())
+    for n, (one, gap) in enumerate(zip(missions.walks(len(gaps), 3), gaps, strict=True)):
+        *begin, end = missions.records(one, DAY * n)
+        follow = {"changes": [[0.0, "gap", 1.0], [0.5, "gap", gap]], "lasted": 1.0}
+        for record in (*begin, {**end, "passed": True, **follow}):
+            file.append(record)
+    file.close()
+    return path
+
+
+def test_formulas_of_each_mission_are_stored_and_reported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("rtamt")
+    test = tmp_path / "test.npz"
+    plain = missions.fixture(test, missions.walks(20, 1))
+    rows_of = np.ones((20, 1))
+    sample = replace(plain.sample, judgements=Judgements((FORMULA,), rows_of, rows_of * np.nan))
+    save(replace(plain, signals=(Signal("gap"),), sample=sample), test)
+    log = judged_log(tmp_path, [0.5, 0.1, 0.4])
+    data = tmp_path / "data"
+    argv = ["ingest", str(log), "--to", str(data), "--fixture", str(test), "--robot", "{folder}"]
+    assert main(argv) == 0
+    found = duckdb.sql(
+        f"SELECT passed, formulas['{FORMULA}'] FROM read_parquet('{data}/missions/**/*.parquet') ORDER BY time"
+    ).fetchall()
+    assert [row[0] for row in found] == [True, False, True]
+    assert [row[1] for row in found] == pytest.approx([0.2, -0.2, 0.1])
+    capsys.readouterr()
+    assert main(["fleet", str(data)]) == 0
+    said = f"{FORMULA}: violated by 1 of 3 missions in unknown unknown, least robustness -0.2"
+    assert said in capsys.readouterr().out
+    silent = missions.log(tmp_path / "r1" / "missions.log", missions.walks(2, 4))
+    assert main([*argv[:1], str(silent), *argv[2:]]) == 0
+    assert "2 missions of r1, 2 not judged by every formula" in capsys.readouterr().out
+
+
+def test_the_repair_in_the_software_is_stored(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    test, logs = world(tmp_path)
+    patch = tmp_path / "test_walk-rain-12345678.patch"
+    argv = ["--to", str(tmp_path / "data"), "--fixture", str(test), "--robot", "{folder}"]
+    for log, repair in zip(logs, (None, "guard-2", str(patch)), strict=True):
+        patch.write_text("")
+        assert main(["ingest", str(log), *argv, *(["--repair", repair] if repair else [])]) == 0
+    assert sorted({(row[1], row[7]) for row in rows(tmp_path / "data")}) == [
+        ("r0", ""),
+        ("r1", "guard-2"),
+        ("r2", patch.stem),
+    ]
+    assert main(["ingest", str(logs[0]), *argv, "--repair", "absent.patch"]) == 2
+    assert "absent.patch: no such patch" in capsys.readouterr().err

@@ -155,6 +155,20 @@ def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
     assert document.text(replace(again, copies=0)) == document.text(found)
 
 
+def test_files_of_schema_1_are_read_beside_newer_ones(folder: Path, found: Answer, tmp_path: Path) -> None:
+    add(folder, range(ROBOTS), tmp_path / "data")
+    paths = sorted((tmp_path / "data" / "missions").rglob("*.parquet"))
+    for older in (paths[::2], paths):
+        for path in older:
+            with path.open("rb") as file:
+                table = pq.read_table(file).select(
+                    ["mission", "robot", "site", "time", "passed", "total", "steps"]
+                )
+            about = {**table.schema.metadata, b"tarl.schema": b"1"}
+            pq.write_table(table.replace_schema_metadata(about), path)
+        assert document.text(answer(Question(str(tmp_path / "data")))) == document.text(found)
+
+
 def test_an_object_store_gives_the_same(folder: Path, found: Answer) -> None:
     add(folder, [*range(ROBOTS)], "memory://fleet/one")
     again = answer(Question("memory://fleet/one"))
@@ -224,7 +238,7 @@ def test_the_command_reports_and_fails_by_its_rules(
         (["{empty}"], "holds no missions: add some with `tarl ingest"),
         (
             ["{data}", "--by", "version,colour"],
-            "--by must name each of version, site, robot, month at most once",
+            "--by must name each of version, site, robot, repair, month, week at most once",
         ),
         (["{data}", "--since", "yesterday"], "--since must be a day such as 2026-10-01"),
         (["{data}", "--robot", "r77"], "holds no mission of r77: check --robot"),
