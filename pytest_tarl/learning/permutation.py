@@ -14,6 +14,7 @@ from pytest_tarl.learning.tables import Floats
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # error of a few sums of floats, relative to the largest of them
+AT_ONCE = 64  # shuffles drawn together, so that they stay in the processor's cache
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
@@ -40,7 +41,7 @@ def permuted_loss(
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
-    shuffled = labels(pooled.size, online.size, generator, permutations) @ pooled
+    shuffled = shuffled_sums(pooled, online.size, generator, permutations)
     tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of a sum changes its rounding
     return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
 
@@ -67,7 +68,7 @@ def max_statistic(
         return p_values
     relative = deviation[:, alive] / extent[alive]  # scaled, so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
-    statistic = np.abs(labels(columns.shape[0], first, generator, permutations) @ standard)
+    statistic = np.abs(shuffled_sums(standard, first, generator, permutations))
     order = np.argsort(statistic[0], kind="stable")
     largest = np.maximum.accumulate(statistic[:, order], axis=1)
     reached = (largest[1:] >= largest[0] - 1e-9).sum(axis=0)
@@ -76,10 +77,29 @@ def max_statistic(
     return p_values
 
 
-def labels(rows: int, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS) -> Floats:
-    """Return group indicators, shape (1 + permutations, rows): as observed, then shuffled."""
-    drawn = np.argpartition(generator.random((permutations, rows)), first, axis=1)[:, :first]
-    indicators = np.zeros((1 + permutations, rows))
-    indicators[0, :first] = 1.0
-    np.put_along_axis(indicators[1:], drawn, 1.0, axis=1)
-    return indicators
+def shuffled_sums(
+    values: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
+) -> Floats:
+    """Return the sums over a group of `first` rows, shape (1 + permutations, ...): the first rows, then random ones.
+
+    `values` have shape (rows, ...). A shuffle draws a number for each row and picks the rows with the smallest.
+    """
+    rows = len(values)
+    observed = np.zeros((1, rows))
+    observed[0, :first] = 1.0
+    sums = [observed @ values]
+    for done in range(0, permutations, AT_ONCE):
+        draws = generator.random((min(AT_ONCE, permutations - done), rows))
+        sums.append(_smallest(draws, first) @ values)
+    return np.concatenate(sums)
+
+
+def _smallest(draws: Floats, first: int) -> Floats:
+    """Return 1 for the `first` smallest numbers of each row, else 0; same shape."""
+    limit = np.partition(draws, first, axis=1)[:, first, None]
+    picked = (draws < limit).astype(np.float64)
+    tied = np.flatnonzero(picked.sum(axis=1) != first)  # equal numbers at the limit
+    for row in tied.tolist():
+        picked[row] = 0.0
+        picked[row, np.argpartition(draws[row], first)[:first]] = 1.0
+    return picked

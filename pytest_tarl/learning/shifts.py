@@ -5,6 +5,7 @@ It is exact if the groups differ by a constant (Janssen 1997), however skewed th
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, inf
 
@@ -31,11 +32,12 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     before, after = (offline - offline.mean()) / unit, (online - online.mean()) / unit
     shuffles = min(max(LEAST_PERMUTATIONS, ceil(PER_RISK / risk)), MOST_PERMUTATIONS)
     drawn = _drawn(offline.size + online.size, online.size, shuffles)
+    rows = np.concatenate((np.arange(online.size)[None, :], drawn))
+    group, whole = (_sums(after, before, some) for some in (rows, np.arange(offline.size + online.size)))
 
     def refuted(shift: float, sign: float) -> bool:
         """Return whether the deployed group, shifted by this amount, is significantly too low (or too high)."""
-        pooled = sign * np.concatenate((after + shift, before))
-        return _studentised_p(pooled - pooled.mean(), online.size, drawn) <= risk
+        return _studentised_p(group, whole, shift, sign) <= risk
 
     if not refuted(-1.0, 1.0) or not refuted(1.0, -1.0):
         return -inf, inf  # too few permutations to reject anything
@@ -55,19 +57,48 @@ def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
     return np.concatenate(parts).astype(np.int64)
 
 
-def _studentised_p(pooled: Floats, first: int, drawn: Ints) -> float:
-    """Return the one-sided p-value of the first group being lower, by t statistics of unequal variances."""
-    total, squares = float(pooled.sum()), float((pooled * pooled).sum())
-    groups = np.concatenate((np.arange(first)[None, :], drawn))
-    one = pooled[groups]
-    added, squared = one.sum(axis=1), (one * one).sum(axis=1)
-    rest = pooled.size - first
+@dataclass(frozen=True)
+class _Sums:
+    """Sums over some rows of x, with d = 1 for deployed episodes, else 0; shape (shuffles,), or () for one group.
+
+    They give the sums of x + t·d and of its square for every shift t, since d² = d.
+    """
+
+    rows: int
+    value: Floats  # Σx
+    square: Floats  # Σx²
+    deployed: Floats  # Σd
+    deployed_value: Floats  # Σx·d
+
+    def around(self, mean: float, shift: float) -> tuple[Floats, Floats]:
+        """Return Σ(x + t·d - m) and Σ(x + t·d - m)²."""
+        value = self.value + shift * self.deployed
+        square = self.square + shift * (2.0 * self.deployed_value + shift * self.deployed)
+        return value - mean * self.rows, square - 2.0 * mean * value + mean * mean * self.rows
+
+
+def _sums(deployed: Floats, designed: Floats, rows: Ints) -> _Sums:
+    """Return the sums over some rows, shape (..., rows of a group), of the deployed and the designed values."""
+    values = np.concatenate((deployed, designed))
+    owned = np.append(np.ones(deployed.size), np.zeros(designed.size))
+    columns = (values, values * values, owned, values * owned)
+    return _Sums(rows.shape[-1], *(column[rows].sum(axis=-1) for column in columns))
+
+
+def _studentised_p(group: _Sums, whole: _Sums, shift: float, sign: float) -> float:
+    """Return the one-sided p-value of a shifted group being lower, by t statistics of unequal variances.
+
+    The first of the shuffles is as observed.
+    """
+    mean = float(whole.value + shift * whole.deployed) / whole.rows
+    (added, squared), (total, squares) = (one.around(mean, shift) for one in (group, whole))
+    rest = whole.rows - group.rows
     variance = [
         np.maximum(twos - sums * sums / size, 0.0) / (max(size - 1, 1) * size)
-        for sums, twos, size in ((added, squared, first), (total - added, squares - squared, rest))
+        for sums, twos, size in ((added, squared, group.rows), (total - added, squares - squared, rest))
     ]
     scale = np.sqrt(variance[0] + variance[1])
-    apart = added / first - (total - added) / rest
+    apart = sign * (added / group.rows - (total - added) / rest)
     with np.errstate(divide="ignore", invalid="ignore"):
         statistic = np.where(scale > 0, apart / scale, np.sign(apart) * inf)
     return int((statistic <= statistic[0] + 1e-9).sum()) / int(statistic.size)

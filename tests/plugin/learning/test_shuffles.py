@@ -1,0 +1,78 @@
+"""Shuffled sums and shifts equal the plain computation, group by group."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pytest_tarl.learning import shifts as shifting
+from pytest_tarl.learning.permutation import max_statistic, permuted_loss, shuffled_sums
+from pytest_tarl.seeds import generator
+
+
+class Tied:
+    """A generator that repeats few numbers, so that rows are tied."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = generator(seed, "tied")
+
+    def random(self, shape: tuple[int, int]) -> np.ndarray:
+        return self.rng.integers(0, 3, shape) / 4
+
+
+@pytest.mark.parametrize("kind", ["distinct", "tied"])
+def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
+    for seed, (rows, first) in enumerate([(2, 1), (9, 4), (70, 69), (40, 3)]):
+        draws = Tied(seed) if kind == "tied" else generator(seed, "draws")
+        values = np.stack([np.ones(rows), np.arange(rows, dtype=float)], axis=1)
+        sums = shuffled_sums(values, first, draws, 150)  # type: ignore[arg-type]
+        assert sums.shape == (151, 2)
+        assert (sums[:, 0] == first).all()
+        assert sums[0, 1] == first * (first - 1) / 2
+        if kind == "distinct":
+            drawn = generator(seed, "draws").random((150, rows))
+            expected = [np.argsort(one)[:first].sum() for one in drawn]
+            assert sums[1:, 1].tolist() == expected
+
+
+def test_the_p_values_are_those_of_whole_tables_of_labels() -> None:
+    for seed in range(4):
+        rng = generator(seed, "table")
+        one, other = rng.normal(0.0, 1.0, 30), rng.normal(-0.4, 1.0, 20)
+        pooled = np.concatenate((other, one))
+        drawn = np.argsort(generator(seed, "labels").random((999, 50)), axis=1)[:, :20]
+        sums = np.append(other.sum(), pooled[drawn].sum(axis=1))
+        p_value = float((sums <= sums[0] + 1e-9).mean())
+        assert permuted_loss(one, other, generator(seed, "labels")) == p_value
+        columns = np.stack([pooled, rng.normal(size=50)], axis=1)
+        standard = (columns - columns.mean(axis=0)) / columns.std(axis=0)
+        each = np.abs(np.concatenate((standard[None, :20], standard[drawn])).sum(axis=1))
+        largest = int(each[0].argmax())
+        corrected = float((each.max(axis=1) >= each[0, largest] - 1e-9).mean())
+        found = max_statistic(columns, 20, generator(seed, "labels"))
+        assert found[largest] == pytest.approx(corrected)
+
+
+@pytest.mark.parametrize("kind", ["normal", "binary", "skewed", "rounded"])
+def test_p_values_of_shifted_values_are_those_of_their_t_statistics(kind: str) -> None:
+    rng = generator(3, kind)
+    draw = {
+        "normal": lambda size: rng.normal(5.0, 1.0, size),
+        "binary": lambda size: rng.integers(0, 2, size).astype(float),
+        "skewed": lambda size: rng.exponential(1e-3, size),
+        "rounded": lambda size: np.rint(rng.normal(0.0, 1.0, size)),
+    }[kind]
+    before, after = (values - values.mean() for values in (draw(30), draw(20)))
+    drawn = shifting._drawn(50, 20, 200)
+    rows = np.concatenate((np.arange(20)[None, :], drawn))
+    group, whole = (shifting._sums(after, before, some) for some in (rows, np.arange(50)))
+    for shift in np.linspace(-1.0, 1.0, 9).tolist():
+        for sign in (1.0, -1.0):
+            pooled = sign * np.concatenate((after + shift, before))
+            statistic = []
+            for mine in rows:
+                one, rest = pooled[mine], np.delete(pooled, mine)
+                scale = np.sqrt(one.var(ddof=1) / one.size + rest.var(ddof=1) / rest.size)
+                statistic.append((one.mean() - rest.mean()) / scale)
+            expected = float((np.array(statistic) <= statistic[0] + 1e-9).mean())
+            assert shifting._studentised_p(group, whole, shift, sign) == expected
