@@ -34,6 +34,7 @@ QUEUES = frozenset(
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
 FLAG = "<flag>"  # field of an event: whether it is set
+APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
@@ -64,10 +65,7 @@ def mutate(
             sizes.empty(ctx, obj)
         shorten(ctx, base, frame, call)
     elif name == "setdefault" and len(plain) > 1:
-        news = through_statement(ctx, plain[1], frame, call)
-        for obj in base.pts:
-            for key in plain[0].keys() or (None,):
-                updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
+        _set_default(ctx, base, plain[0], through_statement(ctx, plain[1], frame, call))
     elif name == "sort":
         order = iterators.ordered_by(
             ctx, heap.elements(ctx, base), Invocation(name, base, arguments, frame, call)
@@ -79,8 +77,41 @@ def mutate(
         for obj in base.pts if plain else ():
             sizes.lengthen(ctx, obj, plain[0])
         insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
+    elif name == "append" and _subscribers(plain):
+        _append_subscriber(ctx, base, plain[0], frame, call)
     else:
         insert_elements(ctx, base, plain[-1:] if name == "insert" else plain, frame, call)
+
+
+def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
+    for obj in base.pts:
+        for key in index.keys() or (None,):
+            updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
+
+
+def _subscribers(values: list[Value]) -> bool:
+    """Return whether the only value is a subscriber of message_filters."""
+    return len(values) == 1 and bool(values[0].pts) and all(o.kind == "filter" for o in values[0].pts)
+
+
+def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: Frame, call: ir.Call) -> None:
+    """Append a subscriber at its own index, since a synchroniser passes one message for each, in this order.
+
+    An earlier `append` may have been conditional: its index and later ones may be that of this subscriber, too.
+    """
+    known = sizes.unpacked(ctx, base)
+    if known is None or len(known) >= sizes.MAX_KNOWN or any(v.pts & subscriber.pts for v in known):
+        insert_elements(ctx, base, [subscriber], frame, call)  # its index is unknown, such as in a loop
+        return
+    (obj,) = base.pts
+    news = through_statement(ctx, subscriber, frame, call)
+    marked = ctx.store.get((obj, APPENDED))
+    lengths = marked.keys() if marked is not None else None
+    first = min([length for length in lengths or () if isinstance(length, int)], default=len(known))
+    for index in range(first, len(known)):
+        updates.weaken(ctx, obj, item_field(index), news)
+    updates.weaken(ctx, obj, item_field(len(known)), news)
+    ctx.store.put((obj, APPENDED), const(first))
 
 
 def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:

@@ -280,5 +280,48 @@ def test_messages_of_synchronised_subscribers_are_distinguished(tmp_path):
     assert [s.line for s in flows[0].source.registered] == [8, 9]
 
 
+SYNCHRONISED = """
+import rospy, message_filters
+def each(left, right, state=None):
+    pub_left.publish(left.data)
+    pub_right.publish(right.data)
+    pub_state.publish(state.data)
+pub_left, pub_right, pub_state = rospy.Publisher("a", F), rospy.Publisher("b", F), rospy.Publisher("c", F)
+left, right = message_filters.Subscriber("left", F), message_filters.Subscriber("right", F)
+state = message_filters.Subscriber("state", F)
+{}
+message_filters.TimeSynchronizer(fs=subs, queue_size=10).registerCallback(each)
+"""
+
+
+@pytest.mark.parametrize(
+    ("made", "pairs"),
+    [
+        ("subs = [left, right]\nsubs.append(state)", "left a, right b, state c"),
+        ("subs = [left, right]\nif rospy.get_param('~c'): subs.append(state)", "left a, right b, state c"),
+        ("subs = []\nsubs.append(left)", "left a"),
+        (  # the first one may be missing
+            "subs = [left]\nif rospy.get_param('~c'): subs.append(right)\nsubs.append(state)",
+            "left a, right b, state b, state c",
+        ),
+        (
+            "subs = []\nfor one in (left, right, state): subs.append(one)",
+            "left a, right a, right b, state a, state b, state c",
+        ),
+        (
+            "subs = [right]\nfor one in rospy.get_param('~names'): subs.append(message_filters.Subscriber('left', F))",
+            "left a, left b, left c, right a, right b, right c",
+        ),
+        (
+            "subs = [left]\nsubs.insert(0, right)",
+            "left a, left b, left c, right a, right b, right c",
+        ),
+    ],
+)
+def test_appended_subscribers_keep_their_places(tmp_path, made, pairs):
+    flows = analysed(tmp_path, node=SYNCHRONISED.format(made)).flows
+    assert sorted({f"{f.source.topics[0]} {f.sink.topics[0]}" for f in flows}) == pairs.split(", ")
+
+
 def test_two_runs_give_the_same_result(tmp_path):
     assert analysed(tmp_path, ferry=FERRY).flows == analysed(tmp_path, ferry=FERRY).flows
