@@ -13,6 +13,7 @@ NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
 FLEET = ("duckdb", "fsspec", "pyarrow")
 STRESS = ("cma", "hypothesis")
+SOBOL = ("SALib",)
 
 
 def missing_packages() -> list[str]:
@@ -40,6 +41,11 @@ def missing_fleet(what: str) -> str | None:
 def missing_stress(what: str) -> str | None:
     """Return a sentence that `what` needs the extra `stress`, or None if it is installed."""
     return _sentence(what, [name for name in STRESS if find_spec(name) is None], "stress")
+
+
+def missing_sobol(what: str) -> str | None:
+    """Return a sentence that `what` needs the extra `sobol`, or None if it is installed."""
+    return _sentence(what, [name for name in SOBOL if find_spec(name) is None], "sobol")
 
 
 def install_command(extra: str) -> str:

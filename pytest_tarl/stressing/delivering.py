@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from pytest_tarl.extras import missing_sobol
 from pytest_tarl.files import slug, unwritten, write_atomically
 from pytest_tarl.stressing import json_result, kept, margins, page, words
 from pytest_tarl.stressing.findings import Stress
 from pytest_tarl.stressing.guarantee import guarantee
 from pytest_tarl.stressing.map_figure import map_figure
 from pytest_tarl.stressing.search import Request, stress
+from pytest_tarl.stressing.sobol_indices import affordable
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,12 @@ def deliver(request: Request, root: Path) -> Delivered:
             (f"{request.fixture.test}[{request.drift}]: interrupted, nothing is known.",), "", True
         )
     found = stress(request)
-    told = (*words.lines(found), *before, *(f"  {line}" for line in _written(found, root, name, memory)))
+    told = (
+        *words.lines(found),
+        *before,
+        *_without_salib(found),
+        *(f"  {line}" for line in _written(found, root, name, memory)),
+    )
     return Delivered(told, _problem(found), found.ended == "interrupted", found)
 
 
@@ -48,6 +55,15 @@ def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
         where = words.of_point(space, point)
         lines.append(f"  {'kept' if not lines else '':10} {where} {'still fails' if fails else 'holds now'}.")
     return tuple(lines)
+
+
+def _without_salib(found: Stress) -> tuple[str, ...]:
+    """Return the advice to install SALib, if only that is missing for the Sobol indices."""
+    left = found.budget - found.episodes
+    if found.ended not in ("", "budget") or not affordable(len(found.space.extents), left):
+        return ()
+    advice = missing_sobol("The table of variances")
+    return () if advice is None else (f"  {'variance':10} {advice}",)
 
 
 def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:

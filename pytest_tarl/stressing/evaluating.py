@@ -115,13 +115,21 @@ class Evaluator:
         known = self._known.setdefault((pool, *point.values()), [])
         if len(known) < count:
             seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", count)
-            known += self._run(point, seeds[len(known) :])
+            missing = seeds[len(known) :]
+            known += self._run([point] * len(missing), missing)
         return known[:count]
 
-    def _run(self, point: Point, seeds: Sequence[int]) -> list[Outcome]:
+    def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:
+        """Return the outcome of each point on one seed: that with its row's number. Raise BudgetSpentError."""
+        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows) + 1)
+        return self._run(points, [seeds[row] for row in rows])
+
+    def _run(self, points: Sequence[Point], seeds: Sequence[int]) -> list[Outcome]:
         if self.spent + len(seeds) > self.budget:
             raise BudgetSpentError
-        plans = (EpisodePlan(seed, self.drift, point=point) for seed in seeds)
+        plans = (
+            EpisodePlan(seed, self.drift, point=point) for point, seed in zip(points, seeds, strict=True)
+        )
         outcomes = []
         for pending in in_order(self.rollout, plans):
             outcomes.append(outcome(pending.result()))

@@ -97,6 +97,28 @@ class MarginMap:
     spreads: tuple[tuple[float, ...], ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A direction's Sobol indices: shares of the margin's variance over the space, with the halves of their intervals.
+
+    `first` is the share that the direction explains alone, `total` that of it and its combinations with others.
+    """
+
+    name: str
+    first: float
+    first_error: float
+    total: float
+    total_error: float
+
+
+@dataclass(frozen=True)
+class Sobol:
+    """The Sobol indices of all directions, from this number of episodes."""
+
+    episodes: int
+    shares: tuple[Share, ...]
+
+
 @dataclass(frozen=True)
 class Stress:
     """The result of a stress run of one test and space."""
@@ -113,6 +135,7 @@ class Stress:
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # combinations
     margin_map: MarginMap | None = None
+    sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
 
     @property

@@ -101,6 +101,11 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
     return Evidence(answer, given.margin(passed / count, loss), count, passed, loss, spread)
 
 
+def margin_of_one(given: Guarantee, outcome: Outcome, nominal: Outcome) -> float:
+    """Return the margin of a single episode, paired by seed with a nominal one."""
+    return given.margin(float(outcome.passed), nominal.total - outcome.total)
+
+
 def margin_of(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]
 ) -> tuple[float, float]:

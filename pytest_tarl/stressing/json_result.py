@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from importlib import resources
 from typing import Any
 
 from pytest_tarl.spaces import Choice, value_of
-from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Stress
+from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-FORMAT_VERSION = 2  # 1: first version, 2: confidence of the boundary, values shown to hold
+# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices
+FORMAT_VERSION = 3
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
 
@@ -42,6 +44,7 @@ def document(stress: Stress) -> dict[str, Any]:
         "directions": [_direction(stress, curve) for curve in stress.curves],
         "failures": [_failure(stress, one) for one in stress.failures],
         "combinations_tried": stress.tried,
+        "sobol": _sobol(stress.sobol),
         "broken_promises": broken_promises(stress),
     }
 
@@ -83,6 +86,13 @@ def _direction(stress: Stress, curve: Curve) -> dict[str, Any]:
             for t, one in sorted(curve.evidence.items())
         ],
     }
+
+
+def _sobol(found: Sobol | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    shares = [asdict(one) for one in found.shares]
+    return {"episodes": found.episodes, "confidence": CONFIDENCE, "directions": shares}
 
 
 def _failure(stress: Stress, one: Failure) -> dict[str, Any]:

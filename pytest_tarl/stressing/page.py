@@ -18,6 +18,7 @@ from pytest_tarl.stressing.words import (
     guarantee_words,
     nominal_words,
     shown,
+    sobol_words,
     together,
 )
 
@@ -49,6 +50,7 @@ def render(stress: Stress) -> str:
             *_maps(stress),
             *_sections(stress),
             *_combinations(stress),
+            *_variance(stress),
             "</html>\n",
         ]
     )
@@ -141,6 +143,20 @@ def _table(stress: Stress, name: str, measured: list[tuple[float, Evidence]]) ->
     ]
     head = f"<tr><th>{escape(name)}<th>margin<th>guarantee<th>passed<th>loss"
     return f"<details><summary>All values</summary><table>{head}{''.join(rows)}</table></details>"
+
+
+def _variance(stress: Stress) -> Iterator[str]:
+    """Yield the table of the Sobol indices."""
+    if stress.sobol is None:
+        return
+    yield "<h2>Variance</h2>"
+    yield from (f"<p>{escape(one)}</p>" for one in sobol_words(stress))
+    rows = (
+        f"<tr><td>{escape(one.name)}<td>{one.first:.2f} ± {one.first_error:.2f}"
+        f"<td>{one.total:.2f} ± {one.total_error:.2f}"
+        for one in sorted(stress.sobol.shares, key=lambda one: -one.total)
+    )
+    yield f"<table><tr><th>direction<th>alone<th>with combinations{''.join(rows)}</table>"
 
 
 def _combinations(stress: Stress) -> Iterator[str]:

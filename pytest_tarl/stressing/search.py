@@ -14,10 +14,11 @@ from pytest_tarl.spaces import Space
 from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
 from pytest_tarl.stressing.combinations import Combined, Together
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
-from pytest_tarl.stressing.findings import FAR_RISK, Curve, Stress
+from pytest_tarl.stressing.findings import FAR_RISK, Curve, Sobol, Stress
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
 from pytest_tarl.stressing.holding import hold
 from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.sobol_indices import sobol
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
     share = min(share, FAR_RISK)
     together = Together(share, curves)
     ended = explore(evaluator, together, combined=combined)
+    indices, ended = variances(evaluator, ended) if combined else (None, ended)
     return Stress(
         test=request.fixture.test,
         drift=request.drift,
@@ -63,6 +65,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         must_hold=must_hold,
         tried=together.tried,
         margin_map=together.margin_map,
+        sobol=indices,
         ended=ended,
     )
 
@@ -92,6 +95,16 @@ def explore(evaluator: Evaluator, together: Together, *, combined: bool = True) 
         if several is not None:
             several.draw()
     return "budget" if evaluator.short else ""
+
+
+def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
+    """Return the Sobol indices by the rest of the budget, after a search that `ended` so, and how the run ended."""
+    if ended not in ("", "budget"):
+        return None, ended
+    try:
+        return sobol(evaluator), ended
+    except KeyboardInterrupt:
+        return None, "interrupted"
 
 
 def _evaluator(request: Request, space: Space) -> Evaluator:

@@ -32,6 +32,7 @@ def lines(stress: Stress) -> Iterator[str]:
             yield f"  {name if not number else '':10} {sentence}"
     for number, sentence in enumerate(together(stress)):
         yield f"  {'together' if not number else '':10} {sentence}"
+    yield from (f"  {'variance':10} {sentence}" for sentence in sobol_words(stress))
     if stress.ended in ENDED:
         yield f"  {ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)}"
 
@@ -87,6 +88,24 @@ def _alone(stress: Stress, one: Failure) -> str:
         if reached > 0.0 and (not curve.swept or any(t <= reached + ROUNDING for t in curve.failing)):
             return ""
     return ", although each alone holds"
+
+
+def sobol_words(stress: Stress) -> Iterator[str]:
+    """Yield sentences on the Sobol indices, the most important direction first."""
+    if stress.sobol is None:
+        return
+    shares = sorted(stress.sobol.shares, key=lambda one: -one.total)
+    if not any(one.total for one in shares):
+        yield f"The margin varies nowhere in the space ({stress.sobol.episodes} episodes)."
+        return
+    parts = (
+        f"{one.name} {max(one.first, 0.0):.0%} alone, {one.total:.0%} ± {one.total_error:.0%} with combinations"
+        for one in shares
+    )
+    yield (
+        f"Shares of the margin's variance over the space: {'; '.join(parts)} "
+        f"(Sobol indices, {stress.sobol.episodes} episodes)."
+    ).replace("%", " %")
 
 
 def broken_promises(stress: Stress) -> list[str]:

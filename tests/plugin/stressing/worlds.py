@@ -19,7 +19,7 @@ from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.findings import Curve, Stress
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
-from pytest_tarl.stressing.search import explore
+from pytest_tarl.stressing.search import explore, variances
 
 World = Callable[[Point, np.random.Generator], tuple[bool, float]]  # → passed, total reward
 
@@ -63,12 +63,15 @@ def evaluator_of(world: World, space: Space, *, seed: int = 0, budget: int = 200
     return Evaluator(Simulated(world), space, "world", recorded(world, space), seed, budget, lambda *_: None)
 
 
-def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -> Stress:
+def stressed(
+    world: World, space: Space, *, seed: int = 0, budget: int = 2000, variance: bool = False
+) -> Stress:
     """Run the stress search on a world."""
     evaluator = evaluator_of(world, space, seed=seed, budget=budget)
     curves = [Curve(ray) for ray in rays(space, {})]
     together = Together(0.01, curves)
     ended = explore(evaluator, together)
+    indices, ended = variances(evaluator, ended) if variance else (None, ended)
     return Stress(
         test="t",
         drift="world",
@@ -81,5 +84,6 @@ def stressed(world: World, space: Space, *, seed: int = 0, budget: int = 2000) -
         combinations=tuple(together.found),
         tried=together.tried,
         margin_map=together.margin_map,
+        sobol=indices,
         ended=ended,
     )
