@@ -49,6 +49,11 @@ class Analysis:
         """Return the statements outside of the flows that wait or set a rate, sorted by position."""
         return tuple(sorted(self.prober.timing.values(), key=lambda s: s.span))
 
+    @property
+    def deciding(self) -> tuple[Step, ...]:
+        """Return the statements outside of the flows that decide what is published, sorted by position."""
+        return tuple(sorted(self.prober.deciding.values(), key=lambda s: s.span))
+
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in source order."""
         return self.prober.operands(site)

@@ -279,10 +279,11 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of the slices, then sites unknown to the recording and timing sites."""
+    """Return the sites in the order of the slices, then sites unknown to the recording or outside of the flows."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
-    late = [step for step in order.analysis.timing if str(step.site) in effects]
+    aside = (*order.analysis.deciding, *order.analysis.timing)
+    late = [step for step in aside if str(step.site) in effects]
     for step in (*order.analysis.sites, *late):
         if str(step.site) not in known:
             span = step.span

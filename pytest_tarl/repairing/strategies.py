@@ -37,7 +37,7 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             order.goal,
             generator,
             late=same,
-            timing=timing_operands(order),
+            aside=aside_operands(order),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)
@@ -70,12 +70,15 @@ def operands(order: Order) -> tuple[Operand, ...]:
     return tuple(sorted(found, key=writing))
 
 
-def timing_operands(order: Order) -> tuple[Operand, ...]:
-    """Return operands that set when the nodes act; they are in no flow, so no slice ranks them."""
+def aside_operands(order: Order) -> tuple[Operand, ...]:
+    """Return operands that decide what the nodes publish, or set when, plainest first.
+
+    They are in no flow, so no slice ranks them.
+    """
     analysis = order.analysis
     known = set(operands(order))
-    found = (o for step in analysis.timing for o in analysis.operands(step.site))
-    return tuple(dict.fromkeys(one for one in found if one not in known))
+    found = (o for step in (*analysis.deciding, *analysis.timing) for o in analysis.operands(step.site))
+    return tuple(sorted(dict.fromkeys(one for one in found if one not in known), key=writing))
 
 
 def evidence(order: Order) -> candidates.Evidence:

@@ -67,12 +67,12 @@ class Sweep:
         generator: np.random.Generator | None = None,
         proposed: bool = False,
         late: Sequence[Operand] = (),
-        timing: Sequence[Operand] = (),
+        aside: Sequence[Operand] = (),
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
     ) -> None:
         self.units = units(operands)
         self.late = units(late)
-        self.timing = units(timing)
+        self.aside = units(aside)
         self.weaker = weaker
         self.mutate = mutate
         self.guards = guards
@@ -100,7 +100,7 @@ class Sweep:
         yield from self._finely(chief)
         if not gained:
             yield from self._together()
-        yield from self._late_ones((*self.timing, *self.late), chief)
+        yield from self._late_ones((*self.aside, *self.late), chief)
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
@@ -115,7 +115,7 @@ class Sweep:
                 yield from self._all(factor, guard, self._leading(before, guard, -self.slack))
                 yield from self._leaders_together(guard)
         if not self._gains.anything():
-            yield from self._late_ones(self.timing, chief)
+            yield from self._late_ones(self.aside, chief)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self._gains.moving(self.units))

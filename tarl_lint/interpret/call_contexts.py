@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tarl_lint.interpret import context_selection, literals, nullness, replay, shared_contexts
 from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE
 from tarl_lint.interpret.interpreter import Interpreter
@@ -124,15 +126,18 @@ def _result(frame: Frame) -> Value:
 def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
     """Give each argument a node of the calling statement."""
     plain, named = arguments
-    shift = len(plain) - len(call.arguments)
+    written = _written(call, plain)
     passed: list[Value] = []
     for number, value in enumerate(plain):
         if _receiver(value) or caller.statement is None:
             passed.append(value)
             continue
         node = ctx.node(caller, ("argument", call.slot, number), "call")
-        if 0 <= number - shift < len(call.arguments):
-            literals.mark(ctx, node, call.arguments[number - shift], value, caller)
+        expr = written[number]
+        if isinstance(expr, ir.Starred) and (len(value.deps) == 1 or not value.constant()[0]):
+            ctx.graph.copies.add(node)  # an element of `*values` is passed on unchanged
+        elif expr is not None:
+            literals.mark(ctx, node, expr, value, caller)
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}
@@ -145,6 +150,21 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
             literals.mark(ctx, node, keywords[name], value, caller)
         renamed[name] = ctx.carry(value, node)
     return passed, renamed
+
+
+def _written(call: ir.Call, plain: Sequence[Value]) -> list[ir.Expr | None]:
+    """Return the expression of each positional argument, the starred one for its elements, None for receivers."""
+    given: list[ir.Expr | None] = [*call.arguments]
+    stars = [number for number, one in enumerate(given) if isinstance(one, ir.Starred)]
+    unknown: list[ir.Expr | None] = [None] * len(plain)
+    if len(stars) > 1:
+        return unknown
+    if stars:
+        receivers = sum(1 for value in plain[:1] if _receiver(value))
+        elements = len(plain) - receivers - (len(given) - 1)
+        given[stars[0] : stars[0] + 1] = [given[stars[0]]] * elements
+    shift = len(plain) - len(given)
+    return [*unknown[: max(shift, 0)], *given[max(-shift, 0) :]]
 
 
 def _note_arguments(

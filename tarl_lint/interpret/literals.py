@@ -12,7 +12,8 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
-MAX_EACH = 4  # a comprehension over at most this many known elements is unrolled
+MAX_EACH = 4  # a comprehension over at most this many known elements is unrolled ...
+MAX_ENTRIES = 32  # ... and in a thorough analysis one over this many, such as all parameters of a node
 
 READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 
@@ -66,8 +67,8 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     kind = "mapping" if expr.key is not None else "sequence"
     first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
     known = sizes.unpacked(ctx, first)
-    plain = expr.key is None and len(expr.loops) == 1 and not expr.loops[0][2]
-    if plain and known and len(known) <= MAX_EACH:
+    plain = (expr.key is None or ctx.thorough) and len(expr.loops) == 1 and not expr.loops[0][2]
+    if plain and known and len(known) <= (MAX_ENTRIES if ctx.thorough else MAX_EACH):
         return _one_by_one_of(ctx, expr, known, frame)
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     deps, lengths = NONE, NONE
@@ -89,13 +90,18 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
 
 
 def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
-    """Unroll a comprehension over few known elements; return the sequence."""
-    obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    """Unroll a comprehension over few known elements; return the sequence or the mapping."""
+    kind = "mapping" if expr.key is not None else "sequence"
+    obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     turn = frame.turn
     for number, value in enumerate(known):
         frame.turn = (*turn, expr.slot, number)
         ctx.ops.assign(ctx, expr.loops[0][0], value, frame)
-        ctx.store.put((obj, item_field(number)), ctx.ops.evaluate(ctx, expr.element, frame))
+        element = ctx.ops.evaluate(ctx, expr.element, frame)
+        if expr.key is None:
+            ctx.store.put((obj, item_field(number)), element)
+        else:
+            updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
     frame.turn = turn
     return pointer(obj)
 

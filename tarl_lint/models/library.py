@@ -337,6 +337,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return BOTTOM
     if obj.kind == "lib" and name == MACHINE_FIELD:
         return userdata.userdata(ctx)
+    if obj.kind == "parameter" and name == "name":
+        return Value(consts=frozenset([obj.name]))
     if obj.kind == "parameter":
         return ctx.store.get((obj, "value")) or UNKNOWN if name in catalog.PARAMETER_VALUES else UNKNOWN
     return heap.default(ctx, obj, name)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from tarl_lint.flows.deciding import deciding
+from tarl_lint.flows.reachability import Tracer
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
@@ -37,6 +39,8 @@ class Prober:
             (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps
         }
         self.seen: dict[SiteId, Seen] = {}
+        self.deciding = {step.site: step for step in deciding(Tracer(machine), flows)}
+        self.starts |= {(s.span.path, s.span.line, s.span.column): site for site, s in self.deciding.items()}
         self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
         self._files = {step.span.path for f in flows for step in f.steps}
         self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}

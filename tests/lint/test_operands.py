@@ -189,3 +189,135 @@ def test_waits_and_rates_outside_of_flows_have_operands(tmp_path, timer, waits, 
     found = [o for step in analysis.timing for o in analysis.operands(step.site)]
     assert [(o.code, o.value) for o in found] == operands
     assert not {step.site for step in analysis.timing} & {step.site for step in analysis.sites}
+
+
+PASSED = """
+    import rospy
+    KEYS = ("pitch", "most")
+    TABLE = {"pitch": 0.125, "most": 1.75}
+    PAIR = (0.125, 1.75)
+    class Spiral:
+        def __init__(self, pitch, most, turns=3):
+            self.pitch = pitch
+            self.most = most
+    class Node:
+        def __init__(self):
+            self.cfg = {"arm.pitch": 0.125, "arm.most": 1.75}
+            self.copy = {key: value for key, value in [("pitch", 0.125), ("most", 1.75)]}
+            {before}
+            self.spiral = None
+            self.out = rospy.Publisher("b", F)
+            rospy.Subscriber("a", F, self.on)
+        def on(self, msg):
+            if msg.go:
+                self.spiral = {made}
+            v = msg.data * self.spiral.most
+            self.out.publish(v)
+"""
+DECLARED = 'self.given = self.declare_parameters("", [("arm.pitch", 0.125), ("arm.most", 1.75)])'
+
+
+@pytest.mark.parametrize(
+    ("made", "before"),
+    [
+        ("Spiral(*[0.125, 1.75])", "pass"),
+        ("Spiral(*PAIR)", "pass"),
+        ("Spiral(0.125, *[1.75])", "pass"),
+        ("Spiral(*[0.125], most=1.75)", "pass"),
+        ("Spiral(*[0.125], 1.75)", "pass"),
+        ("Spiral(*[TABLE[key] for key in KEYS])", "pass"),
+        ("Spiral(*(self.cfg[f'arm.{key}'] for key in KEYS))", "pass"),
+        ("Spiral(*(self.copy[key] for key in ('pitch', 'most')))", "pass"),
+        ("Spiral(**TABLE)", "pass"),
+        ("Spiral(*self.kept)", "self.kept = [0.125, 1.75]"),
+        ("Spiral(*[one.value for one in self.given])", DECLARED),
+        (
+            "Spiral(*(self.all[f'arm.{key}'] for key in ('pitch', 'most')))",
+            DECLARED.replace("self.given = ", "self.all = {one.name: one.value for one in ") + "}",
+        ),
+    ],
+)
+def test_an_argument_that_is_unpacked_is_an_operand_where_it_is_used(tmp_path, made, before):
+    text = PASSED.replace("{made}", made).replace("{before}", before)
+    text = text.replace("class Node:", "from rclpy.node import Node\n    class Arm(Node):")
+    analysis = analysed(tmp_path, node=text)
+    found = analysis.operands(site(analysis, "v = msg.data * self.spiral.most"))
+    assert [(one.code, one.value) for one in found] == [("self.spiral.most", 1.75)]
+
+
+def deciding_operands(directory, text):
+    analysis = analysed(directory, node=text)
+    known = {step.site for step in analysis.sites}
+    assert known.isdisjoint(step.site for step in analysis.deciding)
+    return {
+        step.code.split("\n")[0]: [(one.code, one.value) for one in analysis.operands(step.site)]
+        for step in analysis.deciding
+    }
+
+
+def test_the_limit_of_a_watchdog_is_an_operand_though_only_times_reach_it(tmp_path):
+    found = deciding_operands(
+        tmp_path,
+        """
+        import rclpy
+        from rclpy.duration import Duration
+        from rclpy.node import Node
+        class Heartbeat:
+            patience = 0.6
+            def __init__(self):
+                self.last = None
+            def beat(self, now):
+                self.last = now
+            def alive(self, now):
+                return self.last is not None and now - self.last < Duration(seconds=self.patience)
+        class Truck(Node):
+            def __init__(self):
+                super().__init__("truck")
+                self.heart = Heartbeat()
+                self.speed = 0.25
+                self.out = self.create_publisher(F, "b", 10)
+                self.create_subscription(Empty, "beat", self.beat, 10)
+                self.create_subscription(F, "a", self.on, 10)
+            def beat(self, _msg):
+                self.heart.beat(self.get_clock().now())
+            def on(self, msg):
+                v = 2.0 * msg.data if self.heart.alive(self.get_clock().now()) else 0.0
+                self.out.publish(v)
+        """,
+    )
+    limit = "return self.last is not None and now - self.last < Duration(seconds=self.patience)"
+    assert found[limit] == [("self.patience", 0.6)]
+    assert not any(code.startswith("patience") for code in found)  # its definition is no use
+
+
+def test_a_set_point_and_a_waiting_time_that_no_message_reaches_are_operands(tmp_path):
+    found = deciding_operands(
+        tmp_path,
+        """
+        import rospy
+        CREEP = 0.3
+        WARM_UP = 4.0
+        began = None
+        def pace():
+            if rospy.get_time() - began < WARM_UP:
+                return CREEP
+            return 1.5
+        def on(msg):
+            v = msg.data + 1.0
+            out.publish(v)
+        began = rospy.get_time()
+        out = rospy.Publisher("b", F)
+        speed = rospy.Publisher("c", F)
+        idle = rospy.Publisher("d", F)
+        rospy.Subscriber("a", F, on)
+        while not rospy.is_shutdown():
+            wanted = pace()
+            speed.publish(wanted)
+            unused = 7.0
+        """,
+    )
+    assert found["if rospy.get_time() - began < WARM_UP:"] == [("WARM_UP", 4.0)]
+    assert found["return CREEP"] == [("CREEP", 0.3)]
+    assert found["return 1.5"] == [("1.5", 1.5)]
+    assert "unused = 7.0" not in found
+    assert "v = msg.data + 1.0" not in found
