@@ -14,7 +14,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 10.0  # s for the guardian to end, which first ends the simulator
+PATIENCE = 30.0  # s for the guardian to end, which first ends the simulator; longer than its own limit
 TAIL = 3  # lines of the simulator's output in a message
 
 Event = dict[str, Any]
@@ -33,6 +33,7 @@ class Client:
             stderr=self._log,
             text=True,
             encoding="utf-8",
+            start_new_session=True,  # who kills the test's process group leaves the guardian to end the simulator
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0

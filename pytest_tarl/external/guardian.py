@@ -1,24 +1,30 @@
 """The guardian: a process that keeps a simulator. It reads commands and writes events, one JSON object a line.
 
-It ends the simulator's whole process group when the test says so, and when the test's process is gone.
+It ends the simulator's processes when the test says so, and when the test's process is gone.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 import threading
+import traceback
 from collections import deque
-from time import monotonic
+from contextlib import suppress
+from time import monotonic, sleep
 from typing import Any
 
-from pytest_tarl.external.group import Domain, Group
+from pytest_tarl.external.descendants import outlive_the_test, wait_for_end_of_parent
+from pytest_tarl.external.domain import Domain
+from pytest_tarl.external.group import Group
 from pytest_tarl.external.link import Link
 
 LOOK = 0.05  # s between two looks at the ROS graph, once a second after CALM
 CALM = 5.0  # s
+LAST = (
+    20.0  # s until the simulator is killed if the middleware holds the main thread after the end of the test
+)
 
 
 class Guardian:
@@ -37,9 +43,21 @@ class Guardian:
 
     def read(self) -> None:
         """Read commands until the test's process is gone; runs in a thread."""
-        for line in sys.stdin:
-            self._put(json.loads(line))
-        self._put(None)
+        try:
+            for line in sys.stdin:
+                self._put(json.loads(line))
+        except ValueError:  # the test was killed within a line
+            pass
+        finally:
+            self._finish()
+
+    def watch(self) -> None:
+        """Wait for the end of the test's process, whose forked children may keep stdin open; runs in a thread."""
+        try:
+            wait_for_end_of_parent()
+        except OSError:  # an old kernel, or the test is already gone
+            return
+        self._finish()
 
     def run(self) -> None:
         """Handle commands and events until there are no more commands."""
@@ -53,6 +71,14 @@ class Guardian:
                 self._wait()
         finally:
             self._do_stop()
+
+    def _finish(self) -> None:
+        with suppress(Exception):
+            self._put(None)
+        sleep(LAST)
+        if self._group is not None:
+            self._group.kill()
+        os._exit(1)
 
     def _put(self, command: dict[str, Any] | None) -> None:
         self._commands.append(command)
@@ -132,11 +158,16 @@ class Guardian:
 
 
 def main() -> None:
-    """Reserve stdout for events, and ignore Ctrl-C, which the test's process handles."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Reserve stdout for events, and outlive the test, also if Ctrl-C or a signal ends it."""
+    outlive_the_test()
     events = os.dup(1)
     os.dup2(2, 1)
     guardian = Guardian(events)
-    threading.Thread(target=guardian.read, daemon=True).start()
-    guardian.run()
+    for follow in (guardian.read, guardian.watch):
+        threading.Thread(target=follow, daemon=True).start()
+    try:
+        guardian.run()
+    except Exception:
+        traceback.print_exc()
+        os._exit(1)
     os._exit(0)  # threads of the middleware do not delay the end

@@ -3,6 +3,7 @@
 It publishes /clock and /level, hears /valve, and serves /step and /reset. With OWN_TIME it runs by itself.
 """
 
+import fcntl
 import os
 import subprocess
 import sys
@@ -98,9 +99,11 @@ if FAULT == "refuse":
     sys.exit("no such world")
 if FAULT == "slow":
     time.sleep(float(AT))
-if "CHILD" in os.environ:
-    child = subprocess.Popen(["sleep", "600"])
-    Path(os.environ["CHILD"]).write_text(f"{os.getpid()} {child.pid}")
+if "HELD" in os.environ:  # a lock that is held until this process and its child have ended
+    lock = Path(os.environ["HELD"]).open("w")  # noqa: SIM115
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    print(os.getpid(), file=lock, flush=True)
+    subprocess.Popen(["sleep", "600"], pass_fds=[lock.fileno()])
 print("filling", flush=True)
 rclpy.init()
 rclpy.spin(Tank())

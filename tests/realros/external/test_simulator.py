@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,7 @@ import pytest
 from pytest_tarl.errors import SettingsError, SimulatorError, SimulatorLostError
 from pytest_tarl.external.simulator import KEPT, Simulator, setup
 from pytest_tarl.ros import Ros, message_type
+from tests.held import comes_free, held
 
 pytestmark = pytest.mark.skipif(
     PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
@@ -84,22 +83,6 @@ def expected(count: int, pump: float = 1.0) -> list[float]:
     return found
 
 
-def alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return "Z" not in Path(f"/proc/{pid}/stat").read_text().split(")")[-1].split()[0]
-
-
-def gone(pids: list[int]) -> bool:
-    """Return whether all processes end within ten seconds."""
-    deadline = time.monotonic() + 10
-    while any(map(alive, pids)) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return not any(map(alive, pids))
-
-
 @pytest.mark.parametrize("fault", ["", "late", "slow 1.5"])
 def test_a_stepped_simulator_is_reproducible_even_if_it_is_slow_or_late(tmp_path: Path, fault: str) -> None:
     with Run(tmp_path, {"FAULT": fault}, **STEPPED) as run:
@@ -120,14 +103,14 @@ def test_nodes_are_held_to_the_clock_of_a_simulator_in_its_own_time(
 
 
 def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
-    found = []
+    found, lock = [], tmp_path / "held"
     for _ in range(2):
-        child = tmp_path / "pids"
-        with Run(tmp_path, {"CHILD": str(child)}, reset="/reset", **STEPPED) as run:
-            found.append((run.steps(4), child.read_text()))
+        with Run(tmp_path, {"HELD": str(lock)}, reset="/reset", **STEPPED) as run:
+            found.append((run.steps(4), lock.read_text()))
     assert found[0] == found[1]
+    assert held(lock)
     KEPT.close()
-    assert gone([*map(int, found[0][1].split())])
+    assert not held(lock)
 
 
 @pytest.mark.parametrize(
@@ -151,29 +134,40 @@ def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
             SimulatorLostError,
             "ended with status 3 at 0.3 s of its time; its last output: .*out of water",
         ),
-        ("hang 3", {"patience": 1.0}, SimulatorLostError, "did not answer on /step within 1 s"),
     ],
 )
 def test_a_simulator_that_fails_is_described(
     tmp_path: Path, fault: str, more: dict[str, Any], error: type[Exception], said: str
 ) -> None:
-    child = tmp_path / "pids"
+    lock = tmp_path / "held"
     with (
         pytest.raises(error, match=said),
-        Run(tmp_path, {"FAULT": fault, "CHILD": str(child)}, **STEPPED, **more) as run,
+        Run(tmp_path, {"FAULT": fault, "HELD": str(lock)}, **STEPPED, **more) as run,
     ):
         run.steps(9)
-    if child.exists():
-        assert gone([*map(int, child.read_text().split())])
+    assert comes_free(lock)
+
+
+def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
+    lock = tmp_path / "held"
+    with Run(tmp_path, {"FAULT": "hang 3", "HELD": str(lock)}, **STEPPED) as run:
+        run.steps(2)
+        run.simulator.setup = replace(run.simulator.setup, patience=1.0)
+        with pytest.raises(SimulatorLostError, match="did not answer on /step within 1 s"):
+            run.steps(1)
+    assert comes_free(lock)
 
 
 @pytest.mark.parametrize(
-    ("fault", "said"), [("hang 5", "hung at .* nothing new came within 1 s"), ("jump 5", "went back from")]
+    ("fault", "patience", "said"),
+    [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 20.0, "went back from")],
 )
-def test_a_followed_simulator_that_stops_or_jumps_is_described(tmp_path: Path, fault: str, said: str) -> None:
+def test_a_followed_simulator_that_stops_or_jumps_is_described(
+    tmp_path: Path, fault: str, patience: float, said: str
+) -> None:
     with (
         pytest.raises(SimulatorLostError, match=said),
-        Run(tmp_path, {"FAULT": fault, "OWN_TIME": "1"}, patience=1.0) as run,
+        Run(tmp_path, {"FAULT": fault, "OWN_TIME": "1"}, patience=patience) as run,
     ):
         run.steps(50)
 
@@ -189,10 +183,10 @@ def test_a_missing_program_is_described(tmp_path: Path) -> None:
 
 
 def test_no_process_survives_a_killed_test(tmp_path: Path) -> None:
-    child = tmp_path / "pids"
+    lock = tmp_path / "held"
     program = (
         "import sys; from pathlib import Path; from tests.realros.external.test_simulator import Run, STEPPED\n"
-        f"with Run(Path({str(tmp_path)!r}), {{'CHILD': {str(child)!r}}}, **STEPPED) as run:\n"
+        f"with Run(Path({str(tmp_path)!r}), {{'HELD': {str(lock)!r}}}, **STEPPED) as run:\n"
         "    run.steps(2); print('ran', flush=True); sys.stdin.read()\n"
     )
     root = Path(__file__).parents[3]
@@ -201,7 +195,6 @@ def test_no_process_survives_a_killed_test(tmp_path: Path) -> None:
     ) as test:
         assert test.stdout is not None
         assert test.stdout.readline() == b"ran\n"
-        pids = [*map(int, child.read_text().split())]
-        assert all(map(alive, pids))
-        test.send_signal(signal.SIGKILL)
-    assert gone(pids)
+        assert held(lock)
+        test.kill()
+    assert comes_free(lock)

@@ -1,0 +1,80 @@
+"""Children, orphans and parents of this process on Linux, by prctl(2) and /proc; elsewhere nothing is adopted."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+_DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
+_ADOPT = 36  # PR_SET_CHILD_SUBREAPER
+_LINUX = sys.platform.startswith("linux")
+_IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def outlive_the_test() -> None:
+    """Ignore signals that end the test: the process ends after its simulator."""
+    for number in _IGNORED:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def adopt() -> None:
+    """Become the parent of all descendants whose own parent ends."""
+    if _LINUX:
+        ctypes.CDLL(None).prctl(_ADOPT, 1, 0, 0, 0)
+
+
+def adopted() -> list[int]:
+    """Return the children of this process that run, in order of their ids."""
+    if not _LINUX:
+        return []
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):  # it has ended meanwhile
+            state, parent = path.read_text(errors="replace").rpartition(")")[2].split()[:2]
+            if int(parent) == os.getpid() and state not in "ZX":
+                found.append(int(path.parent.name))
+    return sorted(found)
+
+
+def reap(which: int) -> None:
+    """Take the exit statuses of ended children: -1 for all, -n for those of process group n."""
+    with suppress(ChildProcessError):
+        while os.waitpid(which, os.WNOHANG)[0]:
+            pass
+
+
+def die_with_parent() -> Callable[[], None]:
+    """Return what a new child runs before its program: it gets default signals, and SIGKILL when this process ends.
+
+    The library is loaded here, since a lock of the loader that another thread holds is never released after a fork.
+    """
+    prctl = ctypes.CDLL(None).prctl if _LINUX else None
+    parent = os.getpid()
+
+    def prepare() -> None:
+        for number in _IGNORED:
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, [])
+        if prctl is not None:
+            prctl(_DIE_WITH_PARENT, signal.SIGKILL)
+        if os.getppid() != parent:  # it ended before
+            os._exit(1)
+
+    return prepare
+
+
+def wait_for_end_of_parent() -> None:
+    """Return when the parent of this process has ended. Raise OSError where this cannot be waited for."""
+    if sys.platform != "linux":
+        raise OSError
+    parent = os.pidfd_open(os.getppid())
+    try:
+        select.select([parent], [], [])
+    finally:
+        os.close(parent)

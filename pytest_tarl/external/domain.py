@@ -1,0 +1,32 @@
+"""A ROS domain for one simulator, claimed on this machine."""
+
+from __future__ import annotations
+
+import random
+import socket
+import sys
+from contextlib import suppress
+
+DOMAINS = range(1, 101)  # their ports are below the kernel's ephemeral range
+
+
+class Domain:
+    """A ROS domain that no other guardian on this machine uses; the kernel gives it back when the process ends."""
+
+    def __init__(self) -> None:
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.number = 0
+        candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
+        if not sys.platform.startswith("linux"):
+            self.number = candidates[0]  # there is no abstract socket to claim it by
+            return
+        for number in candidates:
+            with suppress(OSError):
+                self._socket.bind(f"\0tarl-ros-domain-{number}")
+                self.number = number
+                return
+        raise OSError(f"all {len(DOMAINS)} ROS domains are in use")
+
+    def release(self) -> None:
+        """Give the domain back."""
+        self._socket.close()
