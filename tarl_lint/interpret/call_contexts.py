@@ -14,7 +14,18 @@ from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.store import BORN, Delta
-from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join, lineage, pointer
+from tarl_lint.memory.values import (
+    BOTTOM,
+    NO_CONSTANTS,
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    join,
+    lineage,
+    pointer,
+)
 from tarl_lint.models import sizes
 
 CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method", "weak"])
@@ -242,7 +253,7 @@ def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, 
             return made
     obj = blank_instance(ctx, cls, frame, call)
     _initialise(ctx, obj, cls, arguments, frame, call)
-    return pointer(obj)
+    return Value(pts=frozenset([obj]), consts=NO_CONSTANTS)
 
 
 def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> Obj:

@@ -8,7 +8,7 @@ import operator
 from collections.abc import Callable, Hashable, Mapping
 
 from tarl_lint.interpret import dunder_methods, nullness
-from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
@@ -17,6 +17,7 @@ from tarl_lint.memory.values import (
     BY_CLASS,
     MAX_CONSTS,
     MAX_TEXTS,
+    NO_CONSTANTS,
     NONE,
     Nodes,
     Obj,
@@ -175,6 +176,8 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
     if name == "%" and len(values) == 2 and values[1].pts:
         return ctx.ops.remainder(ctx, values)
     function = FOLDED.get(name)
+    if name in PRESENT and _certainly_set(values):
+        return frozenset([name in ("is not", "!=")])
     if function is None or any(v.pts for v in values):
         return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
     if not all(v.consts for v in values):
@@ -191,6 +194,18 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
     if any(v.keys() is None for v in values):
         return _symbolic(results)
     return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
+
+
+def _certainly_set(values: list[Value]) -> bool:
+    """Return whether the first value is compared with None and is certainly an instance of a class."""
+    first, second = values
+    none = second.consts == NONE_ONLY and not second.pts
+    return (
+        none
+        and first.consts == NO_CONSTANTS
+        and bool(first.pts)
+        and all(o.kind == "instance" for o in first.pts)
+    )
 
 
 def _fold_text(values: list[Value]) -> frozenset[object] | None:

@@ -14,6 +14,7 @@ Consts = frozenset[object] | None  # None: unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
+NO_CONSTANTS: frozenset[object] = frozenset()  # of a value that is certainly an object: not None either
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # numbers of objects, in order of creation

@@ -33,6 +33,13 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
+PROCESSES = frozenset(["subprocess.Popen", "pexpect.spawn", "pexpect.spawnu"])
+STREAMS = frozenset(["stdin", "stdout", "stderr"])
+NAMED = (
+    "io.",
+    "subprocess.Popen",
+    "pexpect.spawn",
+)  # library classes whose objects keep the name of their class
 FLAG = "<flag>"  # field of an event: whether it is set
 APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
 FLAGGING = frozenset(["set", "clear"])
@@ -294,7 +301,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 def is_device(obj: Obj) -> bool:
     """Return whether reads of a library object return other data than was written to it."""
-    return obj.kind == "lib" and not obj.name.startswith("io.")
+    return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
 
 
 READERS: Mapping[str, Callable[..., Value]] = {

@@ -31,6 +31,7 @@ from tarl_lint.method_effects import changes, fails, keeps_callables
 from tarl_lint.models import (
     callables,
     containers,
+    drawings,
     futures,
     iterators,
     qt_signals,
@@ -78,6 +79,8 @@ def call_library(
     particular = BUILTIN.get(name)
     if particular is not None:
         found = particular(ctx, Invocation(name, BOTTOM, arguments, frame, call))
+    elif (drawing := drawings.drawn(ctx, qualified, arguments, frame, call)) is not None:
+        return drawing
     else:
         found = generic(ctx, qualified, arguments, frame, call)
     return settings.noted(ctx, qualified, found, arguments, frame, call)
@@ -129,16 +132,19 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
     if catalog.scalar(qualified):
         same = qualified == "builtins.float" and len(arguments[0]) == 1
         return Value(deps, arguments[0][0].pts if same else frozenset())
-    made = new_object(ctx, arguments, deps, frame, call, fields=name[:1].isupper())
+    made = new_object(ctx, arguments, deps, frame, call, fields=_has_fields(qualified))
     callables.hold(ctx, made.pts, held)
     if name[:1].isupper():
         senders.note(ctx, qualified, made, arguments, frame, call)
-    if qualified.startswith("io.") or (ctx.config.named and name[:1].isupper()):
+    if qualified.startswith(containers.NAMED) or (ctx.config.named and name[:1].isupper()):
         for obj in made.pts:
-            obj.name = (
-                qualified  # for settings on its methods, and because io.* objects return what was written
-            )
+            obj.name = qualified  # for settings on its methods, and for objects that return what was written
     return made
+
+
+def _has_fields(qualified: str) -> bool:
+    """Return whether keyword arguments become fields: of classes, except for processes, whose `stdout` is a stream."""
+    return qualified.rpartition(".")[2][:1].isupper() and qualified not in containers.PROCESSES
 
 
 def new_object(
@@ -196,8 +202,8 @@ def _call_method(
     kind = target.kind if target is not None else ""
     if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
-    if name == "__new__" and kind in ("super", "class"):
-        return _blank_object(ctx, Invocation(name, base, arguments, frame, call))
+    if target is not None and kind in ("super", "class") and name in ("__new__", "__init__"):
+        return _built_by_base(ctx, target, Invocation(name, base, arguments, frame, call))
     if target is not None and name == "publish" and (sender := senders.sender(ctx, target)) is not None:
         return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
     if target is not None and kind in ("server", "goal"):
@@ -211,9 +217,9 @@ def _call_method(
         return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, fact))
     if name in catalog.LOGGING or name in catalog.CLOCKS:
         return UNKNOWN
-    if name in catalog.WAITING_METHODS and base.consts is None:
+    if name in catalog.WAITING_METHODS and not base.consts:
         ctx.ops.wait(ctx, frame)
-    if name in catalog.MUTATORS and base.consts is None:
+    if name in catalog.MUTATORS and not base.consts:
         containers.mutate(ctx, base, name, arguments, frame, call)
         given_back = name == "setdefault" or (name == "send" and kind == "sequence")
         return heap.read_any(ctx, target) if given_back and target is not None else UNKNOWN
@@ -225,6 +231,8 @@ def _call_method(
 def _unknown_method(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
+    if (drawing := drawings.drawn_into(ctx, base, arguments, frame, call)) is not None:
+        return drawing
     if name == "join" and not base.pts:
         arguments = strings.keys_joined(ctx, arguments, frame, call)
     callables.call_back(ctx, arguments, frame, call)
@@ -274,6 +282,15 @@ def _given(
 
 
 # --- builtins -----------------------------------------------------------------------------------------
+
+
+def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
+    """Call `__new__` or `__init__` of a base class that is not analysed."""
+    if it.name == "__new__":
+        return _blank_object(ctx, it)
+    if isinstance(target.info, tuple):
+        senders.inherit(ctx, target.info[1], it.arguments, it.frame, it.call)
+    return _unknown_method(ctx, it.base, it.name, it.arguments, it.frame, it.call)
 
 
 def _blank_object(ctx: Interpreter, it: Invocation) -> Value:
@@ -335,6 +352,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
             if value is not None:
                 return heap.bind(ctx, value, this, base)
         return BOTTOM
+    if obj.name in containers.PROCESSES and name in containers.STREAMS:
+        return pointer(obj)  # what a process takes in through one may come out of another
     if obj.kind == "lib" and name == MACHINE_FIELD:
         return userdata.userdata(ctx)
     if obj.kind == "parameter" and name == "name":

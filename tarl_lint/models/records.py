@@ -26,6 +26,7 @@ from tarl_lint.memory.values import (
     pointer,
 )
 from tarl_lint.models import sizes
+from tarl_lint.models.ros import senders
 
 MAX_COPIED: Final = 3  # nesting that a deep copy follows
 INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
@@ -68,6 +69,7 @@ def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Fram
         ctx.store.put((obj, name), value)
     if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
         updates.add_element(ctx, pointer(obj), Value(call_contexts.all_used(ctx, (plain, {}))))
+    senders.inherit(ctx, obj, arguments, frame, call)
     _after(ctx, obj, cls, frame, call)
 
 

@@ -8,7 +8,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import Obj, Value
+from tarl_lint.memory.values import ClassInfo, Obj, Value, pointer
 from tarl_lint.models.ros.endpoints import Publisher
 
 SIGNS: Final = ("~", "/")  # beginnings of topic names
@@ -26,11 +26,20 @@ def note(
             ctx.senders[obj] = Publisher(topics=topics, api=qualified, path=frame.program.path, pos=call.pos)
 
 
+def inherit(ctx: Interpreter, obj: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Record an instance whose base class outside of the files got a topic name as first argument."""
+    if isinstance(obj.info, Obj) and isinstance(obj.info.info, ClassInfo) and obj.info.info.opaque:
+        note(ctx, f"{obj.name}.publish", pointer(obj), arguments, frame, call)
+
+
 def sender(ctx: Interpreter, obj: Obj) -> Publisher | None:
     """Return the publisher of an object: its own, a recorded one, or one held by a base class."""
     if isinstance(obj.info, Publisher):
         return obj.info
     found = ctx.senders.get(obj)
     if found is None and obj.kind == "lib" and isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",):
-        found = ctx.senders[obj] = Publisher(api=f"{obj.name}.publish")
+        holder = ctx.objects.get(("instance", obj.key[1]))
+        held = ctx.senders.get(holder) if holder is not None else None
+        found = held if isinstance(held, Publisher) else Publisher(api=f"{obj.name}.publish")
+        ctx.senders[obj] = found
     return found if isinstance(found, Publisher) else None
