@@ -9,6 +9,7 @@ from typing import Final, Literal
 
 MARK: Final = "\0"
 DEFAULT: Final = "\0default"  # the value of a parameter that is not set
+ARGUMENTS: Final = "\0argv"  # among the values of parameters: the program's command line, a tuple of texts
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 

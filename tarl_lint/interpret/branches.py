@@ -93,10 +93,12 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
 
 
 def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
-    """Return the elements for an unrolled loop: few, known, and containing data; else none."""
+    """Return the elements for an unrolled loop: few and known, with data or from the command line; else none."""
     elements = sizes.unpacked(ctx, source) or []
     if not 1 < len(elements) <= MAX_TURNS:
         return []
+    if ctx.command_line:
+        return elements  # groups of its arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
     return elements if laden else []

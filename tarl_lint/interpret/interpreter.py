@@ -20,7 +20,7 @@ from tarl_lint.memory.store import Root, Shared, Store
 from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
-from tarl_lint.parameter_names import ParameterName
+from tarl_lint.parameter_names import ARGUMENTS, ParameterName
 from tarl_lint.read.module_names import Index
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -89,6 +89,12 @@ class Interpreter:
     def launching(self) -> bool:
         """Return whether the run is for a launch file: names may depend on the node, clients have servers."""
         return self.parameter_names is not None
+
+    @property
+    def command_line(self) -> tuple[str, ...]:
+        """Return the command line of the launched node, `sys.argv`; empty if it is not known."""
+        given = self.fixed.get(ARGUMENTS)
+        return given if isinstance(given, tuple) else ()
 
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> Hashable:
         """Return the key of an end of flows; for a launch, two objects of a class have ends of their own."""

@@ -67,9 +67,22 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     kind = "mapping" if expr.key is not None else "sequence"
     first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
     known = sizes.unpacked(ctx, first)
-    plain = (expr.key is None or ctx.thorough) and len(expr.loops) == 1 and not expr.loops[0][2]
-    if plain and known and len(known) <= (MAX_ENTRIES if ctx.thorough else MAX_EACH):
+    single = (expr.key is None or ctx.thorough) and len(expr.loops) == 1
+    if (
+        single
+        and not expr.loops[0][2]
+        and known
+        and len(known) <= (MAX_ENTRIES if ctx.thorough else MAX_EACH)
+    ):
         return _one_by_one_of(ctx, expr, known, frame)
+    if (
+        single
+        and expr.key is None
+        and ctx.command_line
+        and known
+        and (chosen := _selected(ctx, expr, known, frame))
+    ):
+        return _one_by_one_of(ctx, expr, chosen, frame)
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     deps, lengths = NONE, NONE
     for number, (target, source, conditions) in enumerate(expr.loops):
@@ -104,6 +117,22 @@ def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value],
             updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
     frame.turn = turn
     return pointer(obj)
+
+
+def _selected(
+    ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame
+) -> list[Value] | None:
+    """Return the constants, of a known command line, for which the conditions hold; None if not all are decided."""
+    chosen: list[Value] = []
+    target, _, conditions = expr.loops[0]
+    for value in known if all(one.fixed() for one in known) and len(known) <= sizes.MAX_KNOWN else ():
+        ctx.ops.assign(ctx, target, value, frame)
+        decided = [ctx.ops.evaluate(ctx, condition, frame).constant() for condition in conditions]
+        if not all(found for found, _ in decided):
+            return None
+        if all(holds for _, holds in decided):
+            chosen.append(value)
+    return chosen or None
 
 
 def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:

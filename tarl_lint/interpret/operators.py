@@ -44,6 +44,8 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     "<=": operator.le,
     ">": operator.gt,
     ">=": operator.ge,
+    "in": lambda part, text: part in text,
+    "not in": lambda part, text: part not in text,
 }
 MEMBER = frozenset(["in", "not in"])
 PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that can test for None

@@ -84,8 +84,8 @@ class Expressions:
         return ir.Item(self.expr(node.value, scope), self.expr(node.slice, scope), position(node))
 
     def _slice(self, node: ast.Slice, scope: Scope) -> ir.Expr:
-        parts = [self.expr(n, scope) for n in (node.lower, node.upper, node.step) if n is not None]
-        return ir.Slice(parts, position(node))
+        bounds = [self.expr(n, scope) if n is not None else None for n in (node.lower, node.upper, node.step)]
+        return ir.Slice([one for one in bounds if one is not None], position(node), bounds)
 
     def _call(self, node: ast.Call, scope: Scope) -> ir.Expr:
         function = self.expr(node.func, scope)

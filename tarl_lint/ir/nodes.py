@@ -56,6 +56,7 @@ class Slice:
 
     parts: Sequence[Expr]
     pos: Pos
+    bounds: Sequence[Expr | None] = ()  # of `lower:upper:step`, None for each that is left out
 
 
 @dataclass(slots=True, eq=False)

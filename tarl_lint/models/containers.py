@@ -272,7 +272,9 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
     if ctx.graph.control[node]:
         ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
-    return Value(deps | ctx.kept(node))
+    known = [sizes.constants(ctx, value) for value in it.arguments[0] if ctx.command_line]
+    numbers = [len(texts) for texts in known if texts is not None]
+    return Value(deps | ctx.kept(node), consts=frozenset(numbers) if numbers and len(numbers) == 1 else None)
 
 
 def made_of(ctx: Interpreter, value: Value) -> Nodes:

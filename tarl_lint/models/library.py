@@ -30,6 +30,7 @@ from tarl_lint.memory.values import (
 from tarl_lint.method_effects import changes, fails, keeps_callables
 from tarl_lint.models import (
     callables,
+    command_line,
     containers,
     drawings,
     futures,
@@ -354,6 +355,8 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
         return pointer(obj)  # what a process takes in through one may come out of another
+    if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
+        return command_line.arguments(ctx)
     if obj.kind == "lib" and name == MACHINE_FIELD:
         return userdata.userdata(ctx)
     if obj.kind == "parameter" and name == "name":
@@ -394,6 +397,9 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), _same),
     "type": type_of,
     **dict.fromkeys(("isinstance", "issubclass", "hasattr", "callable"), of_type),
+    "rospy.myargv": command_line.own_arguments,
+    "rclpy.utilities.remove_ros_args": command_line.own_arguments,
+    **dict.fromkeys(("range", "xrange"), command_line.counted),
     "len": containers.counted_elements,
     **dict.fromkeys(("bool", "any", "all"), iterators.asked),
     "str": strings.as_text,

@@ -85,10 +85,33 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
         return ctx.ops.read_item(ctx, base, Value(extra))
     element = heap.elements(ctx, Value(pts=ours))
     longer = length(ctx, Value(pts=ours)) | extra
+    between = _between(ctx, base, index, frame)
     obj = recency.allocate(ctx, "sequence", frame, ("slice", pos))
+    for number, value in enumerate(between or ()):
+        ctx.store.put((obj, item_field(number)), value)
+    if between is not None:
+        return pointer(obj)
     updates.add_element(ctx, pointer(obj), Value(element.deps | extra, element.pts, element.consts))
     ctx.store.put((obj, LENGTH), Value(longer))
     return Value(base.deps, frozenset([obj]))
+
+
+def _between(ctx: Interpreter, base: Value, index: ir.Slice, frame: Frame) -> list[Value] | None:
+    """Return the elements that a slice selects from constants of a known command line; None if they are not known."""
+    elements = constants(ctx, base) if ctx.command_line and index.bounds else None
+    found = [part and ctx.ops.evaluate(ctx, part, frame).constant()[1] for part in index.bounds]
+    ends = [one if isinstance(one, int) else None for one in found]
+    if elements is None or ends != found or 0 in ends[2:]:
+        return None
+    return elements[slice(*ends)]
+
+
+def constants(ctx: Interpreter, value: Value) -> list[Value] | None:
+    """Return the elements of a sequence if each is one known constant, else None."""
+    elements = unpacked(ctx, value)
+    if elements is None or not all(one.fixed() and one != ABSENT and not one.deps for one in elements):
+        return None
+    return elements
 
 
 def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:

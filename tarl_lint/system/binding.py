@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from tarl_lint.model import Finding
-from tarl_lint.parameter_names import DEFAULT, MARK, ParameterName, substituted
+from tarl_lint.parameter_names import ARGUMENTS, DEFAULT, MARK, ParameterName, substituted
 from tarl_lint.system.model import Endpoint, Interface
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
@@ -34,13 +35,31 @@ def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Ma
     Parameters whose value is known only on the robot, or is no scalar, are left out.
     """
     found: dict[str, object] = {}
-    for name in names:
+    for name in (one for one in names if one != ARGUMENTS):
         places = _places(name, full_name)
         below = any(one.startswith(f"{place}/") for place in places for one in values)
         value = next((values[place] for place in places if place in values), None if below else DEFAULT)
         if isinstance(value, str | bool | int | float):
             found[name] = value
     return found
+
+
+def command_line(node: LaunchedNode, launch: Launch, full_name: str) -> Mapping[str, object]:
+    """Return the command line of a launched node under ARGUMENTS; nothing if a part is known only on the robot."""
+    try:
+        given = shlex.split(node.arguments)
+    except ValueError:
+        return {}
+    if any("$(" in one for one in given):
+        return {}
+    own = (
+        f"__node:={full_name.rpartition('/')[2]}"
+        if launch.ros2
+        else f"__name:={full_name.rpartition('/')[2]}"
+    )
+    remaps = [f"{old}:={new}" for old, new in node.remaps]
+    for_ros = ["--ros-args", "-r", own] if launch.ros2 else [*remaps, own, "__log:=node.log"]
+    return {ARGUMENTS: (node.executable, *given, *for_ros)}
 
 
 def _places(name: str, full_name: str) -> tuple[str, str]:

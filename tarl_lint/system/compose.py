@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
-from tarl_lint.system.binding import bound, fixed, parameter_values, with_prints
+from tarl_lint.system.binding import bound, command_line, fixed, parameter_values, with_prints
 from tarl_lint.system.calls import part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
@@ -68,7 +68,8 @@ def _instance(
     if isinstance(interface, Interface):
         values = parameter_values(launch, node, name)
         if interface.deciding and isinstance(found, Program):
-            decided = read(found, fixed(interface.deciding, values, name))
+            known = {**fixed(interface.deciding, values, name), **command_line(node, launch, name)}
+            decided = read(found, known)
             interface = with_prints(decided, interface) if isinstance(decided, Interface) else interface
         resolve = Instance(node, name).resolve
         return Instance(node, name, bound(interface, values, name, resolve))

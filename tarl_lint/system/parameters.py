@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from tarl_lint.parameter_names import ARGUMENTS
 from tarl_lint.read.source import Module
 from tarl_lint.trees import last_name
 
@@ -18,6 +19,8 @@ OPEN: Final = re.compile(
     r"automatically_declare_parameters_from_overrides|allow_undeclared_parameters|get_parameters_by_prefix|"
     r"get_param_names|dynamic_reconfigure|rosparam|param_server|generate_parameter_library"
 )
+
+COMMAND_LINE: Final = re.compile(r"\bsys\.argv\b|\bmyargv\b")
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
@@ -42,8 +45,11 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 
 
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
-    """Return the parameters, by their names in the code, whose variables stand in a condition, sorted."""
-    found: set[str] = set()
+    """Return the parameters, by their names in the code, whose variables stand in a condition, sorted.
+
+    ARGUMENTS stands for the command line, of which names may be made, too.
+    """
+    found = {ARGUMENTS for module in modules if COMMAND_LINE.search(module.text)}
     for module in modules:
         nodes = list(ast.walk(module.tree))
         conditions = [node.test for node in nodes if isinstance(node, ast.If | ast.IfExp | ast.While)]

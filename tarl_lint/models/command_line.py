@@ -1,0 +1,50 @@
+"""The command line of a launched node: `sys.argv`, and the lists that a program makes of it.
+
+Its arguments are constants, so that names of topics among them are known. The lists keep their separate elements where
+the program selects and groups them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import recency
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
+from tarl_lint.models import sizes
+
+
+def arguments(ctx: Interpreter) -> Value:
+    """Return `sys.argv`."""
+    return _listed(ctx, "argv", ctx.command_line)
+
+
+def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the arguments without those for ROS, as `rospy.myargv` does."""
+    if not ctx.command_line:
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    return _listed(ctx, "own argv", [one for one in ctx.command_line if ":=" not in one])
+
+
+def counted(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `range(...)`: its numbers one by one if they are few and the command line is known."""
+    found = [value.constant()[1] for value in it.arguments[0] if ctx.command_line]
+    given = [one for one in found if isinstance(one, int)]
+    exact = len(given) == len(found) and 0 < len(given) <= 3 and 0 not in given[2:]
+    numbers = range(*given) if exact else range(0)
+    if not 0 < len(numbers) <= sizes.MAX_KNOWN:
+        return ctx.ops.generic(ctx, f"builtins.{it.name}", it.arguments, it.frame, it.call)
+    obj = recency.allocate(ctx, "sequence", it.frame, ("counted", it.call.slot))
+    for number, value in enumerate(numbers):
+        ctx.store.put((obj, item_field(number)), const(value))
+    return pointer(obj)
+
+
+def _listed(ctx: Interpreter, name: str, texts: Sequence[str]) -> Value:
+    obj = recency.intern(ctx, "sequence", (name,), name)
+    for number, text in enumerate(texts):
+        if ctx.store.get((obj, item_field(number))) is None:
+            ctx.store.put((obj, item_field(number)), const(text))
+    return pointer(obj) if texts else UNKNOWN
