@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict
 from typing import Any
 
+from pytest_tarl.fleet.decomposition import Decomposition
 from pytest_tarl.fleet.groups import Group
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.robots import Robot, lower
@@ -38,9 +39,26 @@ def document(answer: Answer) -> dict[str, Any]:
         "drifted": [one.name for one in found.drifted],
         "below": [one.name for one in found.below],
         "robots": [_robot(one) for one in found.every],
+        "components": None if answer.parts is None else _components(answer.parts),
         "left_out": dict(answer.left_out),
         "lowest": [asdict(one) for one in answer.lowest],
     }
+
+
+def _components(parts: Decomposition) -> dict[str, Any]:
+    levels = (*parts.levels, (), ())
+    rows = [
+        {
+            "of": one.name,
+            "variance": finite(one.variance),
+            "low": finite(one.low),
+            "high": finite(one.high),
+            "levels": one.levels,
+            "effects": dict(zip(names, one.effects, strict=True)),
+        }
+        for one, names in zip(parts.components, levels, strict=True)
+    ]
+    return {"season": parts.season, "confidence": parts.confidence, "rows": rows}
 
 
 def _group(one: Group) -> dict[str, Any]:

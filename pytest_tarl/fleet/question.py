@@ -9,7 +9,7 @@ from datetime import date
 from pathlib import Path
 
 from pytest_tarl.errors import FleetError, SettingsError
-from pytest_tarl.fleet import dataset, groups, robots
+from pytest_tarl.fleet import dataset, decomposition, groups, robots
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import Origin, origin
@@ -54,6 +54,7 @@ class Answer:
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
     robots: robots.Robots
+    parts: decomposition.Decomposition | None  # None with one robot
     left_out: Mapping[str, int]
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
@@ -97,6 +98,7 @@ def answer(question: Question) -> Answer:
                 database, fixture, question.by, alpha=question.alpha, tolerance=question.tolerance
             ),
             robots=robots.judged(database, fixture, question.alpha),
+            parts=None if question.robot else decomposition.decomposed(database),
             left_out=_left_out(parts, own),
             lowest=_lowest(database) if question.robot else (),
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timezone
 
+from pytest_tarl.fleet import decomposition_words
 from pytest_tarl.fleet.groups import MOST, Group
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.robots import Robot, lower
@@ -35,6 +36,9 @@ def lines(answer: Answer) -> Iterator[str]:
     yield from _named(answer, found.below, "missions are below a recorded bound", sure)
     for one in found.below[:NAMED]:
         yield _robot(one, one.bound, lower(one.status) if one.status else None, words)
+    if answer.parts is not None:
+        yield ""
+        yield from decomposition_words.lines(answer.parts)
     if answer.lowest:
         yield ""
         yield f"missions of {question.robot} with the lowest reward"

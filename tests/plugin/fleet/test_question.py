@@ -156,17 +156,16 @@ def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
 
 
 def test_files_of_schema_1_are_read_beside_newer_ones(folder: Path, found: Answer, tmp_path: Path) -> None:
-    add(folder, range(ROBOTS), tmp_path / "data")
-    paths = sorted((tmp_path / "data" / "missions").rglob("*.parquet"))
-    for older in (paths[::2], paths):
-        for path in older:
-            with path.open("rb") as file:
-                table = pq.read_table(file).select(
-                    ["mission", "robot", "site", "time", "passed", "total", "steps"]
-                )
-            about = {**table.schema.metadata, b"tarl.schema": b"1"}
-            pq.write_table(table.replace_schema_metadata(about), path)
-        assert document.text(answer(Question(str(tmp_path / "data")))) == document.text(found)
+    add(folder, [1], tmp_path / "data")
+    for path in sorted((tmp_path / "data" / "missions").rglob("*.parquet"))[::2]:
+        with path.open("rb") as file:
+            table = pq.read_table(file)
+        table = table.select(["mission", "robot", "site", "time", "passed", "total", "steps"])
+        about = {**table.schema.metadata, b"tarl.schema": b"1"}
+        pq.write_table(table.replace_schema_metadata(about), path)
+    again = answer(Question(str(tmp_path / "data")))
+    assert again.robots.every == found.robots.every[1:2]
+    assert again.groups[0].mean == found.groups[2].mean
 
 
 def test_an_object_store_gives_the_same(folder: Path, found: Answer) -> None:

@@ -1,0 +1,117 @@
+"""Variance components: known ones are found, with intervals that cover them."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pytest_tarl.fleet import components as module
+from pytest_tarl.fleet.components import Component, components
+from pytest_tarl.fleet.decomposition import Decomposition, summed
+from pytest_tarl.fleet.decomposition_words import lines
+from pytest_tarl.learning.tables import Floats, Ints
+
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
+NAMES = ("version", "site", "season")
+SIZES = (3, 8, 5)
+
+
+def missions(seed: int, robots: int, each: int, scale: float) -> tuple[Ints, Ints, Floats, list[float]]:
+    """Draw a fleet with a roll-out in stages; return robot, levels and reward of each mission, and its components."""
+    rng = np.random.default_rng(seed)
+    effects = [_effects(rng, size, scale * s) for size, s in zip(SIZES, (0.3, 0.4, 0.2), strict=True)]
+    robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
+    site, season = robot % SIZES[1], number * SIZES[2] // each
+    early = (site % 3 == 0) & (number > each // 2)
+    version = np.minimum(number * SIZES[0] // each + early, SIZES[0] - 1)
+    levels = np.stack([version, site, season], axis=1)
+    kept = rng.random(robot.size) < rng.uniform(0.4, 1.0, robots)[robot]  # some robots work more than others
+    fixed = sum(effect[column] for effect, column in zip(effects, levels.T, strict=True))
+    reward = 5.0 + fixed + rng.normal(0, 0.5 * scale, robots)[robot] + rng.normal(0, 1, robot.size)
+    levels = levels[kept]
+    truth = [float(np.var(effect[column])) for effect, column in zip(effects, levels.T, strict=True)]
+    return robot[kept], levels, reward[kept], [*truth, (0.5 * scale) ** 2, 1.0]
+
+
+def _effects(rng: np.random.Generator, size: int, spread: float) -> Floats:
+    drawn = rng.normal(size=size)
+    return (drawn - drawn.mean()) / drawn.std() * spread
+
+
+def found(seed: int, robots: int, each: int, scale: float) -> tuple[tuple[Component, ...], list[float]]:
+    robot, levels, reward, truth = missions(seed, robots, each, scale)
+    totals = summed(robot, levels, reward - reward.mean(), SIZES)
+    return components(totals, NAMES, 0.95, np.random.default_rng(seed)), truth
+
+
+def coverage(runs: int, robots: int, each: int, scale: float) -> tuple[Floats, Floats, Floats]:
+    """Return the share of intervals that hold the truth, and the mean and standard deviation of the errors."""
+    held, away = [], []
+    for seed in range(runs):
+        every, truth = found(seed, robots, each, scale)
+        held.append([one.low <= value <= one.high for one, value in zip(every, truth, strict=True)])
+        away.append([one.variance - value for one, value in zip(every, truth, strict=True)])
+    return np.mean(held, axis=0), np.mean(away, axis=0), np.std(away, axis=0)
+
+
+def test_known_components_are_found_with_intervals_that_cover_them() -> None:
+    held, mean, spread = coverage(12, 60, 30, 1.0)
+    assert held.mean() >= 0.85  # 60 intervals at 95 %
+    assert np.all(np.abs(mean) <= 5 * spread / np.sqrt(12))
+
+
+@pytest.mark.skipif(not SLOW, reason="takes a minute; set TARL_SLOW=1")
+@pytest.mark.parametrize("scale", [1.0, 0.2, 0.0])
+@pytest.mark.parametrize(("robots", "each"), [(60, 30), (200, 40)])
+def test_the_intervals_cover_in_a_campaign(robots: int, each: int, scale: float) -> None:
+    held, mean, spread = coverage(200, robots, each, scale)
+    assert np.all(held >= 0.85)
+    assert np.all(np.abs(mean) <= 4 * spread / np.sqrt(200) + 1e-12)
+
+
+def test_balanced_missions_give_the_analysis_of_variance() -> None:
+    rng = np.random.default_rng(5)
+    robot = np.repeat(np.arange(40), 25)
+    reward = rng.normal(0, 1, 1000) + rng.normal(0, 0.7, 40)[robot]
+    totals = summed(robot, np.zeros((1000, 1), np.int64), reward - reward.mean(), (1,))
+    _, between, within = components(totals, ("site",), 0.95, rng)
+    table = reward.reshape(40, 25)
+    expected = float(table.var(axis=1, ddof=1).mean())
+    assert within.variance == pytest.approx(expected)
+    assert between.variance == pytest.approx(float(table.mean(axis=1).var(ddof=1)) - expected / 25)
+
+
+def test_a_version_that_came_with_a_season_everywhere_cannot_be_told_apart() -> None:
+    robot, levels, reward, _ = missions(1, 40, 20, 1.0)
+    levels[:, 0] = levels[:, 2] >= 2
+    totals = summed(robot, levels, reward, (2, *SIZES[1:]))
+    version, site, season, *others = components(totals, NAMES, 0.95, np.random.default_rng(0))
+    assert np.isnan(version.variance)
+    assert np.isnan(season.variance)
+    assert site.low < site.variance < site.high
+    said = [
+        *lines(
+            Decomposition(
+                "month", (version, site, season, *others), (("a", "b"), tuple("cdefghij"), tuple("klmno"))
+            )
+        )
+    ]
+    assert said[1] == "  version         cannot be told apart from the others"
+    assert "season (month)" in said[3]
+
+
+def test_few_robots_give_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "FEWEST", 50)
+    every, _ = found(0, 40, 20, 1.0)
+    assert {(one.low, one.high) for one in every} == {(0.0, float("inf"))}
+    said = [
+        *lines(
+            Decomposition(
+                "week", tuple(replace(one, levels=9) for one in every), (("v",) * 3, ("s",) * 8, ("w",) * 5)
+            )
+        )
+    ]
+    assert all("too few robots for an interval" in one for one in said[1:])
