@@ -213,7 +213,7 @@ def _examined(job: Job, found: Stress, overlay: Mapping[Path, str]) -> Fixed:
     """Stress the repaired node along single directions, and run it over the whole space on fresh draws."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
-    after = stress(replace(request, rollout=patched), combined=False)
+    after = stress(replace(request, rollout=patched, source=None), combined=False)
     rows = compared([margins(found)], [margins(after)])
     return Fixed(
         tuple(rows),

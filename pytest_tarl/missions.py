@@ -32,6 +32,7 @@ from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.stressing.delivering import deliver
 from pytest_tarl.stressing.search import Request
+from pytest_tarl.stressing.statements import source
 from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis, analyse
 
@@ -260,7 +261,14 @@ class Mission:
         sites = plan(analysis) if analysis is not None else None
         instruments = Instruments() if sites is None else self._instruments(sites)
         rollout = rollout_with(instruments, sensors)
-        request = Request(rollout, fixture, self.designation, self.options, self.drift or "", self.progress)
+        given = source(
+            [(self.folder / node).resolve() for node in self.designation.nodes],
+            self.root.resolve(),
+            lambda positions: rollout_with(Instruments(positions), sensors),
+        )
+        request = Request(
+            rollout, fixture, self.designation, self.options, self.drift or "", self.progress, given
+        )
         self._ignore()
         found = deliver(request, self.root)
         if analysis is None or sites is None or found.found is None or found.interrupted:

@@ -46,7 +46,7 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 
 
 def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
-    """Return values to test: the nearest that is expected to be confirmed, then decided ones with lower margins.
+    """Return values to test: the nearest expected to be confirmed, decided ones with lower margins, farther ones.
 
     Exactly at the boundary, even very many episodes rarely show a failure.
     """
@@ -63,7 +63,8 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
         chosen += [t for t in decided if t in curve.ray.extra]  # ends of must_hold
-    return sorted(set(chosen))
+    beyond = [t for t in decided if t > max(chosen)]  # few episodes often agree by chance near the boundary
+    return [*sorted(set(chosen)), *dict.fromkeys([*beyond[len(beyond) // 2 :][:1], *beyond[-1:]])]
 
 
 def _settle(curve: Curve, evaluator: Evaluator) -> None:

@@ -119,6 +119,23 @@ class Evaluator:
             known += self._run([point] * len(missing), missing)
         return known[:count]
 
+    def recalled(self, pool: str, point: Point) -> list[tuple[EpisodePlan, bool]]:
+        """Return the plans of the episodes that a pool ran at a point, and whether each fails.
+
+        An episode fails if it does not pass, or loses more than tolerated against the nominal one on its seed.
+        """
+        known = self._known.get((pool, *point.values()), [])
+        nominal = self._known.get((pool, *self.space.nominal.values()), [])
+        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", len(known))
+        return [
+            (
+                EpisodePlan(seed, self.drift, point=point),
+                not one.passed
+                or (place < len(nominal) and nominal[place].total - one.total > self.guarantee.tolerance),
+            )
+            for place, (seed, one) in enumerate(zip(seeds, known, strict=True))
+        ]
+
     def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:
         """Return the outcome of each point on one seed: that with its row's number. Raise BudgetSpentError."""
         seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows) + 1)

@@ -119,6 +119,25 @@ class Sobol:
     shares: tuple[Share, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Executed:
+    """A statement that ran in this number of failing episodes and in no other."""
+
+    path: str
+    line: int
+    text: str
+    failing: int
+
+
+@dataclass(frozen=True)
+class Statements:
+    """The statements that ran only in failures, among so many failing episodes and others."""
+
+    failing: int
+    others: int
+    only: tuple[Executed, ...]
+
+
 @dataclass(frozen=True)
 class Stress:
     """The result of a stress run of one test and space."""
@@ -135,6 +154,7 @@ class Stress:
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # combinations
     margin_map: MarginMap | None = None
+    statements: Statements | None = None  # None without a confirmed failure
     sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
 

@@ -11,7 +11,7 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices
+# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements
 FORMAT_VERSION = 3
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
@@ -44,6 +44,7 @@ def document(stress: Stress) -> dict[str, Any]:
         "directions": [_direction(stress, curve) for curve in stress.curves],
         "failures": [_failure(stress, one) for one in stress.failures],
         "combinations_tried": stress.tried,
+        "statements": None if stress.statements is None else asdict(stress.statements),
         "sobol": _sobol(stress.sobol),
         "broken_promises": broken_promises(stress),
     }

@@ -19,6 +19,7 @@ from pytest_tarl.stressing.words import (
     nominal_words,
     shown,
     sobol_words,
+    statement_words,
     together,
 )
 
@@ -29,6 +30,7 @@ body { font: 16px/1.5 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto
 h1 { font-size: 1.4rem } h2 { font-size: 1.1rem; margin-top: 2rem } svg { width: 100%; height: auto }
 text { font: 12px system-ui, sans-serif; fill: #4a5265 } table { border-collapse: collapse; font-size: .9rem }
 td, th { padding: .1rem .8rem .1rem 0; text-align: right } .broken { color: #b3261e; font-weight: 600 }
+.code { text-align: left }
 @media (prefers-color-scheme: dark) { body { background: #14171f; color: #e6e9f0 } text { fill: #aab2c5 } }
 """
 LEGEND = (
@@ -50,6 +52,7 @@ def render(stress: Stress) -> str:
             *_maps(stress),
             *_sections(stress),
             *_combinations(stress),
+            *_statements(stress),
             *_variance(stress),
             "</html>\n",
         ]
@@ -143,6 +146,27 @@ def _table(stress: Stress, name: str, measured: list[tuple[float, Evidence]]) ->
     ]
     head = f"<tr><th>{escape(name)}<th>margin<th>guarantee<th>passed<th>loss"
     return f"<details><summary>All values</summary><table>{head}{''.join(rows)}</table></details>"
+
+
+def _statements(stress: Stress) -> Iterator[str]:
+    """Yield the table of the statements that run only in failures."""
+    found = stress.statements
+    if found is None:
+        return
+    yield "<h2>Statements of failures</h2>"
+    if not found.only:
+        yield from (f"<p>{escape(one)}</p>" for one in statement_words(stress))
+        return
+    yield (
+        f"<p>Each ran in failing episodes, of which {found.failing} were repeated, and in none of {found.others} "
+        "other episodes.</p>"
+    )
+    rows = (
+        f"<tr><td>{escape(one.path)}:{one.line}<td>{one.failing} of {found.failing}"
+        f'<td class="code"><code>{escape(one.text)}</code>'
+        for one in found.only
+    )
+    yield f"<table><tr><th>statement<th>failing episodes<th>{''.join(rows)}</table>"
 
 
 def _variance(stress: Stress) -> Iterator[str]:

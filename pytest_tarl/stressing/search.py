@@ -14,11 +14,12 @@ from pytest_tarl.spaces import Space
 from pytest_tarl.stressing.boundary import COARSE, bisect, confirm, sweep
 from pytest_tarl.stressing.combinations import Combined, Together
 from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progress
-from pytest_tarl.stressing.findings import FAR_RISK, Curve, Sobol, Stress
+from pytest_tarl.stressing.findings import FAR_RISK, Curve, Sobol, Statements, Stress, confirmed
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
 from pytest_tarl.stressing.holding import hold
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.sobol_indices import sobol
+from pytest_tarl.stressing.statements import Source, statements
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class Request:
     options: Options
     drift: str
     progress: Progress
+    source: Source | None = None  # to find the statements of failures; without it, none are recorded
 
 
 def stress(request: Request, *, combined: bool = True) -> Stress:
@@ -52,6 +54,9 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
     together = Together(share, curves)
     ended = explore(evaluator, together, combined=combined)
     indices, ended = variances(evaluator, ended) if combined else (None, ended)
+    executed, ended = (
+        _executed(request, evaluator, together, ended) if request.source is not None else (None, ended)
+    )
     return Stress(
         test=request.fixture.test,
         drift=request.drift,
@@ -66,6 +71,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         tried=together.tried,
         margin_map=together.margin_map,
         sobol=indices,
+        statements=executed,
         ended=ended,
     )
 
@@ -103,6 +109,21 @@ def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
         return None, ended
     try:
         return sobol(evaluator), ended
+    except KeyboardInterrupt:
+        return None, "interrupted"
+
+
+def _executed(
+    request: Request, evaluator: Evaluator, together: Together, ended: str
+) -> tuple[Statements | None, str]:
+    """Return the statements of failures, and how the run ended; Ctrl-C before leaves them out."""
+    failures = sorted(
+        [*confirmed(together.curves), *together.found], key=lambda one: (one.distance, one.names)
+    )
+    if ended == "interrupted" or request.source is None:
+        return None, ended
+    try:
+        return statements(request.source, evaluator, together.curves, failures), ended
     except KeyboardInterrupt:
         return None, "interrupted"
 

@@ -10,7 +10,7 @@ from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress
 from pytest_tarl.stressing.rays import Ray
 
-MOST_SHOWN = 5  # combinations
+MOST_SHOWN = 5  # combinations, and statements
 SURE = f"{100 * CONFIDENCE:.3g} %"
 ROUNDING = 1e-9  # tolerance for rounding errors of values on a ray
 
@@ -32,6 +32,8 @@ def lines(stress: Stress) -> Iterator[str]:
             yield f"  {name if not number else '':10} {sentence}"
     for number, sentence in enumerate(together(stress)):
         yield f"  {'together' if not number else '':10} {sentence}"
+    for number, sentence in enumerate(statement_words(stress)):
+        yield f"  {'statements' if not number else '':10} {sentence}"
     yield from (f"  {'variance':10} {sentence}" for sentence in sobol_words(stress))
     if stress.ended in ENDED:
         yield f"  {ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)}"
@@ -106,6 +108,22 @@ def sobol_words(stress: Stress) -> Iterator[str]:
         f"Shares of the margin's variance over the space: {'; '.join(parts)} "
         f"(Sobol indices, {stress.sobol.episodes} episodes)."
     ).replace("%", " %")
+
+
+def statement_words(stress: Stress) -> Iterator[str]:
+    """Yield sentences on the statements that run only in failures."""
+    found = stress.statements
+    if found is None:
+        return
+    if not found.only:
+        yield f"No statement ran only in failures ({found.failing} failing episodes, {found.others} others)."
+    for one in found.only[:MOST_SHOWN]:
+        yield (
+            f"{one.path}:{one.line} ran in {one.failing} of {found.failing} failing episodes and in none of "
+            f"{found.others} others: {one.text}"
+        )
+    if len(found.only) > MOST_SHOWN:
+        yield f"{len(found.only) - MOST_SHOWN} more statements that ran only in failures are in the JSON result."
 
 
 def broken_promises(stress: Stress) -> list[str]:

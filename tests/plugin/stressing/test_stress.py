@@ -18,7 +18,9 @@ from pytest_tarl.promises import must_hold
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import json_result, kept, words
 from pytest_tarl.stressing import margins as margins_file
+from pytest_tarl.stressing.boundary import confirm
 from pytest_tarl.stressing.findings import Curve, failure
+from pytest_tarl.stressing.guarantee import Evidence
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import along_rays
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
@@ -183,6 +185,19 @@ def test_a_failing_end_of_must_hold_is_tested_itself() -> None:
     along_rays([curve], evaluator_of(world, space), 0.01)
     assert curve.confirmed is not None
     assert curve.ray.value(curve.confirmed) <= 0.2
+
+
+def test_a_clear_failure_is_confirmed_although_four_episodes_misled_the_search_near_the_boundary() -> None:
+    space = space_of(slope=Drift.range(0.0, 1.0, nominal=0.0))
+    evaluator = evaluator_of(lambda point, _: (point["slope"] < 0.5, 1.0), space)
+    curve = Curve(rays(space, {})[0])
+    failed, passed = (
+        Evidence(one, margin, 4, 0, 0.0, 0.0) for one, margin in (("fails", -5.0), ("holds", 1.0))
+    )
+    curve.evidence = {0.25: passed, 0.3: failed, 0.4: failed, 0.5: failed, 0.75: failed, 1.0: failed}
+    confirm(curve, evaluator, 0.01)
+    assert curve.confirmed == 0.75
+    assert all(t < 0.5 for t in curve.rejected)
 
 
 @pytest.mark.parametrize(

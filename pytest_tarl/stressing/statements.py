@@ -1,0 +1,136 @@
+"""Which statements run in failures and in no other episode: episodes of the search are repeated, and record statements.
+
+The repetitions have the same drifts and seeds, so they take the same course. They do not count towards the budget.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice, zip_longest
+from pathlib import Path
+
+from pytest_tarl.instrumentation.sites import Position, Positions
+from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.evaluating import RAYS, Evaluator
+from pytest_tarl.stressing.findings import Curve, Executed, Failure, Statements
+
+FAILING, OTHERS = 16, 32  # largest numbers of episodes to repeat
+_DECLARING = (  # statements without an effect when a mission runs
+    ast.FunctionDef,
+    ast.AsyncFunctionDef,
+    ast.ClassDef,
+    ast.Import,
+    ast.ImportFrom,
+    ast.Global,
+    ast.Nonlocal,
+    ast.Pass,
+)
+
+
+@dataclass(frozen=True)
+class Source:
+    """The statements of the nodes' files, numbered over all files, and how to record which of them run."""
+
+    places: tuple[tuple[str, int, str], ...]  # file as shown to users, line, text
+    positions: Mapping[Path, Positions]
+    rollout: Callable[[Mapping[Path, Positions]], Rollout]
+
+
+def source(
+    files: Sequence[Path], root: Path, rollout: Callable[[Mapping[Path, Positions]], Rollout]
+) -> Source:
+    """Return the statements of files; one that cannot be read or parsed has none."""
+    places: list[tuple[str, int, str]] = []
+    positions: dict[Path, Positions] = {}
+    for path in files:
+        name = path.relative_to(root).as_posix() if path.is_relative_to(root) else path.name
+        try:
+            text = path.read_text("utf-8")
+            found = [*places_in(text)]
+        except (OSError, ValueError, SyntaxError, RecursionError):
+            continue
+        positions[path] = {place: len(places) + number for number, place in enumerate(found)}
+        lines = text.split("\n")
+        places += [(name, line, lines[line - 1].strip()) for line, _ in found]
+    return Source(tuple(places), positions, rollout)
+
+
+def places_in(text: str) -> Iterator[Position]:
+    """Yield the position of each statement that does something, in the order of the lines."""
+    lines = text.split("\n")
+    nodes = (one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.stmt) and _does_something(one))
+    found = {(one.lineno, one.col_offset) for one in nodes}
+    for line, offset in sorted(found):
+        yield line, len(lines[line - 1].encode()[:offset].decode()) + 1
+
+
+def _does_something(node: ast.stmt) -> bool:
+    quiet = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    return not (quiet or isinstance(node, _DECLARING))
+
+
+def statements(
+    given: Source, evaluator: Evaluator, curves: Sequence[Curve], failures: Sequence[Failure]
+) -> Statements | None:
+    """Return the statements that run only in failures; None without a failure. Raise KeyboardInterrupt."""
+    failing, others = chosen(evaluator, curves, failures)
+    if not failing or not others or not given.places:
+        return None
+    rollout = given.rollout(given.positions)
+    ran = [_run(rollout, plans) for plans in (failing, others)]
+    return Statements(len(failing), len(others), only_in_failures(given.places, *ran))
+
+
+def only_in_failures(
+    places: Sequence[tuple[str, int, str]],
+    failing: Sequence[Collection[int]],
+    others: Iterable[Collection[int]],
+) -> tuple[Executed, ...]:
+    """Return the statements that some failing episode and no other ran, those in most failures first."""
+    elsewhere = {number for one in others for number in one}
+    counts = Counter(number for one in failing for number in one if number not in elsewhere)
+    order = sorted(counts, key=lambda number: (-counts[number], number))
+    return tuple(Executed(*places[number], counts[number]) for number in order)
+
+
+def chosen(
+    evaluator: Evaluator, curves: Sequence[Curve], failures: Sequence[Failure]
+) -> tuple[list[EpisodePlan], list[EpisodePlan]]:
+    """Return failing episodes of confirmed failures in turn, and other episodes that resemble them.
+
+    The others are, in turn, those at failing drifts that do not fail, nominal ones, and ones where the guarantee holds.
+    """
+    fails: list[list[EpisodePlan]] = []
+    passes: list[list[EpisodePlan]] = []
+    for one in failures:
+        known = evaluator.recalled(RAYS, one.point)
+        fails.append([plan for plan, failed in known if failed])
+        passes.append([plan for plan, failed in known if not failed])
+    usual = evaluator.space.nominal
+    points: list[tuple[str, Point]] = [(RAYS, usual)]
+    points += [(RAYS, curve.ray.point(curve.held)) for curve in curves if curve.held]
+    points += [
+        ("search", curve.ray.point(t))
+        for curve in curves
+        for t, one in sorted(curve.evidence.items(), reverse=True)
+        if one.result == "holds"
+    ]
+    passes += [
+        [plan for plan, failed in evaluator.recalled(pool, point) if not failed] for pool, point in points
+    ]
+    return [*islice(_in_turn(fails), FAILING)], [*islice(_in_turn(passes), OTHERS)]
+
+
+def _in_turn(lists: Sequence[Sequence[EpisodePlan]]) -> Iterator[EpisodePlan]:
+    for row in zip_longest(*lists):
+        yield from (one for one in row if one is not None)
+
+
+def _run(rollout: Rollout, plans: Sequence[EpisodePlan]) -> list[set[int]]:
+    """Return the numbers of the statements that each episode runs."""
+    recording = (replace(plan, record=True) for plan in plans)
+    return [set(pending.result().trace.site.tolist()) for pending in in_order(rollout, recording)]
