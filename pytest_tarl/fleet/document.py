@@ -39,6 +39,15 @@ def document(answer: Answer) -> dict[str, Any]:
         "drifted": [one.name for one in found.drifted],
         "below": [one.name for one in found.below],
         "robots": [_robot(one) for one in found.every],
+        "clusters": [
+            {
+                "robots": list(one.robots),
+                "cells": [list(cell) for cell in one.cells],
+                "residuals": list(one.residuals),
+            }
+            for one in answer.clusters.found
+        ],
+        "unclear": list(answer.clusters.unclear),
         "components": None if answer.parts is None else _components(answer.parts),
         "left_out": dict(answer.left_out),
         "lowest": [asdict(one) for one in answer.lowest],

@@ -9,7 +9,7 @@ from datetime import date
 from pathlib import Path
 
 from pytest_tarl.errors import FleetError, SettingsError
-from pytest_tarl.fleet import dataset, decomposition, groups, robots
+from pytest_tarl.fleet import clusters, dataset, decomposition, groups, robots
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import Origin, origin
@@ -55,6 +55,7 @@ class Answer:
     groups: tuple[groups.Group, ...]
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None with one robot
+    clusters: clusters.Clusters
     left_out: Mapping[str, int]
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
@@ -88,20 +89,25 @@ def answer(question: Question) -> Answer:
     with opened(where, fitting, fixture.sample.cells, question.by, which) as database:
         if not database.missions:
             raise FleetError(_nothing(where, question))
-        return Answer(
-            question=question,
-            fixture=fixture,
-            missions=database.missions,
-            copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
-            cells=database.cells,
-            groups=groups.judged(
-                database, fixture, question.by, alpha=question.alpha, tolerance=question.tolerance
-            ),
-            robots=robots.judged(database, fixture, question.alpha),
-            parts=None if question.robot else decomposition.decomposed(database),
-            left_out=_left_out(parts, own),
-            lowest=_lowest(database) if question.robot else (),
-        )
+        return _judged(database, fixture, question, _left_out(parts, own))
+
+
+def _judged(database: Database, fixture: Fixture, question: Question, left_out: Mapping[str, int]) -> Answer:
+    alpha, one = question.alpha, bool(question.robot)
+    every = robots.judged(database, fixture, alpha)
+    return Answer(
+        question=question,
+        fixture=fixture,
+        missions=database.missions,
+        copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
+        cells=database.cells,
+        groups=groups.judged(database, fixture, question.by, alpha=alpha, tolerance=question.tolerance),
+        robots=every,
+        parts=None if one else decomposition.decomposed(database),
+        clusters=clusters.clustered(database, fixture, every, alpha),
+        left_out=left_out,
+        lowest=_lowest(database) if one else (),
+    )
 
 
 def _lowest(database: Database) -> tuple[Mission, ...]:

@@ -36,6 +36,7 @@ def lines(answer: Answer) -> Iterator[str]:
     yield from _named(answer, found.below, "missions are below a recorded bound", sure)
     for one in found.below[:NAMED]:
         yield _robot(one, one.bound, lower(one.status) if one.status else None, words)
+    yield from _clusters(answer, words)
     if answer.parts is not None:
         yield ""
         yield from decomposition_words.lines(answer.parts)
@@ -46,6 +47,30 @@ def lines(answer: Answer) -> Iterator[str]:
             result = "passed" if mission.passed else "failed"
             yield f"  {_time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
     yield from _notes(answer)
+
+
+def _clusters(answer: Answer, words: Vocabulary) -> Iterator[str]:
+    """Yield the robots whose drifts are alike."""
+    found = answer.clusters
+    if not found.found and not found.unclear:
+        return
+    yield ""
+    yield "Robots whose drifts are alike"
+    for one in found.found:
+        mean = sum(one.residuals) / max(1, len(one.residuals))
+        where = (
+            f"{words.words(one.cells)}, {mean:+.3g} reward a step there" if one.cells else "no common cell"
+        )
+        yield f"  {_robots(len(one.robots))} ({_names(one.robots)}): {where}"
+    if found.unclear:
+        yield f"  {_robots(len(found.unclear))} ({_names(found.unclear)}): no cell stands out"
+    if found.left_out:
+        yield f"  {found.left_out:,} further robots with less evidence were not compared"
+
+
+def _names(names: Sequence[str]) -> str:
+    more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+    return ", ".join(names[:NAMED]) + more
 
 
 def _formulas(answer: Answer) -> Iterator[str]:

@@ -1,0 +1,128 @@
+"""Robots whose drifts are alike: clusters of the residual maps of the robots that are named.
+
+The distance of two robots is the largest difference of their maps in any common cell, in standard errors of that
+difference, so that noise does not keep robots apart. Complete linkage (Sørensen 1948) joins clusters while no two of
+their robots differ significantly, corrected for the numbers of cells and pairs (Bonferroni).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import erfc, sqrt
+
+import numpy as np
+
+from pytest_tarl.fleet.database import Database
+from pytest_tarl.fleet.residual_maps import ResidualMap, designed, residual_map
+from pytest_tarl.fleet.robots import Robots
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.tables import Floats
+from pytest_tarl.sensors import Cell
+
+MOST = 300  # robots that are compared, those with most evidence
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Robots with like maps, by name; their common cells, and the mean residual of a visit to each of them."""
+
+    robots: tuple[str, ...]
+    cells: tuple[Cell, ...]
+    residuals: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Clusters:
+    """The clusters, largest first, robots whose maps show no cell clearly, and the number of robots left out."""
+
+    found: tuple[Cluster, ...] = ()
+    unclear: tuple[str, ...] = ()
+    left_out: int = 0
+
+
+def clustered(database: Database, fixture: Fixture, robots: Robots, alpha: float) -> Clusters:
+    """Return the clusters of the robots that are named."""
+    named = {one.name: one for one in (*robots.below, *robots.drifted)}
+    some = sorted(named.values(), key=lambda one: (-max(one.world, one.bound), one.name))
+    if not some:
+        return Clusters()
+    world = designed(fixture)
+    maps = [residual_map(database, world, one) for one in some[:MOST]]
+    return of(maps, world.variance[:-1], fixture.sample.cells, alpha, len(some) - len(maps))
+
+
+def of(
+    maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
+) -> Clusters:
+    """Return the clusters of some maps; `recorded` is the variance of the recording's own mean residual, by cell."""
+    ordered = sorted(maps, key=lambda one: one.robot)  # sums depend on the order in their last bits
+    clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
+    unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
+    groups = _linked(distances(clear), len(cells), alpha) if clear else []
+    found = [_cluster([clear[n] for n in group], recorded, cells, alpha) for group in groups]
+    return Clusters(tuple(sorted(found, key=lambda one: (-len(one.robots), one.robots))), unclear, left_out)
+
+
+def distances(maps: Sequence[ResidualMap]) -> Floats:
+    """Return the distance of each pair of maps, shape (maps, maps); infinite without a common cell or with itself."""
+    mean = np.array([one.mean for one in maps])
+    variance = np.array([one.variance for one in maps])
+    found = np.full((len(maps), len(maps)), np.inf)
+    for n in range(len(maps)):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            apart = np.abs(mean - mean[n]) / np.sqrt(variance + variance[n])
+        apart[mean == mean[n]] = 0.0
+        known = ~np.isnan(apart).all(axis=1)
+        found[n, known] = np.nanmax(apart[known], axis=1)
+        found[n, n] = np.inf
+    return found
+
+
+def _linked(distance: Floats, cells: int, alpha: float) -> list[list[int]]:
+    """Return clusters of rows by complete linkage."""
+    groups = [[n] for n in range(len(distance))]
+    pairs = max(1, len(groups) * (len(groups) - 1) // 2)
+    apart = distance.copy()
+    while len(groups) > 1:
+        one, other = divmod(int(apart.argmin()), len(groups))
+        nearest = float(apart[one, other])
+        if not _p_value(nearest) * cells * pairs >= alpha:
+            break
+        one, other = min(one, other), max(one, other)
+        joined = np.maximum(apart[one], apart[other])
+        joined[one] = np.inf
+        apart[one], apart[:, one] = joined, joined
+        apart = np.delete(np.delete(apart, other, axis=0), other, axis=1)
+        groups[one] += groups.pop(other)
+    return groups
+
+
+def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float) -> Cluster:
+    """Return the cluster of some maps, pooled by the inverse of their variances."""
+    mean = np.array([one.mean for one in maps])
+    weight = 1.0 / np.maximum(np.array([one.variance for one in maps]), np.finfo(float).tiny)
+    weight[np.isnan(mean)] = 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pooled = (np.nan_to_num(mean) * weight).sum(axis=0) / weight.sum(axis=0)
+        variance = 1.0 / weight.sum(axis=0)
+    there = _standing_out(pooled, variance + recorded, alpha)
+    return Cluster(
+        tuple(sorted(one.robot for one in maps)),
+        tuple(cells[n] for n in there.tolist()),
+        tuple(pooled[there].tolist()),
+    )
+
+
+def _standing_out(mean: Floats, variance: Floats, alpha: float) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Return the cells whose mean residual is not 0, corrected for their number."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        size = np.where(mean == 0.0, 0.0, np.abs(mean) / np.sqrt(variance))
+    known = ~np.isnan(size)
+    p = np.array([_p_value(one) if there else 1.0 for one, there in zip(size, known, strict=True)])
+    return np.flatnonzero(p * max(1, int(known.sum())) < alpha)
+
+
+def _p_value(size: float) -> float:
+    """Return the two-sided p-value of a difference in standard errors (normal)."""
+    return erfc(size / sqrt(2.0))

@@ -1,0 +1,88 @@
+"""The residual map of a robot: by how much each visit to a cell earns more or less than recorded, and how sure that is.
+
+The residual of a visit is that of Bellman's equation for the recorded utility (learning/residuals.py), so it is where
+the world changed, not upstream of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl.fleet.database import Database
+from pytest_tarl.fleet.robots import Robot, lower
+from pytest_tarl.fleet.samples import following, watched
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.residuals import Model, fitted, residuals
+from pytest_tarl.learning.tables import Floats, Sample, sum_by
+
+FEWEST = 5  # missions in a cell, below which its residual is not known
+
+
+@dataclass(frozen=True)
+class ResidualMap:
+    """Mean residual of a visit and its variance, by cell of the recording; NaN if too few missions went there."""
+
+    robot: str
+    mean: Floats
+    variance: Floats
+
+
+@dataclass(frozen=True)
+class Designed:
+    """The recorded world: its model, the variance of a cell's mean residual, and of a single visit's."""
+
+    model: Model
+    variance: Floats
+    of_visit: Floats
+
+
+def designed(fixture: Fixture) -> Designed:
+    """Return the model of a recording for the cells of `watched`: its own and one for all others."""
+    cells = len(fixture.sample.cells) + 1
+    model = fitted(fixture.sample.chain, cells)
+    own = Sample(**{**vars(fixture.sample), "cells": ((),) * cells, "lists": ()})
+    _, variance, visits = _mean(own, model)
+    return Designed(model, variance, variance * visits)
+
+
+def residual_map(database: Database, world: Designed, robot: Robot) -> ResidualMap:
+    """Return the map of a robot's missions since its onset.
+
+    A robot with few missions may show too little noise by chance: its variance is at least that of as many recorded
+    visits.
+    """
+    query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
+    found = database.columns(query, robot.name)
+    first, end = int(found["first"][0]), int(found["ends"][0])
+    rows, transitions = following(database, min(first + since(robot), end - 1), end)
+    sample = watched(rows, transitions, len(world.variance) - 1)
+    mean, variance, visits = _mean(sample, world.model)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        least = world.of_visit / visits
+    return ResidualMap(robot.name, mean[:-1], np.fmax(variance, least)[:-1])
+
+
+def since(robot: Robot) -> int:
+    """Return the number of missions before the onset, by the question with more evidence; 0 if it is not known."""
+    if robot.status is None:
+        return 0
+    below = lower(robot.status)
+    evidence = below if below is not None and robot.bound >= robot.world else robot.status.world
+    return 0 if evidence.since is None else evidence.since.mission - 1
+
+
+def _mean(sample: Sample, model: Model) -> tuple[Floats, Floats, Floats]:
+    """Return mean residual, its variance and the visits, by cell; missions are independent, their steps are not."""
+    found = residuals(sample, model)
+    total = found.move + found.reward
+    place = sample.chain.episode * total.shape[1] + sample.chain.cell
+    visits = sum_by(place, sample.chain.count, total.size).reshape(total.shape)
+    count, missions = visits.sum(axis=0), (visits > 0).sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = total.sum(axis=0) / count
+        spread = ((total - np.where(visits > 0, mean, 0.0) * visits) ** 2).sum(axis=0)
+        variance = spread / count**2 * missions / (missions - 1)
+    known = missions >= FEWEST
+    return np.where(known, mean, np.nan), np.where(known, variance, np.nan), count
