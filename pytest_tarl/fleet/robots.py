@@ -13,14 +13,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pytest_tarl.fleet import side_by_side
 from pytest_tarl.fleet.database import Columns, Database
 from pytest_tarl.fleet.samples import following, part, watched
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.tables import Ints
+from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
-from pytest_tarl.monitoring.status import Evidence, Status, status
+from pytest_tarl.monitoring.status import Evidence, Status
+from pytest_tarl.monitoring.status import status as status_of
 from pytest_tarl.sensors import Cell
 
 PORTION = 50_000  # missions read together
@@ -78,15 +80,34 @@ def _each(database: Database, first: Monitor, recorded: int, q: float) -> Iterat
     begin = 0
     for portion in _portions(np.asarray(ends).astype(np.int64)):
         rows, transitions = following(database, begin, int(portion[-1]))
-        sample = watched(rows, transitions, recorded)
-        low = 0
-        for high in (portion - begin).tolist():
-            monitor = fresh(first)
-            new = _new(database.cells, transitions, begin + low, begin + high, recorded)
-            monitor.take(part(sample, low, high), np.asarray(rows["time"][low:high], np.float64), new)
-            yield robot(str(rows["robot"][low]), monitor, q)
-            low = high
+        yield from portioned(first, rows, transitions, portion - begin, database.cells[recorded:], q)
         begin = int(portion[-1])
+
+
+def portioned(
+    first: Monitor, rows: Columns, transitions: Columns, ends: Ints, others: Sequence[Cell], q: float
+) -> list[Robot]:
+    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
+
+    `others` are the cells that the recording lacks, numbered after its own.
+    """
+    recorded = len(first.scale.cells)
+    sample = watched(rows, transitions, recorded)
+    found: dict[int, Robot] = {}
+    for some in side_by_side.watched(first, sample, ends):
+        for place, (number, peak) in enumerate(zip(some.robots.tolist(), some.peaks(), strict=True)):
+            low, high = int(ends[number - 1]) if number else 0, int(ends[number])
+            name, passed = str(rows["robot"][low]), int(np.count_nonzero(sample.passed[low:high]))
+            world, bound = evidence(first, peak)
+            status = None
+            if max(world, bound) >= -np.log2(q):
+                monitor = fresh(first)
+                monitor.processes, monitor.pool = some.state(place)
+                new = _new(others, transitions, int(rows["number"][low]), high - low, recorded)
+                monitor.told(part(sample, low, high), np.asarray(rows["time"][low:high], np.float64), new)
+                status = status_of(monitor)
+            found[number] = Robot(name, high - low, passed, world, bound, status)
+    return [found[number] for number in range(len(ends))]
 
 
 def _portions(ends: Ints) -> Iterator[Ints]:
@@ -102,28 +123,33 @@ def fresh(first: Monitor) -> Monitor:
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
 
 
-def _new(cells: Sequence[Cell], transitions: Columns, begin: int, end: int, recorded: int) -> list[Cell]:
+def _new(others: Sequence[Cell], transitions: Columns, begin: int, count: int, recorded: int) -> list[Cell]:
     """Return the cells that the recording lacks, once for each mission that visited them."""
-    low, high = np.searchsorted(transitions["number"], (begin, end)).tolist()
+    low, high = np.searchsorted(transitions["number"], (begin, begin + count)).tolist()
     cell = np.asarray(transitions["cell"][low:high])
     there = cell >= recorded
     if not there.any():
         return []
     pairs = np.stack([np.asarray(transitions["number"][low:high])[there], cell[there]], axis=1)
-    return [cells[row] for row in np.unique(pairs, axis=0)[:, 1].tolist()]
+    return [others[row - recorded] for row in np.unique(pairs, axis=0)[:, 1].tolist()]
 
 
 def robot(name: str, monitor: Monitor, q: float) -> Robot:
     """Return the evidence of a monitor."""
+    world, bound = evidence(monitor, monitor.processes.peak)
+    counts = monitor.counts
+    reached = max(world, bound) >= -np.log2(q)
+    return Robot(name, counts.missions, counts.passed, world, bound, status_of(monitor) if reached else None)
+
+
+def evidence(monitor: Monitor, peak: Floats) -> tuple[float, float]:
+    """Return the evidence of the peaks of a monitor's processes: that missions differ, that they are below a bound."""
     stated = len(monitor.bounds)
-    adjusted = e_bh.adjusted(monitor.processes.peak)
-    weight = shares(stated, monitor.processes.count - stated)
+    adjusted = e_bh.adjusted(peak)
+    weight = shares(stated, len(peak) - stated)
     testable = np.array([e_process.testable(float(one.share(one.least))) for one in monitor.bounds], bool)
     world = _mean(adjusted[stated:], weight[stated:])
-    bound = _mean(adjusted[:stated][testable], weight[:stated][testable])
-    reached = max(world, bound) >= -np.log2(q)
-    counts = monitor.counts
-    return Robot(name, counts.missions, counts.passed, world, bound, status(monitor) if reached else None)
+    return world, _mean(adjusted[:stated][testable], weight[:stated][testable])
 
 
 def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: object) -> float:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats, Ints, Sample
-from pytest_tarl.monitoring import conformal, e_process, restarts
+from pytest_tarl.monitoring import conformal, restarts
+from pytest_tarl.monitoring.judging import judged
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.restarts import Processes
 from pytest_tarl.monitoring.scores import WHOLE, Missions, Scale, binned, sampled, scale
@@ -73,19 +74,14 @@ class Monitor:
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
         """Update the processes with some missions and add them to the pool."""
         first, count = self.counts.missions, len(bins)
-        taken = np.concatenate((*(_told(bound, total) for bound in self.bounds), bins >= 0), axis=1)
-        factors = np.empty((count, restarts.BETS, self.processes.count))
-        for row, bound in enumerate(self.bounds):
-            factors[:, :, row] = _against(bound, passed, total)
-        low, high = conformal.ranks(self.pool, bins, self._draws(first, count))
-        conformal.factors(low, high, factors[:, :, len(self.bounds) :])
-        np.copyto(factors, 1.0, where=~taken[:, None, :])
-        restarts.advance(self.processes, taken, factors, first)
-        self.pool = conformal.joined(self.pool, bins)
+        one_robot = passed[:, None], total[:, None], bins[:, None, :]
+        self.pool = judged(
+            self.bounds, self.processes, self.pool, *one_robot, self.draws(first, count), first
+        )
         self.counts.missions += len(bins)
         self.counts.passed += int(passed.sum())
 
-    def _draws(self, first: int, count: int) -> Floats:
+    def draws(self, first: int, count: int) -> Floats:
         """Return numbers in (0, 1] that break ties of some missions; a function of seed and mission number."""
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
@@ -94,6 +90,13 @@ class Monitor:
             begin = which * DRAWS
             found.append(self.drawn[1][max(0, first - begin) : max(0, first + count - begin)])
         return np.concatenate(found)
+
+    def told(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
+        """Count all missions of a monitor whose processes were updated already (judging.py)."""
+        self.moments.add(self.counts.missions, time.tolist())
+        self.counts.missions += sample.episodes
+        self.counts.passed += int(sample.passed.sum())
+        self._count(sample, new)
 
     def _count(self, sample: Sample, new: Sequence[Cell]) -> None:
         self.counts.without_steps += int((sample.steps == 0).sum())
@@ -105,19 +108,6 @@ class Monitor:
         for cell in new:
             if cell in self.new or len(self.new) < MOST_NEW:
                 self.new[cell] = self.new.get(cell, 0) + 1
-
-
-def _told(bound: Bound, total: Floats) -> NDArray[np.bool_]:
-    """Return which missions provide an observation for a bound, boolean of shape (missions, 1)."""
-    testable = e_process.testable(float(bound.share(bound.least)))
-    return (testable & (np.isfinite(total) | (bound.what == "success")))[:, None]
-
-
-def _against(bound: Bound, passed: NDArray[np.bool_], total: Floats) -> Floats:
-    """Return the factors on stakes against a bound, shape (missions, bets)."""
-    least = float(bound.share(bound.least))
-    observed = passed.astype(np.float64) if bound.what == "success" else total
-    return e_process.factors(least, bound.share(observed)) if e_process.testable(least) else np.ones((1, 1))
 
 
 def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:

@@ -73,21 +73,29 @@ def reserve(age: NDArray[np.int64]) -> Floats:
     return np.where(age > 0, 0.5 / root, 1.0)
 
 
-def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, first: int) -> None:
+def advance(
+    processes: Processes,
+    taken: NDArray[np.bool_],
+    factors: Floats,
+    first: int,
+    ends: Ints | None = None,
+) -> None:
     """Update with consecutive missions, the first of which has the number `first`.
 
     `taken`, shape (missions, processes), is true if a mission has an observation for a process. `factors`, shape
-    (missions, bets, processes), multiply the stakes; they are 1 without an observation.
+    (missions, bets, processes), multiply the stakes; they are 1 without an observation. `ends`, shape (processes,), is
+    the number of these missions that belong to each process; the rest fills up the table (default: all belong).
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
         return
     if rows.size < processes.count:
         taken, factors = taken[:, rows], factors[:, :, rows]
+        ends = None if ends is None else ends[rows]
     age = processes.age[rows] + np.cumsum(taken, axis=0)
     left = reserve(age)
     weight = np.where(taken, reserve(age - taken) - left, 0.0)
-    worth, exponent = _multiplied(processes, rows, weight, factors, first)
+    worth, exponent = _multiplied(processes, rows, weight, factors, first, ends)
     evidence = np.log2(worth / BETS + np.ldexp(left, -exponent)) + exponent
     processes.age[rows] = age[-1]
     processes.peak[rows] = np.maximum(processes.peak[rows], evidence.max(axis=0))
@@ -97,7 +105,7 @@ def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, fir
 
 
 def _multiplied(
-    processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int
+    processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int, ends: Ints | None
 ) -> tuple[Floats, Ints]:
     """Update stakes mission by mission; return their sums and exponents after each, shape (missions, rows).
 
@@ -117,6 +125,8 @@ def _multiplied(
         np.multiply(best_after, factor, out=best_after)
         if (first + index) % LOOK == 0 and after.max() > 2.0**LARGE:
             shrunk = np.where(after.reshape(BETS, -1).max(axis=0) > 2.0**LARGE, LARGE, 0)
+            if ends is not None:
+                shrunk[index >= ends] = 0
             for one in (after, best_after):
                 one *= np.tile(np.ldexp(1.0, -shrunk), BETS)
             exponents[index:] += shrunk
@@ -126,7 +136,15 @@ def _multiplied(
     since = np.where(fresh.any(axis=0).reshape(BETS, -1), latest, processes.since[:, rows])
     processes.stake[:, rows], processes.best[:, rows] = (one[-1].reshape(BETS, -1) for one in (stake, best))
     processes.since[:, rows], processes.exponent[rows] = since, exponents[-1]
-    return np.add.reduce(stake[1:].reshape(shape), axis=1), exponents
+    return _summed(stake[1:].reshape(shape)), exponents
+
+
+def _summed(stake: Floats) -> Floats:
+    """Sum over the bets, shape (missions, bets, processes), in the same order for any number of processes."""
+    total: Floats = stake[:, 0] + stake[:, 1]
+    for bet in range(2, BETS):
+        total += stake[:, bet]
+    return total
 
 
 def log_evidence(processes: Processes) -> Floats:

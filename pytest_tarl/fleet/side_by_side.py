@@ -1,0 +1,96 @@
+"""Watch many robots side by side: the state of each is that of its own monitor, to the last bit.
+
+All robots begin with the same pool, and the numbers that break ties depend on a mission's number only, so the n-th
+missions of many robots are judged in one step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from pytest_tarl.fleet.samples import part
+from pytest_tarl.learning.tables import Floats, Ints, Sample
+from pytest_tarl.monitoring import conformal, judging
+from pytest_tarl.monitoring.monitor import Monitor
+from pytest_tarl.monitoring.restarts import Processes
+from pytest_tarl.monitoring.scores import binned
+
+COLUMNS = 512  # processes judged together, so that their stakes stay in the processor's cache
+ENTRIES = 1_000_000  # entries of a table of missions and cells
+
+
+@dataclass(frozen=True)
+class Watched:
+    """Robots after all of their missions; columns are those of judging.py."""
+
+    robots: Ints  # which of the robots these are
+    processes: Processes
+    pool: Ints
+    bounds: int
+
+    @property
+    def scores(self) -> int:
+        """Return the number of scores of a robot."""
+        return len(self.pool) // len(self.robots)
+
+    def peaks(self) -> Floats:
+        """Return the peaks of each robot's processes, shape (robots, processes)."""
+        size = len(self.robots)
+        stated, scored = np.split(self.processes.peak, [self.bounds * size])
+        return np.concatenate((stated.reshape(-1, size).T, scored.reshape(size, -1)), axis=1)
+
+    def state(self, place: int) -> tuple[Processes, Ints]:
+        """Return processes and pool of one robot."""
+        mine = judging.columns(self.bounds, self.scores, len(self.robots), place)
+        values = {one.name: getattr(self.processes, one.name)[..., mine] for one in fields(Processes)}
+        return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
+
+
+def watched(first: Monitor, sample: Sample, ends: Ints) -> Iterator[Watched]:
+    """Judge the missions of robots; those of robot n end before `ends[n]`. Yield robots with similar numbers together.
+
+    `first` is a monitor without missions. The cells of the sample are those of its scale and one more.
+    """
+    begins = np.append(0, ends[:-1])
+    counts = ends - begins
+    bins = _binned(first, sample)
+    together = max(1, COLUMNS // first.processes.count)
+    order = np.argsort(counts, kind="stable")
+    for begin in range(0, order.size, together):
+        robots = order[begin : begin + together]
+        yield _judged(first, sample, bins, robots, begins[robots], counts[robots])
+
+
+def _binned(first: Monitor, sample: Sample) -> Ints:
+    """Return the bins of all scores, shape (missions, scores), computed in portions of bounded size."""
+    size = max(1, ENTRIES // len(sample.cells))
+    some = [
+        binned(first.scale, part(sample, begin, min(begin + size, sample.episodes)))
+        for begin in range(0, sample.episodes, size)
+    ]
+    return np.concatenate(some)
+
+
+def _judged(first: Monitor, sample: Sample, bins: Ints, robots: Ints, begins: Ints, counts: Ints) -> Watched:
+    bounds, size = len(first.bounds), len(robots)
+    processes = judging.begun(first.processes.threshold, bounds, size)
+    pool = np.tile(first.pool, (size, 1))
+    for begin in range(0, int(counts.max()), conformal.TOGETHER):
+        number = np.arange(begin, min(begin + conformal.TOGETHER, int(counts.max())))
+        there = number[:, None] < counts
+        mission = np.where(there, begins + number[:, None], 0)
+        pool = judging.judged(
+            first.bounds,
+            processes,
+            pool,
+            sample.passed[mission],
+            sample.total[mission],
+            np.where(there[:, :, None], bins[mission], -1),
+            first.draws(begin, number.size),
+            begin,
+            np.clip(counts - begin, 0, number.size),
+        )
+    return Watched(robots, processes, pool, bounds)

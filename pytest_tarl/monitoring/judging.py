@@ -1,0 +1,81 @@
+"""Bet on missions: update the processes of one robot, or of several robots side by side.
+
+Columns of several robots are the bounds, each for all robots, and then the scores, robot by robot. The columns do not
+mix, and a column's arithmetic does not depend on its neighbours, so each robot has the bits that it has alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.tables import Floats, Ints
+from pytest_tarl.monitoring import conformal, e_process, restarts
+from pytest_tarl.monitoring.restarts import Processes
+from pytest_tarl.monitoring.stated import Bound
+
+Truths = NDArray[np.bool_]
+
+
+def judged(
+    bounds: Sequence[Bound],
+    processes: Processes,
+    pool: Ints,
+    passed: Truths,
+    total: Floats,
+    bins: Ints,
+    draws: Floats,
+    first: int,
+    ends: Ints | None = None,
+) -> Ints:
+    """Update the processes with consecutive missions of each robot, and return the pool with them.
+
+    `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), the pool
+    (robots · scores, BINS); `first` is the number of the first mission. At most conformal.TOGETHER missions. `ends`,
+    shape (robots,), is each robot's number of missions, if some have fewer; bins of the missing ones are -1.
+    """
+    count, robots, scores = bins.shape
+    flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
+    there = np.full(passed.shape, True) if ends is None else np.arange(count)[:, None] < ends
+    taken = np.concatenate((*(_told(bound, total) & there for bound in bounds), flat >= 0), axis=1)
+    factors = np.empty((count, restarts.BETS, processes.count))
+    for row, bound in enumerate(bounds):
+        factors[:, :, row * robots : (row + 1) * robots] = _against(bound, passed, total)
+    low, high = conformal.ranks(pool, flat, draws)
+    conformal.factors(low, high, factors[:, :, split:])
+    np.copyto(factors, 1.0, where=~taken[:, None, :])
+    last = None if ends is None else np.concatenate((np.tile(ends, len(bounds)), np.repeat(ends, scores)))
+    restarts.advance(processes, taken, factors, first, last)
+    return conformal.joined(pool, flat)
+
+
+def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
+    """Return the processes of several robots without missions; `threshold` is that of one robot."""
+    return restarts.begun(
+        np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
+    )
+
+
+def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
+    """Return the columns of one of several robots, in the order that a robot has alone."""
+    rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
+    return rows.astype(np.int64)
+
+
+def _told(bound: Bound, total: Floats) -> Truths:
+    """Return which missions provide an observation for a bound; same shape as the totals."""
+    testable = e_process.testable(float(bound.share(bound.least)))
+    told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
+    return told
+
+
+def _against(bound: Bound, passed: Truths, total: Floats) -> Floats:
+    """Return the factors on stakes against a bound, shape (missions, bets, robots)."""
+    least = float(bound.share(bound.least))
+    if not e_process.testable(least):
+        return np.ones((1, 1, 1))
+    observed = passed.astype(np.float64) if bound.what == "success" else total
+    each = e_process.factors(least, bound.share(observed).ravel())
+    return each.reshape(*passed.shape, -1).transpose(0, 2, 1)
