@@ -9,6 +9,7 @@ from typing import Any
 from pytest_tarl.fleet.decomposition import Decomposition
 from pytest_tarl.fleet.groups import Group
 from pytest_tarl.fleet.question import Answer
+from pytest_tarl.fleet.repairs import Effect
 from pytest_tarl.fleet.robots import Robot, lower
 from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
@@ -48,9 +49,25 @@ def document(answer: Answer) -> dict[str, Any]:
             for one in answer.clusters.found
         ],
         "unclear": list(answer.clusters.unclear),
+        "repairs": [_repair(one) for one in answer.repairs],
         "components": None if answer.parts is None else _components(answer.parts),
         "left_out": dict(answer.left_out),
         "lowest": [asdict(one) for one in answer.lowest],
+    }
+
+
+def _repair(one: Effect) -> dict[str, Any]:
+    return {
+        "repair": one.repair,
+        "values": list(one.values),
+        "verdict": one.verdict,
+        "missions": list(one.missions),
+        "robots": list(one.robots),
+        "strata": one.strata,
+        "reward": finite(one.reward) if one.strata else None,
+        "reward_bound": _bound(one.reward_bound),
+        "success": finite(one.success) if one.strata else None,
+        "success_bound": _bound(one.success_bound),
     }
 
 

@@ -9,7 +9,7 @@ from datetime import date
 from pathlib import Path
 
 from pytest_tarl.errors import FleetError, SettingsError
-from pytest_tarl.fleet import clusters, dataset, decomposition, groups, robots
+from pytest_tarl.fleet import clusters, dataset, decomposition, groups, repairs, robots
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import Origin, origin
@@ -56,6 +56,7 @@ class Answer:
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None with one robot
     clusters: clusters.Clusters
+    repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
@@ -105,6 +106,7 @@ def _judged(database: Database, fixture: Fixture, question: Question, left_out: 
         robots=every,
         parts=None if one else decomposition.decomposed(database),
         clusters=clusters.clustered(database, fixture, every, alpha),
+        repairs=repairs.effects(database, question.by),
         left_out=left_out,
         lowest=_lowest(database) if one else (),
     )

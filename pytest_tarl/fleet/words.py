@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timezone
 
-from pytest_tarl.fleet import decomposition_words
+from pytest_tarl.fleet import decomposition_words, repair_words
 from pytest_tarl.fleet.groups import MOST, Group
 from pytest_tarl.fleet.question import Answer
 from pytest_tarl.fleet.robots import Robot, lower
@@ -37,6 +37,9 @@ def lines(answer: Answer) -> Iterator[str]:
     for one in found.below[:NAMED]:
         yield _robot(one, one.bound, lower(one.status) if one.status else None, words)
     yield from _clusters(answer, words)
+    if answer.repairs:
+        yield ""
+        yield from repair_words.lines(answer.repairs)
     if answer.parts is not None:
         yield ""
         yield from decomposition_words.lines(answer.parts)

@@ -1,0 +1,41 @@
+"""The effects of repairs as lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pytest_tarl.fleet.repairs import ALPHA, Effect
+from pytest_tarl.model import Bound
+
+WHY = {
+    "not comparable": "no missions without a repair at the same site in the same week",
+    "too few robots": "an interval needs 4 robots with and 4 without it",
+}
+
+
+def lines(effects: Sequence[Effect]) -> Iterator[str]:
+    """Yield a line for each repair and group: the difference to the missions without a repair."""
+    yield (
+        "Repairs, against missions without a repair at the same site in the same week (intervals hold together at "
+        f"{100 * (1 - ALPHA):g} %)"
+    )
+    for one in effects:
+        where = f" at {' '.join(one.values)}" if one.values else ""
+        yield f"  {one.repair}{where}: {one.verdict}{_amounts(one)}"
+
+
+def _amounts(one: Effect) -> str:
+    if one.verdict == "not comparable":
+        return f" ({WHY[one.verdict]})"
+    reward = f", reward {one.reward:+.3g}{_interval(one.reward_bound, 1)}"
+    success = f", pass rate {100 * one.success:+.1f} points{_interval(one.success_bound, 100)}"
+    why = f" ({WHY[one.verdict]})" if one.verdict in WHY else ""
+    return (
+        f"{why}{reward}{success}, {one.missions[0]:,} missions of {one.robots[0]:,} robots with it and "
+        f"{one.missions[1]:,} of {one.robots[1]:,} without"
+    )
+
+
+def _interval(bound: Bound, unit: float) -> str:
+    known = bound.low > float("-inf")
+    return f" ({unit * bound.low:+.3g} to {unit * bound.high:+.3g})" if known else ""

@@ -1,0 +1,103 @@
+"""The effect of a repair in a staged roll-out: seasons and sites do not count, and the interval covers the truth."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pytest_tarl.commands.cli import main
+from pytest_tarl.fleet.repairs import Effect, effect, strata
+from tests.plugin.monitoring import missions
+
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
+WEEK = 7 * 86_400.0
+
+
+def rolled_out(seed: int, true: float, robots: int = 24, each: int = 40) -> Effect:
+    """Draw a roll-out: sites begin at different times, half of their robots first, and seasons go on at all sites."""
+    rng = np.random.default_rng(seed)
+    robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
+    site, week = robot % 4, number * 8 // each
+    begins = np.where(robot // 4 % 2 == 0, 2, 5) + site % 2
+    treated = week >= begins
+    seasons = rng.normal(0, 2.0, 8)
+    total = 3.0 * site + seasons[week] + true * treated + rng.normal(0, 0.5, robots)[robot]
+    total += rng.normal(0, 1, robot.size)
+    passed = rng.random(robot.size) < 0.8 + 0.1 * treated
+    return effect("fix", (), strata(robot, site * 8 + week, treated, total, passed), 0.975)
+
+
+def test_the_effect_is_found_whatever_the_season() -> None:
+    found = [rolled_out(seed, 0.8) for seed in range(40)]
+    held = [one.reward_bound.low <= 0.8 <= one.reward_bound.high for one in found]
+    assert np.mean(held) >= 0.85
+    assert np.mean([one.reward for one in found]) == pytest.approx(0.8, abs=0.12)
+    assert np.mean([one.success for one in found]) == pytest.approx(0.1, abs=0.03)
+    assert sum(one.verdict == "helps" for one in found) >= 30
+    assert not any(one.verdict == "harms" for one in found)
+
+
+@pytest.mark.skipif(not SLOW, reason="a campaign; set TARL_SLOW=1")
+@pytest.mark.parametrize("true", [0.0, 0.8, -0.8])
+def test_the_intervals_cover_in_a_campaign(true: float) -> None:
+    found = [rolled_out(seed, true) for seed in range(2000)]
+    held = [one.reward_bound.low <= true <= one.reward_bound.high for one in found]
+    assert 0.92 <= np.mean(held) <= 0.99
+
+
+def test_missions_of_other_weeks_are_not_compared() -> None:
+    robot = np.repeat(np.arange(10), 6)
+    week = np.tile(np.arange(6), 10)
+    rng = np.random.default_rng(0)
+    total = rng.normal(0, 1, 60) + 5.0 * week
+    found = effect("fix", (), strata(robot, week, week >= 3, total, total > 0), 0.975)
+    assert (found.verdict, found.strata, found.missions) == ("not comparable", 0, (0, 0))
+    late = (week >= 3) & (robot < 2)
+    few = effect("fix", (), strata(robot, week, late, total, total > 0), 0.975)
+    assert (few.verdict, few.strata, few.missions, few.robots) == ("too few robots", 3, (6, 24), (2, 8))
+    assert abs(few.reward) < 2.0
+
+
+def test_equal_arms_give_the_difference_of_their_means() -> None:
+    rng = np.random.default_rng(2)
+    robot, total = np.arange(20), rng.normal(0, 1, 20)
+    arm = robot % 2
+    found = effect("fix", (), strata(robot, np.zeros(20, np.int64), arm, total, total > 0), 0.975)
+    assert found.reward == pytest.approx(total[arm == 1].mean() - total[arm == 0].mean())
+
+
+def test_the_command_tells_which_repair_helps_which_group(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    test, data = tmp_path / "test.npz", str(tmp_path / "data")
+    missions.fixture(test, missions.walks(60, 1))
+    for repaired in (False, True):
+        logs = [
+            missions.log(
+                tmp_path / f"{repaired}" / f"r{n}.log",
+                missions.walks(8, n + 50 * repaired, 0.0 if repaired and n < 5 else 1.0),
+                100 * WEEK,
+            )
+            for n in range(10)
+        ]
+        for site, some in (("wet", logs[:5]), ("dry", logs[5:])):
+            prefix = "new-" if repaired else ""
+            argv = [
+                "ingest",
+                *map(str, some),
+                "--to",
+                data,
+                "--fixture",
+                str(test),
+                "--robot",
+                prefix + "{file}",
+            ]
+            assert main([*argv, "--site", site, *(["--repair", "guard-1"] if repaired else [])]) == 0
+    capsys.readouterr()
+    assert main(["fleet", data, "--by", "site"]) == 0
+    out = capsys.readouterr().out
+    assert "guard-1 at dry: no effect shown" in out
+    assert "guard-1 at wet: helps, reward +" in out
