@@ -1,21 +1,21 @@
 """Repair a node at the boundary that a stress run found and beyond, and show how far the boundary moved.
 
-The episodes of search and acceptance draw the direction that fails first from its boundary to the end of its range; all
-others are nominal. If nothing is accepted, a part of this range next to the boundary is tried. An accepted repair must
-also hold over the whole declared space on fresh draws, and must not bring any boundary nearer.
+The episodes of search and acceptance draw the directions of a confirmed failure from there to the ends of their ranges;
+all others are nominal. If nothing is accepted, a part of these ranges next to the boundary is tried. An accepted repair
+must also hold over the whole declared space on fresh draws, and must not bring any boundary nearer.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.comparing import run_online
-from pytest_tarl.drifts import Drift, drawn_point, sizes
+from pytest_tarl.drifts import drawn_point, sizes
 from pytest_tarl.instrumentation.sites import Plan
-from pytest_tarl.learning.bounds import mean_of
+from pytest_tarl.learning.bounds import Range, mean_of, rate
 from pytest_tarl.model import Repair
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.repair import repair
@@ -23,18 +23,21 @@ from pytest_tarl.repairing.request import Neighbour, Order
 from pytest_tarl.report.repair_words import refusal, repair_words
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Pending, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
-from pytest_tarl.spaces import Choice, Point, Space, Span
+from pytest_tarl.spaces import Point, Space
 from pytest_tarl.stressing.evaluating import outcome
-from pytest_tarl.stressing.findings import Curve, Stress
+from pytest_tarl.stressing.findings import Attempt, Draws, Failure, Moved, Stress
 from pytest_tarl.stressing.guarantee import Outcome
 from pytest_tarl.stressing.margin_changes import Row, compared
-from pytest_tarl.stressing.margins import margins
-from pytest_tarl.stressing.search import Request, stress
+from pytest_tarl.stressing.margins import Margin, margins
+from pytest_tarl.stressing.regions import Region, outwards, regions
+from pytest_tarl.stressing.search import Request, along, stress
+from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
-# shares of the way from the boundary to the end of the range that a repair is searched for
-REACH = (1.0, 0.25)
-DIRECTIONS = 2  # directions to repair at most, the nearest boundary first
+DIRECTIONS, COMBINATIONS = (
+    2,
+    1,
+)  # failures along single directions and in several to repair at most, nearest first
 DRAWS = 60  # fresh draws from the whole space
 CONFIDENCE = 0.95  # that a repair which is said to lose over the space does
 
@@ -89,6 +92,7 @@ class Fixed:
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
     after: tuple[Outcome, ...]
+    combination: Moved | None = None
 
     @property
     def loses(self) -> str:
@@ -96,83 +100,105 @@ class Fixed:
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} came nearer"
-        lost = [one.total - other.total for one, other in zip(self.before, self.after, strict=True)]
+        pairs = [*zip(self.before, self.after, strict=True)]
+        lost = [one.total - other.total for one, other in pairs]
         if mean_of(lost, CONFIDENCE).low > 0.0:
             return f"it loses {sum(lost) / len(lost):.3g} per episode over the declared space"
+        failed = [float(one.passed) - float(other.passed) for one, other in pairs]
+        if mean_of(failed, CONFIDENCE, Range(-1.0, 1.0)).low > 0.0:
+            return f"{sum(failed):.0f} more of {len(failed)} draws from the declared space fail"
         return ""
+
+    @property
+    def moved(self) -> tuple[Moved, ...]:
+        """Return the boundaries before and after, the combination first."""
+        first = () if self.combination is None else (self.combination,)
+        return (*first, *(_moved(row) for row in self.rows))
+
+    @property
+    def draws(self) -> Draws:
+        """Return the outcomes over the space as numbers."""
+        passed = [sum(one.passed for one in world) for world in (self.before, self.after)]
+        earned = [sum(one.total for one in world) / len(world) for world in (self.before, self.after)]
+        surely = rate(passed[1], len(self.after), CONFIDENCE).low
+        return Draws(len(self.after), passed[0], passed[1], earned[0], earned[1], surely)
 
 
 @dataclass(frozen=True)
 class Told:
-    """The lines of a repair at the boundary, and its patch."""
+    """The searches for a repair, the lines on them, and the patch."""
 
     lines: tuple[str, ...]
     patch: Path | None = None
     interrupted: bool = False
     fixed: Fixed | None = None
+    attempts: tuple[Attempt, ...] = ()
 
 
 def repair_boundary(job: Job, found: Stress) -> Told:
-    """Repair at the nearest boundary that can be repaired. Raise RepairError or RecordingError."""
-    failing = sorted(
-        (curve for curve in found.curves if curve.confirmed is not None),
-        key=lambda curve: (curve.confirmed or 0.0) * curve.ray.length,
-    )
-    lines: list[str] = []
-    for curve in failing[:DIRECTIONS]:
-        for world, where in _worlds(curve):
-            head = f"  {'repair' if not lines else '':10} {where}:"
+    """Repair at the nearest failure that can be repaired. Raise RepairError or RecordingError."""
+    attempts: list[Attempt] = []
+    for failed in chosen(found.failures):
+        for region in regions(found.space, failed):
             try:
-                accepted, overlay, why = _searched(job, curve, world)
+                accepted, overlay, why = _searched(job, region)
             except KeyboardInterrupt:
-                return Told((*lines, f"{head} interrupted."), interrupted=True)
+                attempts.append(Attempt(region.words, "interrupted."))
+                return _finished(found, attempts, interrupted=True)
             if accepted is not None:
-                return _told(job, found, accepted, overlay, (*lines, f"{head} {repair_words(accepted)}"))
-            lines.append(f"{head} {why}")
-    return Told(tuple(lines))
+                return _told(job, found, failed, region, accepted, overlay, attempts)
+            attempts.append(Attempt(region.words, why))
+    return _finished(found, attempts)
+
+
+def chosen(failures: Sequence[Failure]) -> list[Failure]:
+    """Return the failures to repair, the nearest first."""
+    single = [one for one in failures if len(one.names) == 1][:DIRECTIONS]
+    several = [one for one in failures if len(one.names) > 1][:COMBINATIONS]
+    return [one for one in failures if one in (*single, *several)]
 
 
 def _told(
-    job: Job, found: Stress, accepted: Repair, overlay: Mapping[Path, str], lines: tuple[str, ...]
+    job: Job,
+    found: Stress,
+    failed: Failure,
+    region: Region,
+    accepted: Repair,
+    overlay: Mapping[Path, str],
+    attempts: list[Attempt],
 ) -> Told:
     """Examine an accepted repair; its patch stays if this is interrupted, and goes if it loses."""
     patch = job.root / accepted.patch
+    attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:
-        fixed = _examined(job, found, overlay)
+        fixed = _examined(job, found, failed, overlay)
     except KeyboardInterrupt:
-        unknown = f"  {'':10} Interrupted before it was tested over the declared space."
-        return Told((*lines, unknown), patch, interrupted=True)
+        unknown = f"{attempt.told}; interrupted before it was tested over the declared space."
+        attempts.append(replace(attempt, told=unknown))
+        return _finished(found, attempts, patch, interrupted=True)
     if fixed.loses:
         with suppress(OSError):
             patch.unlink()
-    return Told((*lines, *_words(fixed)), None if fixed.loses else patch, fixed=fixed)
+    kept = None if fixed.loses else accepted.patch
+    attempts.append(replace(attempt, patch=kept, withheld=fixed.loses, moved=fixed.moved, draws=fixed.draws))
+    return replace(_finished(found, attempts, None if fixed.loses else patch), fixed=fixed)
 
 
-def _worlds(curve: Curve) -> Iterator[tuple[Drift, str]]:
-    """Yield the drifts to repair along a ray, widest first, and their words."""
-    (name,), ray = curve.ray.names, curve.ray
-    extent = ray.space.extents[name]
-    if isinstance(extent, Choice):
-        option = extent.options[int(ray.farthest[name])]
-        yield Drift(option), f"{name}={option!r}"
-        return
-    start = curve.confirmed or 0.0
-    for reach in REACH if start < 1.0 else (0.0,):
-        near, far = ray.value(start), ray.value(start + (1.0 - start) * reach)
-        low, high = sorted((near, far))
-        if low == high:
-            yield Drift(near), f"{name}={near:.3g}"
-        else:
-            yield Drift(Space({name: Span(low, high, near)}, {})), f"{name} from {near:.3g} to {far:.3g}"
+def _finished(
+    found: Stress, attempts: Sequence[Attempt], patch: Path | None = None, *, interrupted: bool = False
+) -> Told:
+    sentences = repair_lines(replace(found, repairs=tuple(attempts)))
+    lines = (f"  {'repair' if not number else '':10} {one}" for number, one in enumerate(sentences))
+    return Told(tuple(lines), patch, interrupted, attempts=tuple(attempts))
 
 
-def _searched(job: Job, curve: Curve, world: Drift) -> tuple[Repair | None, Mapping[Path, str], str]:
-    """Compare and repair under a drift; return an accepted repair and its changed files, or why there is none."""
+def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, str], str]:
+    """Compare and repair in a region; return an accepted repair and its changed files, or why there is none."""
     request = job.request
-    drift, start = request.drift, curve.confirmed or 0.0
+    drift, world = request.drift, region.drift
 
     def place(seed: int) -> Point:
-        return {**(curve.ray.point(start)), **sizes(world, drift, seed)}
+        return {**region.base, **sizes(world, drift, seed)}
 
     rollout = Placed(request.rollout, drift, place)
     marked = replace(request.designation, drifts={**request.designation.drifts, drift: world})
@@ -209,17 +235,43 @@ def _searched(job: Job, curve: Curve, world: Drift) -> tuple[Repair | None, Mapp
     return given, Mutants(order).source(done.accepted.candidate), ""
 
 
-def _examined(job: Job, found: Stress, overlay: Mapping[Path, str]) -> Fixed:
-    """Stress the repaired node along single directions, and run it over the whole space on fresh draws."""
+def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, str]) -> Fixed:
+    """Stress the repaired node along single directions and the failure, and run it over the space on fresh draws."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
-    after = stress(replace(request, rollout=patched, source=None), combined=False)
-    rows = compared([margins(found)], [margins(after)])
+    again = replace(request, rollout=patched, source=None)
+    rows = compared([margins(found)], [margins(stress(again, combined=False))])
     return Fixed(
         tuple(rows),
         _over_space(job, found.space, request.rollout),
         _over_space(job, found.space, patched),
+        _combination(again, found.space, failed) if len(failed.names) > 1 else None,
     )
+
+
+def _combination(again: Request, space: Space, failed: Failure) -> Moved:
+    """Return how far the repair moves the boundary on the ray through a failing combination."""
+    curve = along(again, outwards(space, failed))
+    length = curve.ray.length
+    name = " and ".join(failed.names)
+    sides = [
+        Margin(name, 0.0, length, None if held is None else held * length, fails)
+        for held, fails in (
+            (None, failed.distance),
+            (curve.held, None if curve.confirmed is None else curve.confirmed * length),
+        )
+    ]
+    row = Row("", sides[0], sides[1])
+    return replace(_moved(row), name=f"{name} together, distance")
+
+
+def _moved(row: Row) -> Moved:
+    values = [
+        None if side is None else value
+        for side in (row.before, row.after)
+        for value in ((side.holds_to, side.fails_at) if side is not None else (None, None))
+    ]
+    return Moved(row.name, row.change, *row.cells, *values)
 
 
 def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]:
@@ -230,19 +282,3 @@ def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]
         for seed in episode_seeds(request.options.seed, f"stress {request.drift} space", DRAWS)
     )
     return tuple(outcome(one.result()) for one in in_order(rollout, plans))
-
-
-def _words(fixed: Fixed) -> Iterator[str]:
-    """Yield the lines on what an accepted repair changes."""
-    for row in fixed.rows:
-        before, after = row.cells
-        if before != after or row.change != "no significant change":
-            yield f"  {'':10} {row.name}: {before} → {after}: {row.change}"
-    usual, now = (sum(one.passed for one in world) for world in (fixed.before, fixed.after))
-    earned, earns = (sum(one.total for one in world) / DRAWS for world in (fixed.before, fixed.after))
-    yield (
-        f"  {'':10} over the declared space: {now} instead of {usual} of {DRAWS} fresh draws pass, and each earns "
-        f"{earns:.4g} instead of {earned:.4g}."
-    )
-    if fixed.loses:
-        yield f"  {'':10} The repair is withheld, since {fixed.loses}."

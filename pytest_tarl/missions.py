@@ -30,7 +30,7 @@ from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import guarantees
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
-from pytest_tarl.stressing.delivering import deliver
+from pytest_tarl.stressing.delivering import deliver, deliver_repairs
 from pytest_tarl.stressing.search import Request
 from pytest_tarl.stressing.statements import source
 from pytest_tarl.unrecorded_nodes import silent_files
@@ -284,7 +284,8 @@ class Mission:
             _changeable(analysis),
         )
         told = repair_boundary(job, found.found)
-        return Account((*found.lines, *told.lines), found.problem, told.patch, told.interrupted)
+        unwritten = deliver_repairs(replace(found.found, repairs=told.attempts), self.root)
+        return Account((*found.lines, *told.lines, *unwritten), found.problem, told.patch, told.interrupted)
 
     def _instruments(self, sites: Plan) -> Instruments:
         return Instruments({self.root / path: at for path, at in sites.positions.items()}, sites.publishes)

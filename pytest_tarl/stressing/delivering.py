@@ -46,6 +46,30 @@ def deliver(request: Request, root: Path) -> Delivered:
     return Delivered(told, _problem(found), found.ended == "interrupted", found)
 
 
+def deliver_repairs(found: Stress, root: Path) -> list[str]:
+    """Write result and page again, with the repairs; return a line for each file that could not be written."""
+    name = f"{slug(found.test)}-{slug(found.drift)}"
+    jobs = _documents(found, root, name)
+    failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
+    return [f"  {one} The result above stands." for one in unwritten(failed, root)]
+
+
+def _documents(found: Stress, root: Path, name: str) -> dict[Path, Callable[[Path], None]]:
+    """Return how to write the result and the page."""
+    return {
+        root / ".tarl" / "stress" / f"{name}.json": _as_text(json_result.text(found)),
+        _page(root, name): _as_text(page.render(found)),
+    }
+
+
+def _page(root: Path, name: str) -> Path:
+    return root / ".tarl" / "report" / f"{name}-stress.html"
+
+
+def _as_text(content: str) -> Callable[[Path], None]:
+    return lambda path: write_atomically(path, content.encode())
+
+
 def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
     space = request.designation.drifts[request.drift].value
     points = kept.read(memory, space)
@@ -69,15 +93,8 @@ def _without_salib(found: Stress) -> tuple[str, ...]:
 def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
     """Write the files; return a line for each that could not be written. The result does not depend on them."""
     folder = root / ".tarl"
-    report = folder / "report" / f"{name}-stress.html"
-
-    def as_text(content: str) -> Callable[[Path], None]:
-        return lambda path: write_atomically(path, content.encode())
-
-    jobs = {
-        folder / "stress" / f"{name}.json": as_text(json_result.text(found)),
-        report: as_text(page.render(found)),
-    }
+    report = _page(root, name)
+    jobs = _documents(found, root, name)
     if found.ended in ("", "budget"):
         jobs[folder / "margins" / f"{name}.json"] = lambda path: write_atomically(
             path, margins.text(margins.margins(found)).encode()

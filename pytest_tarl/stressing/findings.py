@@ -138,6 +138,48 @@ class Statements:
     only: tuple[Executed, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """How a repair moves a boundary, in words, and by the values that were shown to hold and to fail, None for none.
+
+    Values are numbers of the direction; of a combination, they are distances from nominal.
+    """
+
+    name: str
+    change: str
+    before: str
+    after: str
+    held_before: float | None
+    failed_before: float | None
+    held_after: float | None
+    failed_after: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Draws:
+    """Episodes at fresh draws from the whole space, without and with a repair."""
+
+    episodes: int
+    passed_before: int
+    passed_after: int
+    reward_before: float  # mean total
+    reward_after: float
+    success_at_least: float  # lower bound of the success rate with the repair
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A search for a repair in a region, and what an accepted repair changes."""
+
+    region: str
+    told: str  # the repair, or why there is none
+    accepted: bool = False
+    patch: str | None = None  # None also if it is withheld
+    withheld: str = ""  # why
+    moved: tuple[Moved, ...] = ()
+    draws: Draws | None = None
+
+
 @dataclass(frozen=True)
 class Stress:
     """The result of a stress run of one test and space."""
@@ -156,6 +198,7 @@ class Stress:
     margin_map: MarginMap | None = None
     statements: Statements | None = None  # None without a confirmed failure
     sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
+    repairs: tuple[Attempt, ...] | None = None  # None if no repair was asked for
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
 
     @property

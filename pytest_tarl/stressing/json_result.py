@@ -11,7 +11,7 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements
+# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs
 FORMAT_VERSION = 3
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
@@ -46,6 +46,7 @@ def document(stress: Stress) -> dict[str, Any]:
         "combinations_tried": stress.tried,
         "statements": None if stress.statements is None else asdict(stress.statements),
         "sobol": _sobol(stress.sobol),
+        "repairs": None if stress.repairs is None else [asdict(one) for one in stress.repairs],
         "broken_promises": broken_promises(stress),
     }
 

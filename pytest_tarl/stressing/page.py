@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from html import escape
 from itertools import groupby
 
@@ -17,6 +18,7 @@ from pytest_tarl.stressing.words import (
     directions,
     guarantee_words,
     nominal_words,
+    repair_lines,
     shown,
     sobol_words,
     statement_words,
@@ -52,6 +54,7 @@ def render(stress: Stress) -> str:
             *_maps(stress),
             *_sections(stress),
             *_combinations(stress),
+            *_repairs(stress),
             *_statements(stress),
             *_variance(stress),
             "</html>\n",
@@ -146,6 +149,25 @@ def _table(stress: Stress, name: str, measured: list[tuple[float, Evidence]]) ->
     ]
     head = f"<tr><th>{escape(name)}<th>margin<th>guarantee<th>passed<th>loss"
     return f"<details><summary>All values</summary><table>{head}{''.join(rows)}</table></details>"
+
+
+def _repairs(stress: Stress) -> Iterator[str]:
+    """Yield the searches for repairs, with a table of the boundaries that an accepted one moves."""
+    if stress.repairs is None:
+        return
+    yield "<h2>Repair</h2>"
+    if not stress.repairs:
+        yield "<p>No failure was confirmed, so nothing was repaired.</p>"
+    for one in stress.repairs:
+        yield from (f"<p>{escape(line)}</p>" for line in repair_lines(replace(stress, repairs=(one,))))
+        if one.moved:
+            rows = "".join(
+                f"<tr><td>{escape(row.name)}<td>{escape(row.before)}<td>{escape(row.after)}<td>{row.change}"
+                for row in one.moved
+            )
+            yield f"<table><tr><th>boundary<th>before<th>after<th>change{rows}</table>"
+        if one.patch is not None:
+            yield f"<p>Patch: <code>{escape(one.patch)}</code></p>"
 
 
 def _statements(stress: Stress) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, Progre
 from pytest_tarl.stressing.findings import FAR_RISK, Curve, Sobol, Statements, Stress, confirmed
 from pytest_tarl.stressing.guarantee import guarantee, unlike_recorded
 from pytest_tarl.stressing.holding import hold
-from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.rays import Ray, rays
 from pytest_tarl.stressing.sobol_indices import sobol
 from pytest_tarl.stressing.statements import Source, statements
 
@@ -74,6 +75,17 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         statements=executed,
         ended=ended,
     )
+
+
+def along(request: Request, ray: Ray) -> Curve:
+    """Return the evidence along one ray, with the budget of a whole run; Ctrl-C ends it."""
+    space: Any = request.designation.drifts[request.drift].value
+    curve = Curve(ray)
+    evaluator = _evaluator(request, space)
+    with suppress(BudgetSpentError):
+        along_rays([curve], evaluator, min(request.options.alpha, FAR_RISK))
+        near_ends([curve], evaluator)
+    return curve
 
 
 def explore(evaluator: Evaluator, together: Together, *, combined: bool = True) -> str:

@@ -126,6 +126,24 @@ def statement_words(stress: Stress) -> Iterator[str]:
         yield f"{len(found.only) - MOST_SHOWN} more statements that ran only in failures are in the JSON result."
 
 
+def repair_lines(stress: Stress) -> Iterator[str]:
+    """Yield sentences on the searches for repairs."""
+    for one in stress.repairs or ():
+        yield f"{one.region}: {one.told}"
+        for moved in one.moved:
+            if moved.before != moved.after or moved.change != "no significant change":
+                yield f"{moved.name}: {moved.before} → {moved.after}: {moved.change}"
+        if one.draws is not None:
+            draws = one.draws
+            yield (
+                f"over the declared space: {draws.passed_after} instead of {draws.passed_before} of {draws.episodes} "
+                f"fresh draws pass, at least {100 * draws.success_at_least:.3g} % at 95 %, and each earns "
+                f"{draws.reward_after:.4g} instead of {draws.reward_before:.4g}."
+            )
+        if one.withheld:
+            yield f"The repair is withheld, since {one.withheld}."
+
+
 def broken_promises(stress: Stress) -> list[str]:
     """Return a sentence for each direction that fails inside the range of `must_hold`."""
     found = []

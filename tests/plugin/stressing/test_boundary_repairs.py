@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
+import jsonschema
+import numpy as np
 import pytest
 
 from pytest_tarl import Drift, boundary_repairs
-from pytest_tarl.boundary_repairs import Fixed, Placed, _worlds
+from pytest_tarl.boundary_repairs import Fixed, Placed, _combination, chosen
+from pytest_tarl.designation import Designation
+from pytest_tarl.drifts import sizes
 from pytest_tarl.model import Repair
+from pytest_tarl.options import Options
 from pytest_tarl.rollout import EpisodePlan
-from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing import json_result, page
+from pytest_tarl.stressing.findings import Attempt, Draws, Moved, failure
 from pytest_tarl.stressing.guarantee import Outcome
 from pytest_tarl.stressing.margin_changes import Row
 from pytest_tarl.stressing.margins import Margin
-from pytest_tarl.stressing.rays import rays
-from tests.plugin.stressing.worlds import Simulated, space_of
+from pytest_tarl.stressing.regions import Region, outwards, regions
+from pytest_tarl.stressing.search import Request
+from pytest_tarl.stressing.words import repair_lines
+from tests.plugin.stressing.worlds import Simulated, World, space_of, stressed
 from tests.plugin.tank import RECORD, changed
 
 SPACE = '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0))}'
@@ -65,15 +77,101 @@ def test_only_episodes_of_the_drift_without_a_point_are_placed() -> None:
     assert simulated.plans[0].overlay == {Path("a.py"): "1", Path("b.py"): "3"}
 
 
-def test_the_range_to_repair_begins_at_the_boundary() -> None:
-    space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
-    mud, camera = rays(space, {})
-    told = [words for _, words in _worlds(Curve(mud, confirmed=0.6))]
-    assert told == ["mud from 0.4 to 0", "mud from 0.4 to 0.3"]
-    ((world, _),) = _worlds(Curve(mud, confirmed=1.0))
-    assert world.value == 0.0
-    ((world, words),) = _worlds(Curve(camera, confirmed=1.0))
-    assert (world.value, words) == ("down", "camera='down'")
+def test_the_ranges_to_repair_begin_at_the_failure_and_options_stay() -> None:
+    space = space_of(
+        mud=Drift.range(0.0, 1.0, nominal=1.0),
+        slope=Drift.range(-0.5, 0.5, nominal=0.0),
+        camera=Drift.choice("up", "down"),
+    )
+
+    def found(**changed: float) -> list[Region]:
+        return [*regions(space, failure(space, {**space.nominal, **changed}))]
+
+    assert [one.words for one in found(mud=0.4)] == ["mud from 0.4 to 0", "mud from 0.4 to 0.3"]
+    (only,) = found(mud=0.0)
+    assert (only.drift.value, only.words) == (0.0, "mud=0")
+    (only,) = found(camera=1.0)
+    assert (only.drift.value, only.words) == ("down", "camera='down'")
+    wide, narrow = found(mud=0.4, slope=-0.1, camera=1.0)
+    assert wide.words == "mud from 0.4 to 0 and slope from -0.1 to -0.5 and camera='down'"
+    assert narrow.words == "mud from 0.4 to 0.3 and slope from -0.1 to -0.2 and camera='down'"
+    for seed in range(20):
+        drawn = {**wide.base, **sizes(wide.drift, "world", seed)}
+        assert 0.0 <= drawn["mud"] <= 0.4
+        assert -0.5 <= drawn["slope"] <= -0.1
+        assert drawn["camera"] == 1.0
+
+
+def test_the_ray_through_a_combination_ends_where_the_first_of_its_ranges_ends() -> None:
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(-1.0, 3.0, nominal=1.0))
+    ray = outwards(space, failure(space, {"a": 0.5, "b": 0.5}))
+    assert ray.farthest == {"a": 1.0, "b": 0.0}
+    assert ray.point(0.5) == {"a": 0.5, "b": 0.5}
+
+
+def test_the_nearest_failures_are_repaired_two_along_directions_and_one_combination() -> None:
+    space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "abc"})
+    points = [{"a": 0.1}, {"a": 0.2, "b": 0.2}, {"b": 0.4}, {"c": 0.5}, {"a": 0.5, "c": 0.5}]
+    failures = [failure(space, {**space.nominal, **one}) for one in points]
+    assert [one.names for one in chosen(failures)] == [("a",), ("a", "b"), ("b",)]
+
+
+def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+    return True, 10.0 - 3.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.02))
+
+
+def test_a_repaired_combination_tells_its_distance_before_and_after() -> None:
+    """Without the repair, the margin is lost where a · b = 1 / 6; with it, nowhere up to the end of the ray."""
+    space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
+    failed = failure(space, {"a": 0.45, "b": 0.45})
+    designation = Designation((), (), drifts={"world": Drift(space)}, min_success=0.95, tolerance=0.5)
+    fixture: Any = SimpleNamespace(
+        test="t", sample=SimpleNamespace(passed=[1] * 100, total=np.full(100, 10.0), episodes=100)
+    )
+
+    def moved(world: World) -> Moved:
+        options = Options(stress_budget=250)
+        request = Request(Simulated(world), fixture, designation, options, "world", lambda *_: None)
+        return _combination(request, space, failed)
+
+    same = moved(multiplied)
+    assert same.failed_before == failed.distance
+    assert same.failed_after == pytest.approx(failed.distance, abs=0.1)
+    assert same.change == "no significant change"
+    fixed = moved(lambda _, draws: (True, 10.0 + float(draws.normal(0.0, 0.02))))
+    assert (fixed.change, fixed.failed_after) == ("more robust", None)
+    assert fixed.name == "a and b together, distance"
+
+
+def test_attempts_are_in_text_json_and_page() -> None:
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0))
+    row = Moved("a to 1", "more robust", "not beyond 0.5", "beyond 0.9", None, 0.5, 0.9, None)
+    attempts = (
+        Attempt("a from 0.5 to 1", "none accepted: <why>."),
+        Attempt(
+            "a from 0.5 to 0.6",
+            "G → 2 at n.py:3",
+            True,
+            "a.patch",
+            "",
+            (row,),
+            Draws(60, 30, 59, 1.0, 2.0, 0.92),
+        ),
+    )
+    found = replace(stressed(lambda *_: (True, 1.0), space, budget=100), repairs=attempts)
+    document = json.loads(json_result.text(found))
+    jsonschema.validate(document, json_result.schema())
+    assert document["repairs"][1]["draws"]["passed_after"] == 59
+    told = [*repair_lines(found)]
+    assert told[0] == "a from 0.5 to 1: none accepted: <why>."
+    assert told[2] == "a to 1: not beyond 0.5 → beyond 0.9: more robust"
+    assert "59 instead of 30 of 60 fresh draws pass, at least 92 % at 95 %" in told[3]
+    shown = page.render(found)
+    assert "&lt;why&gt;" in shown
+    assert "<td>beyond 0.9<td>more robust" in shown
+    assert "<code>a.patch</code>" in shown
+    assert json_result.document(replace(found, repairs=None))["repairs"] is None
+    assert "nothing was repaired" in page.render(replace(found, repairs=()))
 
 
 def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
@@ -83,20 +181,23 @@ def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
     poor = tuple(Outcome(True, 8.9) for _ in range(60))
     assert Fixed((row,), fine, fine).loses == ""
     assert "over the declared space" in Fixed((row,), fine, poor).loses
+    failing = tuple(replace(one, passed=number > 30) for number, one in enumerate(fine))
+    assert "31 more of 60 draws from the declared space fail" in Fixed((row,), fine, failing).loses
     nearer = Fixed((Row("t[world]", wide, narrow),), poor, fine)
     assert nearer.loses == "the boundary of mud to 0 came nearer"
 
 
 @pytest.mark.parametrize(
-    ("stopped", "kept", "told"), [(True, True, "Interrupted before"), (False, False, "withheld")]
+    ("stopped", "kept", "told"), [(True, True, "interrupted before"), (False, False, "withheld")]
 )
 def test_a_patch_stays_after_ctrl_c_and_goes_if_it_loses(
     stopped: bool, kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.patch").write_text("patch")
     job = SimpleNamespace(root=tmp_path)
-    ray = rays(space_of(mud=Drift.range(0.0, 1.0, nominal=1.0)), {})[0]
-    found = SimpleNamespace(curves=(Curve(ray, confirmed=0.5),))
+    space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0))
+    found = stressed(lambda point, _: (point["mud"] > 0.5, 1.0), space, budget=150)
+    assert found.failures
     fine, poor = (tuple(Outcome(True, total) for _ in range(60)) for total in (9.0, 8.0))
 
     def examined(*_: object) -> Fixed:

@@ -1,0 +1,75 @@
+"""The drifts that a repair at a boundary is searched for: from a confirmed failure to the ends of its directions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pytest_tarl.drifts import Drift
+from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
+from pytest_tarl.stressing.findings import Failure
+from pytest_tarl.stressing.rays import Ray
+from pytest_tarl.stressing.words import shown
+
+# shares of the way from the boundary to the ends of the ranges that a repair is searched for
+REACH = (1.0, 0.25)
+
+
+@dataclass(frozen=True)
+class Region:
+    """Drifts beyond a failure: an episode draws the ranges of `drift` and has `base` otherwise; `words` name it."""
+
+    base: Point
+    drift: Drift
+    words: str
+
+
+def regions(space: Space, failed: Failure) -> Iterator[Region]:
+    """Yield the regions beyond a failure, the widest first; all its directions reach equally far to their ends."""
+    ranges = [name for name in failed.names if isinstance(space.extents[name], Span)]
+    for reach in REACH:
+        spans: dict[str, Span | Choice] = {}
+        words = []
+        for name in failed.names:
+            extent, near = space.extents[name], failed.point[name]
+            far = near + (end(extent, near) - near) * reach
+            if isinstance(extent, Span) and near != far:
+                spans[name] = Span(min(near, far), max(near, far), near)
+                words.append(f"{name} from {near:.3g} to {far:.3g}")
+            else:
+                words.append(f"{name}={shown(extent, near)}")
+        value = Space(spans, {}) if spans else _fixed(space, failed)
+        yield Region(failed.point, Drift(value), " and ".join(words))
+        if not spans or not ranges:
+            return
+
+
+def end(extent: Span | Choice, number: float) -> float:
+    """Return the end of a range on the side of a number; an option itself."""
+    if isinstance(extent, Choice):
+        return number
+    return extent.high if number > nominal(extent) else extent.low
+
+
+def outwards(space: Space, failed: Failure) -> Ray:
+    """Return the ray from nominal through a failure to the end of the space."""
+    reached = []
+    for name in failed.names:
+        extent, usual = space.extents[name], space.nominal[name]
+        if isinstance(extent, Span):
+            reached.append((failed.point[name] - usual) / (end(extent, failed.point[name]) - usual))
+    grow = max(reached, default=1.0)
+    farthest = {
+        name: number if isinstance(space.extents[name], Choice) else usual + (number - usual) / grow
+        for (name, number), usual in zip(failed.point.items(), space.nominal.values(), strict=True)
+    }
+    return Ray(space, failed.names, farthest)
+
+
+def _fixed(space: Space, failed: Failure) -> object:
+    """Return the only value of a region without a range: a number, an option, or several of them."""
+    values = []
+    for name in failed.names:
+        extent, number = space.extents[name], failed.point[name]
+        values.append(extent.options[int(number)] if isinstance(extent, Choice) else number)
+    return values[0] if len(values) == 1 else tuple(values)
