@@ -35,6 +35,7 @@ Reason = Literal[
     "cannot be written",
     "never tested",
     "a smaller step breaks it",
+    "breaks other missions",
 ]
 
 

@@ -9,7 +9,7 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.between import WEAK, further
+from pytest_tarl.repairing.between import STRONG, WEAK, further
 from pytest_tarl.repairing.centring import centred
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.missed import Missed
@@ -22,7 +22,7 @@ from pytest_tarl.repairing.smoothing import smoothed
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
 from pytest_tarl.searching.plainness import oddness
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Candidate, Trials
 
 QUICK = 3  # seeds on which to try a guard before testing it on fresh ones
 WORLDS = 3  # worlds in which a test runs: drifted, designed, and designed without the candidate
@@ -185,6 +185,9 @@ class Examiner:
             return known
         if self._goes_further(candidate):
             return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
+        same = self._acting_alike(candidate, trials)
+        if same is not None:
+            return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
         return self.ledger.alike(better) or better
 
@@ -193,10 +196,27 @@ class Examiner:
         waiting = (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate))
         return self.ledger.alike(candidate) or next(waiting, None)
 
+    def _acting_alike(self, candidate: Candidate, trials: Trials) -> Tried | None:
+        """Return a candidate that acts the same on every known seed, and whose missions earned too little in its test.
+
+        One whose missions failed proves nothing: values that act alike on known seeds may differ on
+        the hard ones.
+        """
+        return next(
+            (
+                one
+                for one in self.tried
+                if one.candidate in self._missed.poor
+                and one.reason in (*WEAK, *TOO_LITTLE)
+                and trials.same_as(candidate, one.candidate) >= CONFIRMATIONS
+            ),
+            None,
+        )
+
     def _goes_further(self, candidate: Candidate) -> bool:
-        """Return whether a smaller step of the same operands under the same guard broke the designed world."""
+        """Return whether a smaller step of the same operands under the same guard broke what went well."""
         return any(
-            one.reason == "nominal gets worse"
+            one.reason in STRONG
             and one.candidate.guard == candidate.guard
             and further(candidate, one.candidate)
             for one in self.tried
@@ -269,7 +289,7 @@ class Examiner:
         for pair in goal.controls:
             outcome = trials(candidate, pair.seed)
             if outcome.total < pair.total - slack or goal.lost(outcome):
-                return "gain too small"
+                return "breaks other missions"
         firing = self._firing(candidate)[:QUICK]
         self.mutants.foresee([(candidate, seed) for seed in firing], None)
         for seed in firing:

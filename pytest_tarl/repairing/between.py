@@ -1,4 +1,4 @@
-"""Bisect between the original, which gains too little, and a value that breaks the designed world."""
+"""Bisect between the original, which gains too little, and a value that breaks what went well without it."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ WEAK: tuple[Reason, ...] = (
     "worse than unrepaired",
     "not over the whole range",
 )
+STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
 FINEST = 1.05  # two factors with a smaller ratio are not bisected further
 
 
@@ -65,7 +66,7 @@ class Between:
         share = (self.weak + self.strong) / 2
         if reason in WEAK:
             self.weak = share
-        elif reason == "nominal gets worse":
+        elif reason in STRONG:
             self.strong = share
         else:
             return False

@@ -10,7 +10,7 @@ from math import sqrt
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.repairing.between import WEAK, Between, factor, stronger
+from pytest_tarl.repairing.between import STRONG, WEAK, Between, factor, stronger
 from pytest_tarl.repairing.centring import in_place, moved, neighbours
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Lost, Missed
@@ -139,9 +139,9 @@ class Others:
             return False
 
     def milder(self, candidate: Candidate) -> OtherValues:
-        """Bisect between the original, which gains too little, and a candidate that breaks the designed world."""
+        """Bisect between the original, which gains too little, and a candidate that breaks what went well."""
         known, place = self.ledger.alike(candidate), (operands(candidate), candidate.guard)
-        if known is None or known.reason != "nominal gets worse" or place in self._bisected:
+        if known is None or known.reason not in STRONG or place in self._bisected:
             return
         self._bisected.add(place)
         between = Between(candidate, self.mutants.mutate)

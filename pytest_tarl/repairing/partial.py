@@ -28,6 +28,7 @@ HARMFUL: tuple[Reason, ...] = (
     "cannot be written",
     "not at its definition",
     "a smaller step breaks it",
+    "breaks other missions",
 )
 
 

@@ -87,6 +87,7 @@ class Order:
         columns = zip(online.seeds, online.total.tolist(), online.steps.tolist(), strict=True)
         pairs = [Pair(seed, total, steps) for seed, total, steps in columns]
         found = goal(pairs, self.reference, self.comparison.verdict.loss)
+        found = replace(found, steps=float(self.fixture.sample.steps.mean()))
         if not self.comparison.sizes or self.world is None or self.drift is None:
             return found
         part = next(iter(self.comparison.sizes))

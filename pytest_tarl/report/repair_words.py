@@ -25,6 +25,7 @@ REASONS: dict[Reason, str] = {
     "cannot be written": "the best change found cannot be written to the source",
     "never tested": "the best change found was not tested, because other candidates used all acceptance tests",
     "a smaller step breaks it": "even a smaller step of the best change found makes the designed world worse",
+    "breaks other missions": "the best change found breaks missions that lose nothing under the drift",
 }
 ENDS: dict[Reason, str] = {
     "": "accepted",
@@ -40,6 +41,7 @@ ENDS: dict[Reason, str] = {
     "cannot be written": "dropped, it cannot be written to the source",
     "never tested": "not tested, because other candidates used all acceptance tests",
     "a smaller step breaks it": "not run, a smaller step already makes the designed world worse",
+    "breaks other missions": "dropped, missions that lost nothing get worse",
 }
 
 

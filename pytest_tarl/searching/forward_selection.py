@@ -162,6 +162,16 @@ class ForwardSelection:
             yield from self._settling(joint, candidate)
         return self.trials.gain(candidate, self.goal.pairs)
 
+    def fewest(self, joint: Joint) -> Iterator[Candidate]:
+        """Yield a combination without the parts that it does not need, if it holds and at most `MOST` are left."""
+        try:
+            fewer = self._least(joint) if self._reached(joint.candidate(self.mutate)) else joint
+            candidate = fewer.candidate(self.mutate)
+            if len(fewer.parts) <= MOST and self.settled.holds(candidate, self.trials, self.goal, 0):
+                yield candidate
+        except RepairError:
+            return
+
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
         """Yield a combination that holds, without its unneeded parts, unless the rest was yielded before."""
         fewer = self._least(joint).candidate(self.mutate)

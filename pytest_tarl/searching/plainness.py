@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
-from math import isfinite
+from math import isclose, isfinite, pi
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
@@ -12,19 +12,22 @@ from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
 UNTRIED = 2  # named constants to try before a changed literal is accepted
+GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)  # m/s², as programs write it
+ROUNDED = 6e-4  # relative error of 3.14
 
 
 class Oddness(IntEnum):
     """How unusual a change reads, from the plainest to the oddest.
 
     `NAMED` scales a named constant, `INNER` a literal, `VARIABLE` a name that stands for several constants, so that the
-    repair writes a new factor beside it. `OFFSET` adds a number or flips a sign.
+    repair writes a new factor beside it. `OFFSET` adds a number or flips a sign. `NATURE` changes a constant of nature.
     """
 
     NAMED = 0
     INNER = 1
     VARIABLE = 2
     OFFSET = 3
+    NATURE = 4
 
 
 def oddness(mutations: Iterable[Mutation]) -> Oddness:
@@ -60,6 +63,8 @@ def writing(operand: Operand) -> Oddness:
     one. A literal zero is more often a bound or a start value than a tuned number.
     """
     zero = operand.value == 0 and not isinstance(operand.value, bool)
+    if of_nature(operand):
+        return Oddness.NATURE
     if not operand.literal:
         return Oddness.INNER if zero else _scaled(operand)
     return Oddness.OFFSET if zero else Oddness.INNER
@@ -74,6 +79,14 @@ def edges(guard: Guard) -> tuple[str, ...]:
     )
 
 
+def of_nature(operand: Operand) -> bool:
+    """Return whether an operand is the acceleration of gravity, π or 2 π: the world, and no choice of its author."""
+    if operand.value is None or isinstance(operand.value, bool):
+        return False
+    value = abs(operand.value)
+    return value in GRAVITY or any(isclose(value, times * pi, rel_tol=ROUNDED) for times in (1, 2))
+
+
 def _kind(unit: Unit) -> Oddness:
     operand = unit.operands[0]
     if operand.value == 0 and not isinstance(operand.value, bool):
@@ -83,6 +96,8 @@ def _kind(unit: Unit) -> Oddness:
 
 def _scaled(operand: Operand) -> Oddness:
     """Return the oddness of scaling an operand that is not 0."""
+    if of_nature(operand):
+        return Oddness.NATURE
     if operand.literal:
         return Oddness.INNER
     return Oddness.VARIABLE if operand.definition is None and not operand.setting else Oddness.NAMED
@@ -93,6 +108,6 @@ def _of(mutation: Mutation) -> Oddness:
     if isinstance(operand.value, bool) or isinstance(value, bool):
         return _scaled(operand)
     factor = value / operand.value if operand.literal and operand.value else value
-    if operand.value == 0 or factor < 0:
+    if operand.value == 0 or (factor < 0 and not of_nature(operand)):
         return Oddness.OFFSET
     return _scaled(operand)

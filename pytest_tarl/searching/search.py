@@ -69,6 +69,7 @@ class Goal:
     harder: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
     ranged: bool = False  # missions vary in size, so a mission may fail because of its size
+    steps: float | None = None  # mean length of a designed mission, if known
 
     @property
     def wanted(self) -> float:
@@ -158,6 +159,26 @@ class Trials:
             outcome is not None and (outcome.total != pair.total or pair.steps not in (None, outcome.steps))
             for outcome, pair in known
         )
+
+    def steps(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[int]:
+        """Return the lengths of the missions that a candidate ran, where known."""
+        known = (self._known.get((candidate, pair.seed)) for pair in pairs)
+        return [one.steps for one in known if one is not None and one.steps is not None]
+
+    def same_as(self, candidate: Candidate, other: Candidate) -> int:
+        """Return on how many common seeds two candidates had the same outcome; 0 if they differed on any."""
+        mine, its = self._outcomes(candidate), self._outcomes(other)
+        both = mine.keys() & its.keys()
+        return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
+
+    def _outcomes(self, candidate: Candidate) -> dict[int, tuple[float, bool, int | None]]:
+        """Return the known outcomes of the candidate's changes, wherever in the source these are written."""
+        changes, guard = candidate.changes, candidate.guard
+        return {
+            seed: (run.total, run.passed, run.steps)
+            for (one, seed), run in self._known.items()
+            if one.guard == guard and one.changes == changes
+        }
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
         """Store a candidate that nearly reached the goal on every seed but earned too little on average."""

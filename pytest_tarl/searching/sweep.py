@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -86,6 +88,7 @@ class Sweep:
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._refused: set[tuple[Unit, Guard]] = set()  # yielded as confirmed, then refused by the caller
+        self._replaced: set[Unit] = set()  # units in place of which gentler ones were tried
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -204,6 +207,10 @@ class Sweep:
         self._learn(unit, candidate, factor)
         if holds:
             yield from self._plainer(candidate, unit, pair)
+            yield from self._called(candidate, unit, factor)
+        if holds or (near and oddness(candidate.mutations) is Oddness.NATURE):
+            yield from self._instead(candidate, unit, pair)
+        if holds:
             yield candidate
         if holds or (near and self.trials.loses(candidate)):
             self._refused.add((unit, guard))
@@ -239,6 +246,24 @@ class Sweep:
                 if self.trials.spent - begun < PLAINER:
                     yield from self._try(other, guard, factor, pair)
                     yield from self._closer(other, guard, before, pair)
+
+    def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
+        """Try the calls of the function whose returned value a candidate changes, as few of them as suffice."""
+        calls = calls_of(unit, self.units)
+        if len(calls) > 1:
+            joint = Joint(tuple((call, factor) for call in calls), found.guard)
+            yield from self._joining({}).fewest(joint)
+
+    def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
+        """Where missions go in another way than designed, try named constants in small steps first."""
+        if unit in self._replaced or not another_way(found, self.trials, self.goal):
+            return
+        self._replaced.add(unit)
+        begun, promising = self.trials.spent, PROMISING * self.goal.wanted
+        for other, steps in gentler(unit, self.units, self._gains, found.guard, promising):
+            for step in steps:
+                if self.trials.spent - begun < PLAINER:
+                    yield from self._try(other, found.guard, step, pair)
 
     def _closer(
         self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int

@@ -384,3 +384,42 @@ def _tested_at_once(drifted: Any, nominal: Any, designed: Any, seeds: Sequence[i
     outcome = drifted.run(seeds[0])
     good = outcome.total >= DESIGNED - 0.5
     return Acceptance(good, "" if good else "gain too small", (outcome,), (), True, 1)
+
+
+def test_a_candidate_that_acts_like_a_rejected_one_is_not_tested_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Field(["lucky on known seeds", "lucky on known seeds"])
+    field.order.goal = replace(field.order.goal, passing=True)
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    for candidate in field.candidates:
+        for seed in KNOWN:
+            trials(candidate, seed)
+    assert examiner.first(iter(field.candidates), trials) is None
+    first, second = examiner.tried
+    assert first.fresh
+    assert not second.fresh
+    assert second.reason == first.reason
+
+
+class TwoSided(Narrow):
+    """A limit that has to grow for some missions, and with which others fail if it grows too much."""
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL or drift is None:
+            return Outcome(DESIGNED, passed=True)
+        (mutation,) = candidate.mutations
+        factor = float(mutation.value) / float(mutation.operand.value or 1)
+        good = factor <= self.high if seed >= len(KNOWN) else factor >= self.low
+        return Outcome(DESIGNED if good else DRIFTED, passed=good)
+
+
+def test_a_value_with_which_other_missions_fail_is_bisected() -> None:
+    field: Any = TwoSided(2.4, 3.0)
+    controls = tuple(Pair(seed, DESIGNED) for seed in range(len(KNOWN), len(KNOWN) + 2))
+    field.order.goal = replace(field.order.goal, controls=controls)
+    assert 2.4 <= accepted_factor(field, (5.0,)) <= 3.0

@@ -1,0 +1,33 @@
+"""Where a change of a returned value holds, find out which calls of the function need it.
+
+A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on what it
+returns changes all of them, and a maintainer changes the ones that are wrong.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+
+def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
+    """Return the units that are calls of the function whose returned value this unit changes."""
+    operand = unit.operands[0]
+    function = operand.site.qualname.rpartition(".")[2]
+    if not operand.site.text.startswith("return ") or not function:
+        return []
+    return [other for other in among if _called(other.operands[0]) == function]
+
+
+def _called(operand: Operand) -> str:
+    """Return the name of the function or method that an operand calls, "" if it is no call."""
+    try:
+        node = ast.parse(operand.code, mode="eval").body
+    except SyntaxError:
+        return ""
+    if not isinstance(node, ast.Call):
+        return ""
+    return ast.unparse(node.func).rpartition(".")[2]
