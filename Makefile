@@ -13,7 +13,7 @@ PROCESSES ?= 2
 unexport PYTHONDONTWRITEBYTECODE
 INSTALLED := $(VENV)/.installed
 
-.PHONY: demo test check unit test-editor setup docs docs-assets test-docs clean bench-paper bench-drift
+.PHONY: demo test check unit suite test-editor setup docs docs-assets test-docs clean bench-paper bench-drift
 
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
@@ -26,7 +26,9 @@ check: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-unit: setup test-editor
+unit: test-editor suite
+
+suite: setup
 	$(BIN)/python -m pytest -q --timeout 240 --numprocesses $(PROCESSES)
 
 # The language server is tested by itself: its tests need asyncio, which the others run without
