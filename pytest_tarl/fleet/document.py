@@ -16,6 +16,7 @@ from pytest_tarl.monitoring.status import Evidence
 from pytest_tarl.report.json_result import finite
 
 FORMAT = 1
+EVIDENCE = ("world", "bound", "world_since", "bound_since")
 
 
 def text(answer: Answer) -> str:
@@ -35,7 +36,11 @@ def document(answer: Answer) -> dict[str, Any]:
         "since": None if question.since is None else question.since.isoformat(),
         "robot": question.robot or None,
         "sensors": [sensor.name for sensor in answer.fixture.sensors],
-        "groups": [_group(one) for one in answer.groups],
+        "groups": [
+            _group(one, watched) for one, watched in zip(answer.groups, answer.onsets.every, strict=True)
+        ],
+        "groups_drifted": [one.name for one in answer.onsets.drifted],
+        "groups_below": [one.name for one in answer.onsets.below],
         "false_discovery_rate": found.q,
         "drifted": [one.name for one in found.drifted],
         "below": [one.name for one in found.below],
@@ -87,7 +92,7 @@ def _components(parts: Decomposition) -> dict[str, Any]:
     return {"season": parts.season, "confidence": parts.confidence, "rows": rows}
 
 
-def _group(one: Group) -> dict[str, Any]:
+def _group(one: Group, watched: Robot) -> dict[str, Any]:
     verdict = one.verdict
     return {
         "values": list(one.values),
@@ -104,6 +109,7 @@ def _group(one: Group) -> dict[str, Any]:
         "p_drift": None if verdict is None else verdict.p_drift,
         "cells": [list(cell) for cell in one.region.cells],
         "new": [list(cell) for cell in one.region.novel],
+        "evidence": {key: value for key, value in _robot(watched).items() if key in EVIDENCE},
         "formulas": [asdict(judged) for judged in one.formulas],
     }
 

@@ -9,7 +9,7 @@ from datetime import date
 from pathlib import Path
 
 from pytest_tarl.errors import FleetError, SettingsError
-from pytest_tarl.fleet import clusters, dataset, decomposition, groups, repairs, robots
+from pytest_tarl.fleet import clusters, dataset, decomposition, group_onsets, groups, repairs, robots
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import Origin, origin
@@ -53,6 +53,7 @@ class Answer:
     copies: int  # rows of missions that occur more than once, beyond the first
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
+    onsets: robots.Robots  # the evidence on each group
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None with one robot
     clusters: clusters.Clusters
@@ -96,13 +97,15 @@ def answer(question: Question) -> Answer:
 def _judged(database: Database, fixture: Fixture, question: Question, left_out: Mapping[str, int]) -> Answer:
     alpha, one = question.alpha, bool(question.robot)
     every = robots.judged(database, fixture, alpha)
+    found = groups.judged(database, fixture, question.by, alpha=alpha, tolerance=question.tolerance)
     return Answer(
         question=question,
         fixture=fixture,
         missions=database.missions,
         copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
         cells=database.cells,
-        groups=groups.judged(database, fixture, question.by, alpha=alpha, tolerance=question.tolerance),
+        groups=found,
+        onsets=group_onsets.judged(database, fixture, found, alpha),
         robots=every,
         parts=None if one else decomposition.decomposed(database),
         clusters=clusters.clustered(database, fixture, every, alpha),

@@ -60,6 +60,11 @@ def judged(database: Database, fixture: Fixture, q: float, seed: int = 0) -> Rob
     """
     first = begun(fixture, alpha=q, seed=seed)
     every = tuple(_each(database, first, len(fixture.sample.cells), q))
+    return named(every, q)
+
+
+def named(every: tuple[Robot, ...], q: float) -> Robots:
+    """Return all robots with those that e-BH names."""
     return Robots(
         q=q,
         every=every,
@@ -103,7 +108,7 @@ def portioned(
             if max(world, bound) >= -np.log2(q):
                 monitor = fresh(first)
                 monitor.processes, monitor.pool = some.state(place)
-                new = _new(others, transitions, int(rows["number"][low]), high - low, recorded)
+                new = new_cells(others, transitions, int(rows["number"][low]), high - low, recorded)
                 monitor.told(part(sample, low, high), np.asarray(rows["time"][low:high], np.float64), new)
                 status = status_of(monitor)
             found[number] = Robot(name, high - low, passed, world, bound, status)
@@ -123,7 +128,9 @@ def fresh(first: Monitor) -> Monitor:
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
 
 
-def _new(others: Sequence[Cell], transitions: Columns, begin: int, count: int, recorded: int) -> list[Cell]:
+def new_cells(
+    others: Sequence[Cell], transitions: Columns, begin: int, count: int, recorded: int
+) -> list[Cell]:
     """Return the cells that the recording lacks, once for each mission that visited them."""
     low, high = np.searchsorted(transitions["number"], (begin, begin + count)).tolist()
     cell = np.asarray(transitions["cell"][low:high])

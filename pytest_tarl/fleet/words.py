@@ -27,6 +27,7 @@ def lines(answer: Answer) -> Iterator[str]:
     )
     yield ""
     yield from _table(answer, words)
+    yield from _onsets(answer, words)
     yield from _formulas(answer)
     yield ""
     yield from _named(answer, found.drifted, "missions differ from the recording", "")
@@ -50,6 +51,25 @@ def lines(answer: Answer) -> Iterator[str]:
             result = "passed" if mission.passed else "failed"
             yield f"  {_time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
     yield from _notes(answer)
+
+
+def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
+    """Yield the groups whose missions, in the order of their times, changed, and when."""
+    found = answer.onsets
+    if not answer.question.by:
+        return
+    named = {one.name for one in (*found.drifted, *found.below)}
+    rate = f"false discovery rate at most {100 * found.q:g} % for each kind of evidence"
+    yield ""
+    yield f"{len(named):,} of {len(found.every):,} groups: changed in time ({rate}){':' if named else ''}"
+    ordered = sorted(
+        (one for one in found.every if one.name in named),
+        key=lambda one: (-max(one.world, one.bound), one.name),
+    )
+    for one in ordered[:NAMED]:
+        below = one.bound >= one.world
+        evidence = one.status and (lower(one.status) if below else one.status.world)
+        yield _robot(one, max(one.world, one.bound), evidence or None, words)
 
 
 def _clusters(answer: Answer, words: Vocabulary) -> Iterator[str]:
