@@ -1,4 +1,7 @@
-"""Constants of one product: a factor on any of them gives the same program, so searching one suffices."""
+"""Constants that need not be searched one by one, because a factor on another one gives the same program.
+
+They are those of one product, and constructors that only store a constant that is used elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +21,19 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
     """Split operands into those that a search must move, and those that are equivalent to one of these.
 
     The first constant of a product, in the given order, must be moved. So must a constant with another use in the same
-    statement, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because its uses move together.
+    statement, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because its uses move together. A constructor that only
+    stores a constant, by `self.limit = limit`, is equivalent to the use of this constant.
     """
+    stored = {operand for operand in operands if _stored(analysis, operand)}
+    used = {one.definition for one in operands if one not in stored and one.definition is not None}
     kept: list[Operand] = []
     same: list[Operand] = []
     taken: set[Product] = set()
     uses = [(operand.site, operand.code, abs(operand.value or 0)) for operand in operands]
     for operand, use in zip(operands, uses, strict=True):
+        if operand in stored and operand.definition in used:
+            same.append(operand)
+            continue
         product = _product(analysis, operand) if uses.count(use) == 1 else None
         if product is not None and product in taken:
             same.append(operand)
@@ -33,6 +42,20 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
         if product is not None:
             taken.add(product)
     return kept, same
+
+
+def _stored(analysis: Analysis, operand: Operand) -> bool:
+    """Return whether a constructor assigns the operand, one of its parameters, as it is."""
+    if operand.literal or operand.site.qualname.rpartition(".")[2] != "__init__":
+        return False
+    try:
+        source = document(operand.span.path, analysis.sources[operand.span.path])
+        node = source.find(operand.span)
+    except (RepairError, KeyError):
+        return False
+    statement = source.statement(node)
+    assigns = isinstance(statement, ast.Assign | ast.AnnAssign) and statement.value is node
+    return assigns and isinstance(node, ast.Name)
 
 
 def _product(analysis: Analysis, operand: Operand) -> Product | None:

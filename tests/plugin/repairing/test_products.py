@@ -57,3 +57,46 @@ def test_a_factor_of_a_product_stands_for_the_others(use: str, same: list[str], 
     kept, others = one_of_each(analysis, operands)
     assert [one.code for one in others] == same
     assert sorted(map(id, [*kept, *others])) == sorted(map(id, operands))
+
+
+MADE_LATE = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+class Spiral:
+    def __init__(self, pitch, most, name_only):
+        self.pitch = pitch
+        self.most = most
+        self.name_only = name_only
+        self.angle = 0.0
+
+    def reach(self, by):
+        self.angle += by
+        return min(self.pitch * self.angle, self.most)
+
+
+class Keeper:
+    def __init__(self):
+        self.spiral = None
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_in)
+
+    def on_in(self, msg):
+        if msg.data > 1.0:
+            self.spiral = Spiral(0.5, 4.0, 7.0)
+        self.out.publish(self.spiral.reach(msg.data))
+"""
+
+
+def test_where_a_constructor_stores_a_constant_its_use_is_searched(tmp_path: Path) -> None:
+    path = tmp_path / "keeper.py"
+    path.write_text(MADE_LATE)
+    analysis = analyse([path], root=tmp_path)
+    operands = list(dict.fromkeys(o for step in analysis.sites for o in analysis.operands(step.site)))
+    kept, same = one_of_each(analysis, operands)
+    stored = [one for one in operands if one.site.qualname == "Spiral.__init__" and not one.literal]
+    used = [one.code for one in kept if one.site.qualname == "Spiral.reach"]
+    assert {one.code for one in stored} >= {"pitch", "most"}
+    assert {one.code for one in same} == {"pitch", "most"}
+    assert {"self.pitch", "self.most"} <= set(used)
