@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Graph, Place
@@ -11,14 +11,25 @@ from tarl_lint.memory.values import Branches
 Entrance = tuple[int, list[Place], int]  # (condition, calls under it, outermost first, values made there)
 
 
-def entrances(graph: Graph, nodes: set[int]) -> Iterator[Entrance]:
-    """Yield the calls through which conditions among the nodes choose values made in other functions."""
-    for node in sorted(nodes):
+def made_alongside(graph: Graph) -> dict[int, list[int]]:
+    """Return node → the nodes whose values it takes without their conditions, in order of their stand-ins."""
+    found: dict[int, list[int]] = {}
+    for node, formers in enumerate(graph.data):
+        if not graph.stands_for.keys().isdisjoint(formers):
+            found[node] = [graph.stands_for[f] for f in sorted(formers) if f in graph.stands_for]
+    return found
+
+
+def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[int]]) -> Iterator[Entrance]:
+    """Yield the calls through which conditions among the nodes choose values made in other functions.
+
+    `alongside` is the result of `made_alongside`.
+    """
+    for node in sorted(nodes & (graph.gates.keys() | alongside.keys())):
         if node in graph.gates:
             made, choice = graph.gates[node]
             yield from _between(graph, choice, nodes, made, node)
-        for former in sorted(graph.data[node] & graph.stands_for.keys()):
-            made = graph.stands_for[former]
+        for made in alongside.get(node, ()):
             if made in nodes:
                 yield from _between(graph, graph.branches[made] - graph.branches[node], nodes, made, made)
 

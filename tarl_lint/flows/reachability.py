@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from tarl_lint.flows.call_chains import entrances
+from tarl_lint.flows.call_chains import entrances, made_alongside
 from tarl_lint.flows.context_steps import Surroundings
 from tarl_lint.flows.shortest_path import shortest_path
 from tarl_lint.flows.statement_text import Texts, Written
@@ -48,6 +48,8 @@ class Tracer:
         self.surroundings = Surroundings(self.texts)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
+        self._alongside = made_alongside(self.graph)
+        self._merged = {n for n, place in enumerate(self.graph.places) if place.role == MERGED}
         self._statements: dict[int, Written | None] = {}
         self._formers: dict[int, list[int]] = {}
         self._before: dict[int, Sequence[tuple[int, list[int]]]] = {}
@@ -123,12 +125,11 @@ class Tracer:
         """Return the constants that conditions among the nodes choose, with the nodes that produce them."""
         graph = self.graph
         found: set[int] = set()
-        for node in nodes:
+        for node in filter((graph.gates.keys() | self._alongside.keys()).__contains__, nodes):
             if node in graph.gates:
                 dep, choice = graph.gates[node]
                 self._makers(dep, frozenset(b for b in choice if b[0] in nodes), found)
-            for former in graph.data[node] & graph.stands_for.keys():
-                dep = graph.stands_for[former]
+            for dep in self._alongside.get(node, ()):
                 ways = frozenset(b for b in graph.branches[dep] - graph.branches[node] if b[0] in nodes)
                 if ways:
                     found.add(dep)
@@ -137,11 +138,12 @@ class Tracer:
 
     def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
         """Add the nodes from which a value is made, as far as they are under the conditions that choose it."""
+        data, branches, stands_for = self.graph.data, self.graph.branches, self.graph.stands_for
         pending = [dep] if ways else []
         while pending:
-            for near in self.graph.data[pending.pop()]:
-                former = self.graph.stands_for.get(near, near)
-                if former not in found and not ways.isdisjoint(self.graph.branches[former]):
+            for near in data[pending.pop()]:
+                former = stands_for.get(near, near)
+                if former not in found and not ways.isdisjoint(branches[former]):
                     found.add(former)
                     pending.append(former)
 
@@ -198,7 +200,7 @@ class Tracer:
     ) -> list[tuple[int, int]]:
         """Add the calls between conditions and the values stored under them; return the order constraints."""
         edges: dict[tuple[int, int], None] = {}
-        for decision, calls, made in entrances(self.graph, nodes):
+        for decision, calls, made in entrances(self.graph, nodes, self._alongside):
             chain = [statement_of.get(decision)]
             for place in calls:
                 found = self._statement(place)
@@ -269,15 +271,15 @@ class Tracer:
     def before(self, node: int) -> Sequence[int]:
         """Return the nodes that a node is made from or depends on; skip through nodes without a statement."""
         formers = self.formers(node)
-        places = self.graph.places
-        if all(places[former].role != MERGED for former in formers):
+        merged = self._merged
+        if merged.isdisjoint(formers):
             return formers
         pending = list(reversed(formers))
         found: list[int] = []
         seen: set[int] = set()
         while pending:
             former = pending.pop()
-            if places[former].role == MERGED and former not in seen:
+            if former in merged and former not in seen:
                 seen.add(former)
                 pending += reversed(self.formers(former))
             elif former not in seen:

@@ -52,12 +52,14 @@ def before_loops(
 
     Such a statement computes a value that the body of the loop uses, so it comes before the head of the loop.
     """
-    formers: dict[int, list[int]] = {}
-    for before, after in edges:
-        formers.setdefault(after, []).append(before)
     heads: dict[int, set[int]] = {}
     for carried, head in turns:
         heads.setdefault(head, set()).add(carried)
+    if not heads:
+        return []
+    formers: dict[int, list[int]] = {}
+    for before, after in edges:
+        formers.setdefault(after, []).append(before)
     found: list[tuple[int, int]] = []
     for head, carried_to in heads.items():
         seen, pending = set(carried_to), list(carried_to)
