@@ -226,7 +226,7 @@ class Interpreter:
     def use(self, value: Value) -> Nodes:
         """Return the nodes whose data is used if the whole value is."""
         if not value.pts:
-            return self.settled(value)
+            return value.deps if value.consts is None else self.settled(value)
         content = self.ops.deep(self, value.pts)
         if not content:
             return value.deps

@@ -6,7 +6,7 @@ take part in joins.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from typing import Final
 
 from tarl_lint.memory.frames import Frame
@@ -26,7 +26,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     if not local:
         return delta if frame.captured else {k: v for k, v in delta.items() if k[0] is not frame}
     kept: Delta = {}
-    inside: dict[Obj, list[tuple[str, Value]]] = {}
+    inside: dict[Obj, list[frozenset[Obj]]] = {}
     pending = [*returned, *(local & given)]
     followed: set[frozenset[Obj]] = set()  # sets already followed, since many values share one
     for key, value in delta.items():
@@ -34,28 +34,39 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
         if owner is frame and not frame.captured:
             continue
         kept[key] = value
-        root = owner.whole
+        root = owner.outermost or owner
+        pts = value.pts
+        if not pts:
+            continue
         if root in local:
-            inside.setdefault(root, []).append((key[1], value))
-        elif value.pts and value.pts not in followed:
-            followed.add(value.pts)
-            pending += value.pts
-    seen: set[Obj] = set()
-    while pending:
-        root = pending.pop().whole
-        if root not in seen:
-            seen.add(root)
-            for _, value in inside.get(root, ()):
-                if value.pts not in followed:
-                    followed.add(value.pts)
-                    pending += value.pts
-            if root.info is not None:
-                pending += _about(root.info)
-    gone = local - seen
+            inside.setdefault(root, []).append(pts)
+        elif pts not in followed:
+            followed.add(pts)
+            pending += pts
+    gone = local - _reached(pending, inside, followed)
     if not gone:
         return kept
     reads.ask(given.isdisjoint, frozenset(gone))
-    return {k: v for k, v in kept.items() if k[0].whole not in gone}
+    return {k: v for k, v in kept.items() if (k[0].outermost or k[0]) not in gone}
+
+
+def _reached(
+    pending: list[Obj], inside: Mapping[Obj, list[frozenset[Obj]]], followed: set[frozenset[Obj]]
+) -> set[Obj]:
+    """Return the outermost objects reached from some, through their fields and definitions."""
+    seen: set[Obj] = set()
+    while pending:
+        obj = pending.pop()
+        root = obj.outermost or obj
+        if root not in seen:
+            seen.add(root)
+            for pts in inside.get(root, ()):
+                if pts not in followed:
+                    followed.add(pts)
+                    pending += pts
+            if root.info is not None:
+                pending += _about(root.info)
+    return seen
 
 
 def together(objects: Iterable[Obj]) -> Set[Obj]:

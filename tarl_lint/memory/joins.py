@@ -38,32 +38,43 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
     ctx.work.spent += len(keys) // JOINS
     result: Delta = {}
     for key in keys:
-        value: Value | None = None
-        blank: Value | None = None
-        for delta in deltas:
-            here = delta.get(key)
-            if here is None or here is ABSENT:
-                here = _former(ctx, key) if here is None else ctx.ops.default(ctx, *key)
-                if here is not None and _unset(ctx, key, here):
-                    blank = here
-                    continue
-            if here is not None:
-                value = here if value is None else join(value, here)
-        if blank is not None and (value is None or not _zero(value)):
-            value = blank if value is None else join(value, blank)
+        value = _join_of(ctx, key, deltas)
         if value is not None:
             result[key] = value
     return result
 
 
+def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) -> Value | None:
+    """Return the join of a key's values in several continuations."""
+    value: Value | None = None
+    blank: Value | None = None
+    before = False  # whether the value before the continuations is included
+    for delta in deltas:
+        here = delta.get(key)
+        if here is None or here is ABSENT:
+            if here is None:
+                if before:
+                    continue
+                before = True
+                here = _former(ctx, key)
+            else:
+                here = ctx.ops.default(ctx, *key)
+            if here is not None and key[0].kind == "lib" and _unset(ctx, key, here):
+                blank = here
+                continue
+        if here is not None:
+            value = here if value is None else join(value, here)
+    if blank is not None and (value is None or not _zero(value)):
+        value = blank if value is None else join(value, blank)
+    return value
+
+
 def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
-    """Return whether a value is an unset field of a new message."""
+    """Return whether the value of a library object's field is an unset field of a new message."""
     owner = key[0]
-    if owner.kind == "lib":
-        ctx.look(value.pts)
+    ctx.look(value.pts)
     return (
-        owner.kind == "lib"
-        and owner.whole.info is BY_CLASS
+        owner.whole.info is BY_CLASS
         and not value.deps
         and all(o.parent is owner and not o.fields for o in value.pts)
         and heap.content(ctx, owner) is BOTTOM

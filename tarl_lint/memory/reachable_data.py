@@ -35,12 +35,15 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
         if not obj.laden:
             ctx.store.doubt(obj)
             return NONE
-    store, outer = ctx.store, ctx.store.reads
+    store = ctx.store
+    outer = store.reads
     key = (objects, ctx.stack[-1] if ctx.stack else None)
     last = store.insides.get(key)
-    if last is not None and _still(ctx, last):
-        outer.add(last.reads)
-        return last.nodes
+    if last is not None:
+        fresh = last.tick == store.tick and last.grown == ctx.graph.grown
+        if fresh or _still(ctx, last):
+            outer.add(last.reads)
+            return last.nodes
     reads = store.reads = ctx.graph.reads = Reads()
     visit = Visit()
     nodes, grown, tick = NONE, ctx.graph.grown, store.tick
@@ -54,10 +57,8 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def _still(ctx: Interpreter, last: Inside) -> bool:
-    """Return whether a cached result is still valid."""
+    """Return whether a cached result is still valid although something was stored since."""
     store, graph = ctx.store, ctx.graph
-    if last.tick == store.tick and last.grown == graph.grown:
-        return True
     if not unchanged(last.reads, last.found, last.stored, store, graph):
         return False
     last.tick, last.grown = store.tick, graph.grown
@@ -83,15 +84,18 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
     if obj.kind == "instance" and _node_like(ctx, obj):
         return NONE
     ctx.store.look(obj)
-    overwritten = replaced(ctx, obj, defined(ctx, obj))
+    definition = defined(ctx, obj)
+    overwritten = definition != "" and replaced(ctx, obj, definition)
     found: set[int] = set()
     whole = not counted or ANY in obj.fields
     if not overwritten and whole:
         found |= heap.content(ctx, obj).deps
+    get = ctx.store.get
     for name in list(obj.fields):
-        value = ctx.store.get((obj, name)) if name != ANY or not overwritten else None
+        value = get((obj, name)) if name != ANY or not overwritten else None
         if value is not None:
-            found |= ctx.settled(value) if name.isidentifier() else value.deps
+            if value.deps:
+                found |= ctx.settled(value) if name.isidentifier() else value.deps
             if value.pts:
                 found |= _behind(ctx, value, visit, depth + 1)
     for sub in _parts(ctx, obj, overwritten):
@@ -109,6 +113,8 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
     An empty part holds only data of the whole; a field added to it later notifies the readers of the whole.
     """
+    if not obj.subs:
+        return []
     ctx.look(obj.subs.values())
     return [
         sub

@@ -85,9 +85,12 @@ class Reads:
         """Merge the reads that do not depend on the current path; once is enough."""
         self.unreached |= inner.unreached
         complete(self.objects, inner.objects)
-        complete(self.holders, inner.holders)
-        complete(self.held, inner.held)
-        complete(self.facts, inner.facts)
+        if inner.holders:
+            complete(self.holders, inner.holders)
+        if inner.held:
+            complete(self.held, inner.held)
+        if inner.facts:
+            complete(self.facts, inner.facts)
         self.whole = self.whole and inner.whole
         if inner.waits:
             self.wait(inner.heard, inner.own)
@@ -97,6 +100,9 @@ class Reads:
 
 def complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
     """Add missing entries, in time proportional to `theirs`, which is usually the smaller one."""
-    for key, value in theirs.items():
-        if key not in mine:
-            mine[key] = value
+    if not mine:
+        mine.update(theirs)
+    elif not theirs.keys() <= mine.keys():
+        for key, value in theirs.items():
+            if key not in mine:
+                mine[key] = value

@@ -27,12 +27,12 @@ def unchanged(
     for key, there in stored.items():
         if (key in current) is not there:
             return False
-    for carrier, size in reads.held.items():
-        if graph.passed_by(carrier) != size:
-            return False
-    if not all(question(of) == answer for (question, of), answer in reads.facts.items()):
+    if reads.held and not graph.as_passed(reads.held):
         return False
-    if any(_held(obj, store, places) for obj, places in reads.holders.items()):
+    for (question, of), answer in reads.facts.items():
+        if question(of) != answer:
+            return False
+    if reads.holders and any(_held(obj, store, places) for obj, places in reads.holders.items()):
         return False
     changed = ((obj, stamp) for obj, stamp in reads.objects.items() if obj.stamp != stamp)
     if reads.waits:  # other roots may store to the new fields during the wait

@@ -59,14 +59,21 @@ class Shared:
 
     def entry(self, key: Key, root: Root) -> Value | None:
         """Return the initial value of a key for a root: the join of the stores of all other roots."""
-        self.readers.setdefault(key, set()).add(root)
+        readers = self.readers.get(key)
+        if readers is None:
+            readers = self.readers[key] = set()
+        readers.add(root)
         result: Value | None = None
-        for owner, value in self.ends.get(key, {}).items():
-            if owner is not root or not root.once:
-                result = value if result is None else join(result, value)
-        for owner, value in self.pauses.get(key, {}).items():
-            if owner is not root:
-                result = value if result is None else join(result, value)
+        ends = self.ends.get(key)
+        if ends is not None:
+            for owner, value in ends.items():
+                if owner is not root or not root.once:
+                    result = value if result is None else join(result, value)
+        pauses = self.pauses.get(key)
+        if pauses is not None:
+            for owner, value in pauses.items():
+                if owner is not root:
+                    result = value if result is None else join(result, value)
         return result
 
     def others(self, key: Key, root: Root) -> Value | None:
@@ -184,7 +191,10 @@ class Store:
         reads = self.reads
         if key not in reads.written:
             reads.keys.add(key)
-        return self.peek(key)
+        value = self.now.get(key)
+        if value is None or self.waited:
+            return self.peek(key)
+        return None if value is ABSENT else value
 
     def peek(self, key: Key) -> Value | None:
         """Return the current value without recording the read for the running call."""
@@ -193,10 +203,12 @@ class Store:
             if self.waited and key not in self.root.heeds and not private(key):
                 self._heed(key, value)
             return None if value is ABSENT else value
-        if key in self.found:
-            return self.found[key]
-        value = None if private(key) else self.shared.entry(key, self.root)
-        self.found[key] = value
+        found = self.found
+        if key in found:
+            return found[key]
+        owner = key[0]
+        local = owner.kind == "frame" and private(key)
+        value = found[key] = None if local else self.shared.entry(key, self.root)
         return value
 
     def _heed(self, key: Key, value: Value) -> None:
@@ -232,24 +244,27 @@ class Store:
 
     def put(self, key: Key, value: Value) -> None:
         """Store a value (strong update)."""
-        if key[1] in ADDING and len(value.deps) > 1:
-            value = self.gather(key, value)
-        layer = self.layers[-1]
-        if key not in layer:
-            self.hidden[-1][key] = self.now.get(key)
-        layer[key] = self.now[key] = value
-        self.reads.written.add(key)
         owner, name = key
+        deps, pts = value.deps, value.pts
+        if name in ADDING and len(deps) > 1:
+            value = self.gather(key, value)
+            deps, pts = value.deps, value.pts
+        layer, now = self.layers[-1], self.now
+        if key not in layer:
+            self.hidden[-1][key] = now.get(key)
+        layer[key] = now[key] = value
+        self.reads.written.add(key)
         if owner.kind != "frame":
             self.tick += 1
         noted = owner.fields.get(name)
-        laden = bool(value.deps)
-        if noted is None or (value.pts is not noted and not value.pts <= noted):
-            owner.fields[name] = value.pts
+        laden = bool(deps)
+        if noted is None or (pts is not noted and not pts <= noted):
+            owner.fields[name] = pts
             if noted is None:
                 owner.changed(name)
                 self.shared.edition += name == "__dict__"
-            laden = self._note(key, value.pts) or laden
+            if pts:
+                laden = self._note(key, pts) or laden
         if laden and not owner.laden:
             self.shared.load(owner, self.root)
 
@@ -278,7 +293,10 @@ class Store:
     def doubt(self, obj: Obj) -> None:
         """Record that this run found no data inside an object."""
         self.reads.look(obj)
-        self.shared.doubters.setdefault(obj, set()).add(self.root)
+        doubters = self.shared.doubters.get(obj)
+        if doubters is None:
+            doubters = self.shared.doubters[obj] = set()
+        doubters.add(self.root)
 
     def look(self, obj: Obj) -> None:
         """Record that this run depends on the set of an object's fields."""
@@ -305,11 +323,12 @@ class Store:
         hidden = self.hidden.pop()
         self.reads.written.difference_update(hidden)
         self.reads.left += 1
+        now = self.now
         for key, value in hidden.items():
             if value is None:
-                del self.now[key]
+                del now[key]
             else:
-                self.now[key] = value
+                now[key] = value
         return self.layers.pop()
 
     def cut(self, depth: int) -> None:

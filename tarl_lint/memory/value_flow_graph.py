@@ -6,7 +6,7 @@ set of branches that selected a value; a node is live if a source reaches it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Set
+from collections.abc import Callable, Hashable, Iterable, Mapping, Set
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -105,20 +105,21 @@ class Graph:
 
     def flow(self, deps: Iterable[int], node: int) -> None:
         """Add data edges from `node` to `deps`, and gates for the choices that selected them."""
-        edges = self.data[node]
-        mine = self.branches[node]
+        edges, branches = self.data[node], self.branches
+        mine = branches[node]
         for dep in deps if self.edges < MAX_EDGES else islice(deps, FEW):
             self.asked += 1
             if dep == node:
                 self.depend(
                     node, [branch[0] for branch in mine]
                 )  # a value that depends on itself depends on the number of iterations
-            if dep in edges or dep == node:
+                continue
+            if dep in edges:
                 continue
             edges.add(dep)
             self.edges += 1
             self._lead(dep, node)
-            theirs = self.branches[dep]
+            theirs = branches[dep]
             if theirs and not theirs <= mine:
                 self._choose(dep, theirs - mine, node)
 
@@ -218,11 +219,19 @@ class Graph:
     def _still(self, known: Arrival) -> bool:
         """Return whether no carrier has passed on more since a result was computed."""
         if known.grown != self.grown:
-            passed_by = self.passed_by
             self.asked += len(known.consulted) // CARRIED
-            if any(passed_by(carrier) != size for carrier, size in known.consulted.items()):
+            if not self.as_passed(known.consulted):
                 return False
             known.grown = self.grown
+        return True
+
+    def as_passed(self, sizes: Mapping[int, int]) -> bool:
+        """Return whether carriers have passed on as many nodes as is noted for each."""
+        held = self.held
+        for carrier, size in sizes.items():
+            passed = held.get(carrier)
+            if (0 if passed is None else len(passed)) != size:
+                return False
         return True
 
     def _note(self, known: Arrival) -> None:
@@ -260,12 +269,13 @@ class Graph:
 
     def _consult(self, carriers: Nodes) -> None:
         """Record a dependency on the numbers of nodes that carriers, and their own carriers, have passed on."""
-        noted = self.reads.held
+        noted, held, carried = self.reads.held, self.held, self.carried
         for carrier in carriers:
             while carrier not in noted:
-                noted[carrier] = self.passed_by(carrier)
-                if carrier in self.carried:
-                    carrier = self.carried[carrier][1]
+                passed = held.get(carrier)
+                noted[carrier] = 0 if passed is None else len(passed)
+                if carrier in carried:
+                    carrier = carried[carrier][1]
 
     def passed_by(self, carrier: int) -> int:
         """Return the number of nodes inside the objects that a carrier passed on; it never decreases."""
