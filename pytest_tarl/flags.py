@@ -65,10 +65,9 @@ FLAGS = (
     ),
     Flag(
         "--tarl-stress-budget",
-        "limit of --tarl-stress per test: a number of episodes (default 1000)",
+        "limit of --tarl-stress per test: a number of episodes (default 1000), or a time such as 90s or 5min",
         metavar="N",
-        type=int,
-        default=1000,
+        default="1000",
     ),
     Flag(
         "--tarl-resume",

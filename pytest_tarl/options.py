@@ -47,6 +47,7 @@ class Options:
     comparisons: int = 1  # number of comparisons to correct for
     bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
     stress_budget: int = 1000  # limit of a stress run, in episodes
+    stress_seconds: float | None = None  # or in seconds
     stress_repair: bool = False  # whether a stress run repairs at the boundary
     resume: bool = False  # whether to take the finished episodes of an interrupted run
 
@@ -107,6 +108,7 @@ def options(given: Mapping[str, Any]) -> Options:
     if given["looks"] is not None:
         number_within("--tarl-looks", "it", given["looks"], int, 1, 5)
     budget = _budget(str(given["budget"]))
+    stress_budget = _budget(str(given["stress-budget"]), "--tarl-stress-budget", 32)
     modes: tuple[Mode, ...] = ("record", "stress", "repair", "online")
     mode = next(one for one in modes if given[one] or one == "online")
     return Options(
@@ -130,9 +132,8 @@ def options(given: Mapping[str, Any]) -> Options:
         log=_log(given),
         holm=given["holm"],
         bags=_bags(given),
-        stress_budget=number_within(
-            "--tarl-stress-budget", "it", given["stress-budget"], int, 32, MOST_EPISODES
-        ),
+        stress_budget=stress_budget[0],
+        stress_seconds=stress_budget[1],
         stress_repair=bool(given["stress"] and given["repair"]),
         resume=given["resume"],
     )
@@ -188,16 +189,16 @@ def _check_stress(given: Mapping[str, Any]) -> None:
         raise SettingsError("--tarl-stress needs the embedded ROS: remove --tarl-ros=real.")
 
 
-def _budget(text: str) -> tuple[int, float | None]:
+def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int, float | None]:
     """Return the limit of a search in episodes or else in seconds: `300`, `90s`, `5min`, `1h`."""
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
     unit = found[2] if found else None
     if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
         raise SettingsError(
-            f"--tarl-budget: it must be a number of episodes such as 300, or a time such as 90s or 5min, got {text!r}."
+            f"{flag}: it must be a number of episodes such as 300, or a time such as 90s or 5min, got {text!r}."
         )
     if unit is None:
-        return int(number_within("--tarl-budget", "it", int(found[1]), int, 1, MOST_EPISODES)), None
+        return int(number_within(flag, "it", int(found[1]), int, least, MOST_EPISODES)), None
     return MOST_EPISODES, float(found[1]) * {"s": 1, "min": 60, "h": 3600}[unit]
 
 

@@ -83,7 +83,7 @@ def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
 
 def _without_salib(found: Stress) -> tuple[str, ...]:
     """Return the advice to install SALib, if only that is missing for the Sobol indices."""
-    left = found.budget - found.episodes
+    left = found.budget - found.episodes if found.seconds is None else 0
     if found.ended not in ("", "budget") or not affordable(len(found.space.extents), left):
         return ()
     advice = missing_sobol("The table of variances")

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import sqrt
+from time import monotonic
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
@@ -37,6 +38,8 @@ class Evaluator:
     progress: Progress
     spent: int = 0
     short: bool = False  # whether a result was left out for want of budget
+    seconds: float | None = None  # a limit of the time besides that of the episodes
+    begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
 
@@ -44,12 +47,21 @@ class Evaluator:
     def limited(self, share: float) -> Iterator[None]:
         """End the block quietly once this share of the budget is spent in all; `short` remembers it."""
         whole, self.budget = self.budget, min(self.budget, round(share * self.budget))
+        time, self.seconds = self.seconds, None if self.seconds is None else share * self.seconds
         try:
             yield
         except BudgetSpentError:
             self.short = True
         finally:
-            self.budget = whole
+            self.budget, self.seconds = whole, time
+
+    @property
+    def left(self) -> int:
+        """Return how many episodes the budget allows, at the speed so far if it is a time."""
+        if self.seconds is None:
+            return self.budget - self.spent
+        passed = monotonic() - self.begun
+        return int(self.spent * max(self.seconds - passed, 0.0) / max(passed, 1e-9))
 
     def examine(self, point: Point, most: int) -> Evidence:
         """Return the evidence at a point after at most `most` episodes; end early once it is decided.
@@ -107,7 +119,7 @@ class Evaluator:
         """
         wanted = ((point, count), (self.space.nominal, paired))
         missing = (count - len(self._known.get((RAYS, *at.values()), ())) for at, count in wanted)
-        affordable = self.spent + sum(max(one, 0) for one in missing) <= self.budget
+        affordable = sum(max(one, 0) for one in missing) <= self.left
         self.short |= not affordable
         return affordable
 
@@ -149,6 +161,8 @@ class Evaluator:
         )
         outcomes = []
         for pending in in_order(self.rollout, plans):
+            if self.seconds is not None and monotonic() - self.begun > self.seconds:
+                raise BudgetSpentError
             outcomes.append(outcome(pending.result()))
             self.spent += 1
             self.progress(self.spent, self.budget, f"{self.drift} stress")

@@ -193,6 +193,7 @@ class Stress:
     episodes: int
     curves: tuple[Curve, ...]
     combinations: tuple[Failure, ...] = ()
+    seconds: float | None = None  # the limit of the time, if that is the budget
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # combinations
     margin_map: MarginMap | None = None

@@ -11,7 +11,7 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs
+# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs, seconds
 FORMAT_VERSION = 3
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
@@ -38,7 +38,8 @@ def document(stress: Stress) -> dict[str, Any]:
         "drift": stress.drift,
         "seed": stress.seed,
         "episodes": stress.episodes,
-        "budget": stress.budget,
+        "budget": stress.budget if stress.seconds is None else None,
+        "seconds": stress.seconds,
         "ended": ENDS[stress.ended],
         "guarantee": {"success": given.rate, "loss": given.tolerance},
         "directions": [_direction(stress, curve) for curve in stress.curves],

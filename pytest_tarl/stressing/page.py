@@ -13,9 +13,10 @@ from pytest_tarl.stressing.guarantee import Evidence
 from pytest_tarl.stressing.map_figure import map_figure, map_words
 from pytest_tarl.stressing.tornado_figure import tornado, tornado_words
 from pytest_tarl.stressing.words import (
-    ENDED,
     broken_promises,
+    budget_words,
     directions,
+    ended_words,
     guarantee_words,
     nominal_words,
     repair_lines,
@@ -63,11 +64,10 @@ def render(stress: Stress) -> str:
 
 
 def _opening(stress: Stress) -> Iterator[str]:
-    yield f"{guarantee_words(stress)} {stress.episodes} of at most {stress.budget} episodes, seed {stress.seed}."
+    yield f"{guarantee_words(stress)} {stress.episodes} episodes, budget {budget_words(stress)}, seed {stress.seed}."
     if stress.ended == "nominal":
         yield nominal_words()
-    elif stress.ended:
-        yield ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)
+    yield from ended_words(stress)
     yield LEGEND
 
 

@@ -65,6 +65,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         space=space,
         guarantee=evaluator.guarantee,
         budget=evaluator.budget,
+        seconds=evaluator.seconds,
         episodes=evaluator.spent,
         curves=tuple(curves),
         combinations=tuple(together.found),
@@ -121,6 +122,8 @@ def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
         return None, ended
     try:
         return sobol(evaluator), ended
+    except BudgetSpentError:
+        return None, "budget"
     except KeyboardInterrupt:
         return None, "interrupted"
 
@@ -144,7 +147,14 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
     given = guarantee(request.fixture, request.designation)
     options = request.options
     return Evaluator(
-        request.rollout, space, request.drift, given, options.seed, options.stress_budget, request.progress
+        request.rollout,
+        space,
+        request.drift,
+        given,
+        options.seed,
+        options.stress_budget,
+        request.progress,
+        seconds=options.stress_seconds,
     )
 
 

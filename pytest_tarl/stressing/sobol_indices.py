@@ -31,10 +31,10 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
     """Return the indices by episodes that the search left over; None if too few are left, or SALib is not installed.
 
     All points of a row of the sample have a common seed, and are paired with the nominal drift on it. Raise
-    BudgetSpentError never: the sample is as large as the budget allows.
+    BudgetSpentError if the time is up before.
     """
     size = len(evaluator.space.extents)
-    rows = affordable(size, evaluator.budget - evaluator.spent)
+    rows = affordable(size, evaluator.left)
     if not rows or missing_sobol("") is not None:
         return None
     before = evaluator.spent

@@ -15,7 +15,7 @@ SURE = f"{100 * CONFIDENCE:.3g} %"
 ROUNDING = 1e-9  # tolerance for rounding errors of values on a ray
 
 ENDED = {
-    "budget": "The budget of {budget} episodes did not suffice for the whole search: raise --tarl-stress-budget.",
+    "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",
     "interrupted": "Interrupted after {episodes} episodes: this is what was known by then.",
 }
 
@@ -35,8 +35,20 @@ def lines(stress: Stress) -> Iterator[str]:
     for number, sentence in enumerate(statement_words(stress)):
         yield f"  {'statements' if not number else '':10} {sentence}"
     yield from (f"  {'variance':10} {sentence}" for sentence in sobol_words(stress))
+    yield from (f"  {sentence}" for sentence in ended_words(stress))
+
+
+def ended_words(stress: Stress) -> Iterator[str]:
+    """Yield sentences on how the run ended and whether it can be repeated."""
     if stress.ended in ENDED:
-        yield f"  {ENDED[stress.ended].format(budget=stress.budget, episodes=stress.episodes)}"
+        yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
+    if stress.seconds is not None:
+        yield f"A time limit is not reproducible; --tarl-stress-budget {stress.episodes} is, with as many episodes."
+
+
+def budget_words(stress: Stress) -> str:
+    """Return the budget with its unit."""
+    return f"{stress.budget} episodes" if stress.seconds is None else f"{stress.seconds:g} s"
 
 
 def guarantee_words(stress: Stress) -> str:

@@ -14,10 +14,12 @@ from hypothesis import strategies as st
 from pytest_tarl import Drift
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Point
-from pytest_tarl.stressing import json_result, page, words
-from pytest_tarl.stressing.findings import failure
+from pytest_tarl.stressing import evaluating, json_result, page, words
+from pytest_tarl.stressing.combinations import Together
+from pytest_tarl.stressing.findings import Curve, failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refuted
 from pytest_tarl.stressing.rays import distance, rays
+from pytest_tarl.stressing.search import explore
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
 
 MUD = Drift.range(0.0, 1.0, nominal=1.0)
@@ -227,3 +229,33 @@ def test_distances_are_in_units_of_the_declared_ranges() -> None:
     assert distance(space, space.nominal) == 0.0
     assert distance(space, {"mud": 2.0, "slope": 0.0, "camera": 0.0}) == 0.5
     assert distance(space, {"mud": 4.0, "slope": -0.5, "camera": 2.0}) == sqrt(1.25)
+
+
+def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        nonlocal now
+        now += 0.1
+        return noisy(10.0 - 0.7 * abs(point["slope"]) - 0.5 * (1.0 - point["mud"]), draws)
+
+    monkeypatch.setattr(evaluating, "monotonic", lambda: now)
+    space = space_of(mud=MUD, slope=SLOPE)
+    evaluator = evaluator_of(world, space, budget=10**6)
+    evaluator.seconds, evaluator.begun = 20.0, now
+    curves = [Curve(ray) for ray in rays(space, {})]
+    ended = explore(evaluator, Together(0.01, curves))
+    assert ended == "budget"
+    assert 150 < evaluator.spent <= 201  # 0.1 s each; the last episodes may have been dropped
+    assert evaluator.seconds == 20.0
+    assert any(curve.evidence for curve in curves)
+    found = replace(stressed(world, space, budget=60), ended="budget", seconds=20.0, episodes=evaluator.spent)
+    told = [*words.lines(found)]
+    assert (
+        told[-2] == "  The budget of 20 s did not suffice for the whole search: raise --tarl-stress-budget."
+    )
+    assert told[-1].endswith(f"--tarl-stress-budget {evaluator.spent} is, with as many episodes.")
+    document = json_result.document(found)
+    jsonschema.validate(document, json_result.schema())
+    assert (document["budget"], document["seconds"]) == (None, 20.0)
+    assert "budget 20 s" in page.render(found)

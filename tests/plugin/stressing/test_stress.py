@@ -130,6 +130,10 @@ def test_without_a_recording_or_a_space_the_message_gives_the_next_step(tank: py
         (("--tarl-stress", "--tarl-holm"), "--tarl-holm needs --tarl-online"),
         (("--tarl-stress", "--tarl-ros=real"), "needs the embedded ROS"),
         (("--tarl-stress", "--tarl-stress-budget=3"), "--tarl-stress-budget"),
+        (
+            ("--tarl-stress", "--tarl-stress-budget=soon"),
+            "--tarl-stress-budget: it must be a number of episodes",
+        ),
     ],
 )
 def test_conflicting_flags_are_refused(tank: pytest.Pytester, flags: tuple[str, ...], told: str) -> None:
