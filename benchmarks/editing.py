@@ -1,13 +1,16 @@
-"""Measure the language server's latency: first for a tree, then after an edit of one file with a publish call.
+"""Measure the language server's latency: first for a tree, then after edits of one file.
 
-    python benchmarks/editing.py TREE [--files 12] [--seed 0]
+    python benchmarks/editing.py TREE [--files 12] [--seed 0] [--all]
 
-Times are CPU seconds of the linter; the protocol adds milliseconds.
+Files are drawn from those with a diagnostic, or with --all from all. Each is edited in three ways: a comment line
+before a random statement, a statement in a random function, and a statement at the end. Times are CPU seconds of the
+linter; the protocol adds milliseconds.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import os
 import random
 import time
@@ -16,6 +19,8 @@ from pathlib import Path
 
 from tarl_lint.editing import Result, Workspace
 
+GOAL = 1.0  # seconds
+
 
 def main() -> None:
     """Print the times."""
@@ -23,6 +28,9 @@ def main() -> None:
     parser.add_argument("tree", type=Path)
     parser.add_argument("--files", type=int, default=12, help="files to edit, drawn by the seed")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument(
+        "--all", action="store_true", help="draw from all files, not only from those with a diagnostic"
+    )
     asked = parser.parse_args()
     root = asked.tree.resolve()
     os.chdir(root)
@@ -37,10 +45,42 @@ def main() -> None:
     lines = sum(text.count("\n") for text in result.texts.values())
     print(f"{len(result.texts)} files, {lines} lines, {len(result.findings)} findings: {first:.2f} s")
     print(f"nothing changed: {timed({})[0]:.2f} s")
-    places = sorted({finding.span.path for finding in result.findings}) or sorted(result.texts)
-    chosen = random.Random(asked.seed).sample(places, min(asked.files, len(places)))
-    taken = sorted(timed({root / path: result.texts[path] + "\nEDITED = 1\n"})[0] for path in chosen)
-    print(f"after an edit: {', '.join(f'{seconds:.2f}' for seconds in taken)} s")
+    found = sorted({finding.span.path for finding in result.findings})
+    places = found if found and not asked.all else sorted(result.texts)
+    rng = random.Random(asked.seed)
+    chosen = rng.sample(places, min(asked.files, len(places)))
+    for kind in ("comment", "function", "end"):
+        taken = []
+        for path in chosen:
+            taken.append((timed({root / path: edited(result.texts[path], kind, rng)})[0], path))
+            timed({})
+        taken.sort()
+        slow = [one for one in taken if one[0] > GOAL]
+        middle = taken[len(taken) // 2][0]
+        print(f"{kind}: {len(taken)} edits, median {middle:.2f} s, {len(slow)} above {GOAL} s")
+        for seconds, path in slow:
+            print(f"    {seconds:.2f} s {path}")
+
+
+def edited(text: str, kind: str, rng: random.Random) -> str:
+    """Return a text with an added line; where there is no function, a statement goes to the end."""
+    lines = text.split("\n")
+    statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
+    functions = [node for node in statements if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+    if kind == "comment" and statements:
+        place = _first_line(rng.choice(statements))
+        return "\n".join([*lines[:place], "# edited", *lines[place:]])
+    if kind == "function" and functions:
+        last = rng.choice(functions).body[-1]
+        place = _first_line(last)
+        return "\n".join([*lines[:place], " " * last.col_offset + "edited = 1", *lines[place:]])
+    return text + "\nEDITED = 1\n"
+
+
+def _first_line(statement: ast.stmt) -> int:
+    """Return the index of the first line of a statement or its decorators."""
+    decorators: list[ast.expr] = getattr(statement, "decorator_list", [])
+    return min([statement.lineno, *(one.lineno for one in decorators)]) - 1
 
 
 if __name__ == "__main__":

@@ -6,10 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from tarl_lint import baseline
+from tarl_lint.read.source import Script
+from tarl_lint.read.watched import Reading
 from tarl_lint.run import cache, runner
 from tarl_lint.run.cache import Cache, Report
+from tarl_lint.run.reuse import Analyses
 from tarl_lint.run.runner import Result
-from tarl_lint.settings.config import Options, resolve
+from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
 __all__ = ["Result", "Workspace"]
@@ -50,9 +53,12 @@ class Workspace:
 class _Memory(Cache):
     """Reports of the last run by key, and those of the cache on disk, which is read only."""
 
-    def __init__(self, config: object, saved: Cache) -> None:
+    adapts = True
+
+    def __init__(self, config: Config, saved: Cache) -> None:
         super().__init__(None)
         self.config = config
+        self._analyses = Analyses(config)
         self._saved = saved
         self._before: dict[str, Report] = {}
         self._now: dict[str, Report] = {}
@@ -68,6 +74,14 @@ class _Memory(Cache):
         """Keep a report until a whole run has not needed it."""
         self._now[key] = report
 
+    def adapted(self, scripts: Sequence[Script]) -> Report | None:
+        """Return the report of the last analysis of these files if no edit since then can change it."""
+        return self._analyses.adapted(scripts)
+
+    def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
+        """Keep a report with what its analysis has read."""
+        self._analyses.keep(scripts, readings, report)
+
     def plan(self, _: str) -> Sequence[str]:
         """Return no plan: each run determines the reports it needs."""
         return []
@@ -75,3 +89,4 @@ class _Memory(Cache):
     def save(self) -> None:
         """Drop the reports that the last run did not need."""
         self._before, self._now = self._now, {}
+        self._analyses.drop_unused()

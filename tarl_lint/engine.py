@@ -16,6 +16,7 @@ from tarl_lint.parameter_names import ParameterName
 from tarl_lint.prefilter.by_words import groups, relevant
 from tarl_lint.prefilter.one_sided import Rule, one_sided
 from tarl_lint.read.source import Module
+from tarl_lint.read.watched import Reading, watched
 from tarl_lint.rules import tarl101, tarl102, tarl103
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.run.gc_paused import without_collection
@@ -35,19 +36,28 @@ def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
 
 
 def examine(
-    modules: Sequence[Module], config: Config, *, isolate: bool = False
+    modules: Sequence[Module],
+    config: Config,
+    *,
+    isolate: bool = False,
+    readings: dict[str, Reading] | None = None,
 ) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...], tuple[str, ...]]:
     """Return the findings in a group of modules, the failures by file, and the programs that exhausted their budget.
 
     The last element is the classes outside the files at which flows ended.
 
     Failures are raised unless isolated. The rest is analysed as if the failed code did nothing.
+    With `readings`, what was read of each file is stored there.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()
+    observed = [watched(m) for m in modules] if readings is not None else []
+    modules = observed or modules
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection():
         found, cut, ended = with_deep_stack(lambda: _found(modules, config, failures))
+    if readings is not None:
+        readings.update((module.path, module.reading()) for module in observed)
     return found, failures or {}, cut, ended
 
 

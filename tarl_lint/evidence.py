@@ -146,15 +146,15 @@ class Evidence:
     def complete(self, path: str) -> bool:
         """Return whether a module is part of a complete program, not a library for other programs."""
         module = self.machine.modules[path]
-        if PROGRAM.search(module.text):
+        if module.matches(PROGRAM):
             return True
         last = module.name.rpartition(".")[2]
-        return any(last in m.text and PROGRAM.search(m.text) for m in self.machine.modules.values())
+        return any(m.contains(last) and m.matches(PROGRAM) for m in self.machine.modules.values())
 
     def reads(self, name: str, *, attribute: bool, path: str = "") -> Iterator[Read]:
         """Yield every place that may read a name, including strings used for look-ups."""
         for module in self.machine.modules.values():
-            if name not in module.text or (path and module.path != path):
+            if not module.contains(name) or (path and module.path != path):
                 continue
             outline = self.outline(module.path)
             for node in walk(module.tree):
@@ -175,7 +175,7 @@ class Evidence:
         return any(
             alias.name == name
             for module in self.machine.modules.values()
-            if name in module.text
+            if module.contains(name)
             for node in walk(module.tree)
             if isinstance(node, ast.ImportFrom)
             for alias in node.names

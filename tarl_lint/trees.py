@@ -22,7 +22,7 @@ def children(node: ast.AST) -> list[ast.AST]:
         names = _HOLDING[kind] = _holding(kind)
     for name in names:
         value = getattr(node, name, None)
-        if type(value) is list:
+        if isinstance(value, list):
             found += [item for item in value if isinstance(item, ast.AST)]
         elif isinstance(value, ast.AST):
             found.append(value)

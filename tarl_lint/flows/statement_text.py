@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import copy
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import SiteId, Span
 from tarl_lint.read.source import Module
+from tarl_lint.read.watched import displayed, unwatched
 from tarl_lint.trees import children
 
 COMPOUND = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.Match)
@@ -56,11 +57,12 @@ class Text:
     has_lambdas: bool = True
 
     def __post_init__(self) -> None:
-        self.lines = self.module.text.split("\n")
-        self.has_lambdas = "lambda" in self.module.text
+        text = displayed(self.module)
+        self.lines = text.split("\n")
+        self.has_lambdas = "lambda" in text
         self._body(self.module.tree.body, "", None)
 
-    def _body(self, body: list[ast.stmt], qualname: str, around: Written | None) -> None:
+    def _body(self, body: Sequence[ast.stmt], qualname: str, around: Written | None) -> None:
         for node in body:
             self._enter(node, qualname, around)
 
@@ -73,7 +75,7 @@ class Text:
             self.functions[start] = arriving
             self.by_name.setdefault(inner, []).append(arriving)
             self._lambdas([*node.decorator_list, *node.args.defaults], qualname, written)
-            self._body(node.body, inner, written)
+            self._body(unwatched(node.body), inner, written)
             return
         if isinstance(node, ast.ClassDef):
             self._body(node.body, f"{qualname}.{node.name}" if qualname else node.name, written)

@@ -22,7 +22,7 @@ def start_programs(ctx: Interpreter) -> None:
         if ctx.modules[program.path].installed:
             continue
         module = ctx.module_objects[program.name]
-        starting = STARTING.search(ctx.modules[program.path].text) is not None
+        starting = ctx.modules[program.path].matches(STARTING)
         named = ctx.modules[program.path].started
         for statement in definitions(program.body):
             if isinstance(statement, ir.Define):
@@ -76,7 +76,7 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
         if starting and registers(statement):
             wanted = not _has_made_heir(ctx, cls)
         else:
-            tests = starting and ".publish(" in ctx.modules[program.path].text
+            tests = starting and ctx.modules[program.path].contains(".publish(")
             wanted = _last_node(ctx, cls, catalog.NODES | (catalog.TESTS if tests else frozenset()))
         if wanted:
             _start(ctx, cls, "node", program.path)

@@ -13,7 +13,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Root, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
-from tarl_lint.prefilter.by_words import mentioning
+from tarl_lint.prefilter.by_words import endpoint_words
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
@@ -37,7 +37,8 @@ class Linker(Interpreter):
         self.thorough = thorough
         self.took: dict[Root, int] = {}  # statements in the last run of each root
         self.failures = failures
-        part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
+        has_word = endpoint_words(config)
+        part = {m.path for m in modules if len(modules) == 1 or m.answer(has_word)}
         for module in modules:
             program = self._lowered(module)
             if program is None:

@@ -18,7 +18,7 @@ NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that a
 
 def lower_module(module: Module) -> ir.Program:
     """Lower the top level of a module."""
-    scope = Scope("module", "", plain=plain(module.text), prints=OWN_PRINT.search(module.text) is None)
+    scope = Scope("module", "", plain=module.answer(plain), prints=not module.matches(OWN_PRINT))
     lowering = Lowering(module.name)
     package = module.name if module.is_package else module.name.rpartition(".")[0]
     lowering.package = package

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Final, TypeVar
 
@@ -83,12 +83,22 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
 
 def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
     """Yield the modules that contain a word that every subscribing or publishing module contains."""
+    has_word = endpoint_words(config)
+    return (m for m in modules if has_word(m.text))
+
+
+def endpoint_words(config: Config) -> Callable[[str], bool]:
+    """Return whether a text contains a word that every subscribing or publishing module contains, as a function."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
     search = re.compile("|".join(whole(word) for word in sorted(words))).search
     first = [word.rstrip("(") for word in words]  # a substring search is faster, and rarely succeeds
-    return (m for m in modules if any(w in m.text for w in first) and search(m.text) and search(code(m.text)))
+
+    def has_word(text: str) -> bool:
+        return any(w in text for w in first) and bool(search(text)) and bool(search(code(text)))
+
+    return has_word
 
 
 @lru_cache(maxsize=512)

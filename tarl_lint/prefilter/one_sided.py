@@ -60,8 +60,8 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if config.named:
         return False
     texts = [code(m.text) for m in modules]
-    hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
-    if answers or (hears and says):
+    hears, says = _hears_and_says(texts)
+    if hears and says:
         return False
     if hears and any(
         _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
@@ -69,6 +69,17 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
         return False  # messages can reach a base class outside of the files, which a note then names
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))
+
+
+def two_sided(texts: Sequence[str], config: Config) -> bool:
+    """Return whether words alone show that modules with these texts are not one-sided."""
+    return bool(config.named) or all(_hears_and_says([code(text) for text in texts]))
+
+
+def _hears_and_says(texts: Sequence[str]) -> tuple[bool, bool]:
+    """Return whether texts without comments have words that subscribe, and words that publish."""
+    hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
+    return (True, True) if answers else (hears, says)
 
 
 def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:

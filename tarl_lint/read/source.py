@@ -8,6 +8,7 @@ import re
 import stat
 import tokenize
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -27,6 +28,21 @@ class Module:
     is_package: bool = False
     started: tuple[str, ...] = ()  # entry points declared by the package
     installed: bool = False  # in a followed package: nothing in it is started or reported
+
+    def answer(self, question: Callable[[str], bool]) -> bool:
+        """Return the answer to a question about the text.
+
+        The analysis reads the text only here, so that an editor session knows which edits change no answer.
+        """
+        return question(self.text)
+
+    def contains(self, word: str) -> bool:
+        """Return whether the text contains a word."""
+        return self.answer(lambda text: word in text)
+
+    def matches(self, pattern: re.Pattern[str]) -> bool:
+        """Return whether a pattern occurs in the text."""
+        return self.answer(lambda text: pattern.search(text) is not None)
 
 
 @dataclass(frozen=True)

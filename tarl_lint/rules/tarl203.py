@@ -230,4 +230,4 @@ def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Ev
 def _defined(name: str, evidence: Evidence) -> bool:
     """Return whether a function has the name: a property's setter does more than store."""
     marker = f"def {name}("
-    return any(marker in m.text for m in evidence.machine.modules.values())
+    return any(m.contains(marker) for m in evidence.machine.modules.values())

@@ -18,7 +18,8 @@ from typing import Any, Final, TypeVar
 from tarl_lint import __version__
 from tarl_lint.files import write_whole
 from tarl_lint.model import Cut, Finding, Flow, Sink, SiteId, Source, Span, Step
-from tarl_lint.read.source import SourceError
+from tarl_lint.read.source import Script, SourceError
+from tarl_lint.read.watched import Reading
 from tarl_lint.settings.config import Config
 
 try:
@@ -55,8 +56,10 @@ class Report:
 class Cache:
     """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored.
 
-    Of the entries that a run does not use, `spare` are kept.
+    Of the entries that a run does not use, `spare` are kept. With `adapts`, reports are adapted to edits.
     """
+
+    adapts = False
 
     def __init__(self, file: Path | None, spare: int = 0) -> None:
         self._file = file
@@ -84,6 +87,13 @@ class Cache:
         if not any(error.bug for error in report.errors):
             parts = packed(report.findings), packed(report.errors), packed(report.cut), list(report.ended)
             self.put_entry(key, list(parts))
+
+    def adapted(self, scripts: Sequence[Script]) -> Report | None:  # noqa: ARG002 - for others
+        """Return a report of earlier texts of the files that still holds, None if there is none."""
+        return None
+
+    def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
+        """Keep what the analysis behind a report has read, if `adapts`."""
 
     def entry(self, key: str) -> Any:
         """Return what is stored under a key, None if there is nothing."""

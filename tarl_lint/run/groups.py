@@ -11,6 +11,7 @@ from typing import Final
 
 from tarl_lint.prefilter.by_words import groups
 from tarl_lint.read.source import TOO_DEEP, Module, Script, SourceError, parsed
+from tarl_lint.read.watched import Reading
 from tarl_lint.run.cache import Cache, Report, digest
 from tarl_lint.run.gc_paused import without_collection
 from tarl_lint.run.progress import Tell, silent
@@ -75,10 +76,14 @@ def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
 def _reports(
     tasks: Sequence[Task], keys: Sequence[str], config: Config, cache: Cache, jobs: int | None, tell: Tell
 ) -> list[Report]:
-    found = [cache.report(key) for key in keys]
+    found = [
+        cache.report(key) or (cache.adapted(task.scripts) if task.analyse else None)
+        for key, task in zip(keys, tasks, strict=True)
+    ]
     missing = [number for number, report in enumerate(found) if report is None]
     work = [tasks[number] for number in missing]
-    for number, report in zip(missing, _made(work, config, _workers(work, jobs), tell), strict=True):
+    made = _made(work, config, _workers(work, jobs), tell, cache)
+    for number, report in zip(missing, made, strict=True):
         found[number] = report
         cache.put(keys[number], report)
     return [report for report in found if report is not None]
@@ -98,7 +103,7 @@ def _processors() -> int:
     return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
 
 
-def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
+def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell, cache: Cache) -> Iterator[Report]:
     if workers > 1:
         from tarl_lint.run.workers import in_processes
 
@@ -112,7 +117,11 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> It
         shared = _Parsed(tasks)
         for number, task in enumerate(tasks, 1):
             tell(f"Analysing {task.scripts[-1].path} ({number} of {len(tasks)})")
-            yield perform(task, config, shared)
+            readings: dict[str, Reading] | None = {} if cache.adapts and task.analyse else None
+            report = perform(task, config, shared, readings)
+            if readings is not None:
+                cache.keep(task.scripts, readings, report)
+            yield report
 
 
 class _Parsed:
@@ -133,8 +142,16 @@ class _Parsed:
         return found
 
 
-def perform(task: Task, config: Config, shared: _Parsed | None = None) -> Report:
-    """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry."""
+def perform(
+    task: Task,
+    config: Config,
+    shared: _Parsed | None = None,
+    readings: dict[str, Reading] | None = None,
+) -> Report:
+    """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry.
+
+    With `readings`, what the analysis has read of each file is stored there.
+    """
     with without_collection():
         parse = (shared or _Parsed()).module
         results = [parse(script) for script in task.scripts]
@@ -144,7 +161,9 @@ def perform(task: Task, config: Config, shared: _Parsed | None = None) -> Report
             return Report((), errors)
         from tarl_lint import engine  # slow to import, compared with checking a file
 
-        findings, failures, cut, ended = engine.examine(modules, config, isolate=not debugging())
+        findings, failures, cut, ended = engine.examine(
+            modules, config, isolate=not debugging(), readings=readings
+        )
     mistakes = (failure(path, error) for path, error in failures.items())
     return Report(findings, (*errors, *mistakes), cut, ended)
 

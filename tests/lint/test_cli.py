@@ -155,7 +155,7 @@ def test_settings_are_shown_in_the_syntax_of_the_settings_file(node, capsys):
 
 
 def test_an_internal_error_gives_one_sentence(node, capsys, monkeypatch):
-    monkeypatch.setattr("tarl_lint.engine.examine", lambda modules, config, isolate: 1 / 0)
+    monkeypatch.setattr("tarl_lint.engine.examine", lambda modules, config, isolate, readings: 1 / 0)
     code, out, err = lint(capsys)
     assert (code, out) == (2, "")
     assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err

@@ -37,7 +37,7 @@ def accept(lint) -> Callable[..., Path]:
 
 @pytest.fixture
 def crash(monkeypatch):
-    def examine(modules, config, isolate):
+    def examine(modules, config, isolate, readings):
         raise KeyError("graph")
 
     broken = types.ModuleType("tarl_lint.engine")

@@ -59,8 +59,8 @@ class Locking:
     def __init__(self, evidence: Evidence) -> None:
         self.evidence = evidence
         modules = evidence.machine.modules.values()
-        self.paths = {m.path for m in modules if MADE.search(m.text) or "with self." in m.text}
-        self.active = any(MADE.search(m.text) for m in modules)
+        self.paths = {m.path for m in modules if m.matches(MADE) or m.contains("with self.")}
+        self.active = any(m.matches(MADE) for m in modules)
         self._accesses: dict[tuple[str, Pos], list[Access]] = {}
 
     def uses(self) -> dict[State, list[Use]]:

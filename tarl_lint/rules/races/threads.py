@@ -26,9 +26,9 @@ class Threads:
     def __init__(self, evidence: Evidence) -> None:
         self.evidence = evidence
         self.machine = evidence.machine
-        texts = [m.text for m in self.machine.modules.values()]
-        self.several = any("MultiThreadedExecutor" in t for t in texts)
-        self.aside = any(SPUN_ASIDE.search(t) for t in texts)
+        modules = self.machine.modules.values()
+        self.several = any(m.contains("MultiThreadedExecutor") for m in modules)
+        self.aside = any(m.matches(SPUN_ASIDE) for m in modules)
 
     def of(self, frame: Frame) -> object:
         """Return an identifier of the frame's thread."""
@@ -60,7 +60,7 @@ class Threads:
         return self._group(where, pos, root) if self._rclpy(where) else root.key
 
     def _rclpy(self, path: str) -> bool:
-        return "rclpy" in self.machine.modules[path].text
+        return self.machine.modules[path].contains("rclpy")
 
     def _group(self, path: str, pos: Pos, root: Root) -> object:
         """Return the thread of an rclpy callback: callbacks of a mutually exclusive group never overlap."""

@@ -1,0 +1,125 @@
+"""Reports of an editor session that still hold after an edit of something that their analysis did not read.
+
+An edit of comments, of blank lines, or of functions that a program does not use moves lines only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.prefilter.one_sided import two_sided
+from tarl_lint.read.moved_lines import moved_lines
+from tarl_lint.read.source import Script
+from tarl_lint.read.watched import Reading
+from tarl_lint.run.cache import Report
+from tarl_lint.settings.config import Config
+
+Moves = Mapping[str, Mapping[int, int]]  # file → line → line after the edit
+
+
+class LineLostError(Exception):
+    """A line of a report is not among the lines whose new places are known."""
+
+
+@dataclass(frozen=True)
+class _Analysis:
+    scripts: tuple[Script, ...]
+    readings: Mapping[str, Reading]
+    report: Report
+
+
+class Analyses:
+    """The last analysis of each set of files in an editor session."""
+
+    def __init__(self, config: Config) -> None:
+        self._config = config
+        self._last: dict[tuple[str, ...], _Analysis] = {}
+        self._used: set[tuple[str, ...]] = set()
+
+    def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
+        """Keep a report and what its analysis has read, by file; unless a file could not be analysed."""
+        if readings and not report.errors and two_sided([s.text for s in scripts], self._config):
+            self._last[_paths(scripts)] = _Analysis(tuple(scripts), readings, report)
+
+    def adapted(self, scripts: Sequence[Script]) -> Report | None:
+        """Return the report that an analysis of the files would return, None if this takes an analysis."""
+        paths = _paths(scripts)
+        self._used.add(paths)
+        last = self._last.get(paths)
+        if last is None:
+            return None
+        moves: dict[str, Mapping[int, int]] = {}
+        for before, now in zip(last.scripts, scripts, strict=True):
+            if before == now:
+                continue
+            reading = last.readings.get(now.path)
+            if reading is None or replace(before, text=now.text) != now:
+                return None
+            moved = moved_lines(before.text, now.text, reading)
+            if moved is None:
+                return None
+            moves[now.path] = moved
+        if not two_sided([s.text for s in scripts], self._config):
+            return None
+        try:
+            return replace(last.report, findings=tuple(_finding(f, moves) for f in last.report.findings))
+        except LineLostError:
+            return None
+
+    def drop_unused(self) -> None:
+        """Drop the analyses of sets of files for which no report was requested since the last call."""
+        self._last = {paths: last for paths, last in self._last.items() if paths in self._used}
+        self._used = set()
+
+
+def _paths(scripts: Sequence[Script]) -> tuple[str, ...]:
+    return tuple(script.path for script in scripts)
+
+
+def _finding(finding: Finding, moves: Moves) -> Finding:
+    flow = None if finding.flow is None else _flow(finding.flow, moves)
+    return replace(finding, span=_span(finding.span, moves), flow=flow)
+
+
+def _flow(flow: Flow, moves: Moves) -> Flow:
+    steps = tuple(_step(step, moves) for step in flow.steps)
+    return replace(flow, source=_source(flow.source, moves), sink=_sink(flow.sink, moves), steps=steps)
+
+
+def _step(step: Step, moves: Moves) -> Step:
+    return replace(step, span=_span(step.span, moves))
+
+
+def _source(source: Source, moves: Moves) -> Source:
+    span = _span(source.span, moves)
+    registered = tuple(_span(one, moves) for one in source.registered)
+    via = tuple(_span(one, moves) for one in source.via)
+    return replace(source, id=_named(source, span), span=span, registered=registered, via=via)
+
+
+def _sink(sink: Sink, moves: Moves) -> Sink:
+    span = _span(sink.span, moves)
+    return replace(sink, id=_named(sink, span), span=span)
+
+
+def _named(end: Source | Sink, span: Span) -> str:
+    """Return the identity of a source or sink; without a known topic, it contains the line."""
+    start = f"{end.module}:{end.qualname or '<module>'}:line "
+    before = f"{start}{end.span.line}"
+    if end.topics or span == end.span or not end.id.startswith(before):
+        return end.id
+    return f"{start}{span.line}{end.id.removeprefix(before)}"
+
+
+def _span(span: Span, moves: Moves) -> Span:
+    """Return a range of text after the edit. Raises LineLostError if one of its lines has no known place."""
+    lines = moves.get(span.path)
+    if lines is None:
+        return span
+    places = [lines.get(line) for line in range(span.line, span.end_line + 1)]
+    first, last = places[0], places[-1]
+    if first is None or last is None or last - first != span.end_line - span.line:
+        raise LineLostError
+    return replace(span, line=first, end_line=last)
