@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from tarl_lint import baseline
@@ -15,7 +15,11 @@ from tarl_lint.run.runner import Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
-__all__ = ["Result", "Workspace"]
+__all__ = ["Result", "Superseded", "Workspace"]
+
+
+class Superseded(BaseException):
+    """A further edit made a run obsolete. Not an Exception, so that it is not reported as a bug of the analysis."""
 
 
 class Workspace:
@@ -25,16 +29,24 @@ class Workspace:
         self._options = Options(paths=tuple(paths), jobs=1)
         self._known: _Memory | None = None
 
-    def lint(self, buffers: Mapping[Path, str]) -> Result:
+    def lint(self, buffers: Mapping[Path, str], current: Callable[[], bool] = lambda: True) -> Result:
         """Return the result; `buffers` maps absolute paths to the texts of unsaved files.
 
-        Raises LintError for unusable settings or an unusable baseline, and if there is nothing to lint.
+        `current` returns whether the result is still wanted; it is called before each program is analysed.
+
+        Raises LintError for unusable settings or an unusable baseline, and if there is nothing to lint. Raises
+        Superseded if the result is no longer wanted; the programs analysed so far are not analysed again.
         """
+
+        def proceed(_: str) -> None:
+            if not current():
+                raise Superseded
+
         config = resolve(self._options)
         if self._known is None or self._known.config != config:
             self._known = _Memory(config, cache.opened(self._options.paths, config))
         texts = {path: text.encode("utf-8", "surrogatepass") for path, text in buffers.items()}
-        return runner.run(self._options, config, buffers=texts, known=self._known)
+        return runner.run(self._options, config, proceed, texts, self._known)
 
     def accept(self, fingerprint: str, result: Result) -> Path:
         """Add the findings of a result with this fingerprint to the baseline and return its path.

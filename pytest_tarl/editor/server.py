@@ -16,7 +16,7 @@ from pygls.uris import to_fs_path
 from pytest_tarl.editor import findings, fixes, recorded
 from pytest_tarl.editor.positions import Places
 from pytest_tarl.extras import missing_extra
-from tarl_lint.editing import Result, Workspace
+from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.errors import LintError
 
 Apply = Callable[[Path], Iterable[str]]  # raises TarlError if the patch no longer fits
@@ -44,6 +44,7 @@ class Server(LanguageServer):
         self.shown: dict[str, list[types.Diagnostic]] = {}
         self._waiting: asyncio.Task[None] | None = None
         self._running = asyncio.Lock()
+        self._changes = 0
         self._problem = ""
 
     def begin(self, root: Path) -> None:
@@ -54,6 +55,7 @@ class Server(LanguageServer):
 
     def changed(self) -> None:
         """Lint after `PAUSE`; a further change restarts the wait."""
+        self._changes += 1
         if self._waiting is not None:
             self._waiting.cancel()
         self._waiting = asyncio.ensure_future(self._later())
@@ -63,14 +65,20 @@ class Server(LanguageServer):
         await asyncio.shield(self.lint())
 
     async def lint(self) -> None:
-        """Lint the workspace with the open buffers, and publish changed diagnostics."""
+        """Lint the workspace with the open buffers, and publish changed diagnostics.
+
+        A further change stops the run before the next program; the change starts a run of its own.
+        """
         if self.linted is None:
             return
         async with self._running:
-            buffers = self.buffers()
+            changes = self._changes
+            lint = partial(self.linted.lint, self.buffers(), lambda: self._changes == changes)
             loop = asyncio.get_running_loop()
             try:
-                result = await loop.run_in_executor(None, partial(self.linted.lint, buffers))
+                result = await loop.run_in_executor(None, lint)
+            except Superseded:
+                return
             except LintError as error:
                 self.say(str(error))
                 return

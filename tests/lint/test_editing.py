@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.editing import Workspace
+from tarl_lint.editing import Superseded, Workspace
 from tarl_lint.prefilter.one_sided import two_sided
 from tarl_lint.read.moved_lines import moved_lines
 from tarl_lint.read.source import Module
@@ -169,6 +169,17 @@ def test_each_edit_is_compared_with_the_last_analysis(tmp_path, analysed):
     result = workspace.lint(second)
     assert analysed == []
     assert result == Workspace([tmp_path]).lint(second)
+
+
+def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
+    Path(tmp_path, "other.py").write_text(NODE)
+    workspace = Workspace([tmp_path])
+    with pytest.raises(Superseded):
+        workspace.lint({}, lambda: not analysed)
+    assert len(analysed) == 1
+    result = workspace.lint({})
+    assert sorted(analysed) == ["node.py", "other.py"]
+    assert result == Workspace([tmp_path]).lint({})
 
 
 def edits(rng: random.Random, text: str) -> Iterator[str]:
