@@ -107,8 +107,8 @@ def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str])
     told = "; ".join(f"{one.name} ({one.foreign})" for one in foreign)
     first = foreign[0].name.rpartition("/")[2]
     note = (
-        f"{file.name} also starts what is no Python node of the workspace and did not run: {told}. A function of the "
-        f'test can replace it: tarl.launch(…, replace={{"{first}": function}}).'
+        f"{file.name} also starts nodes that did not run because they are not Python nodes of the workspace: {told}. "
+        f'A function of the test can replace it: tarl.launch(…, replace={{"{first}": function}}).'
     )
     return [note]
 

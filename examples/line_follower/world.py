@@ -36,7 +36,7 @@ SUBSTEPS = 4
 
 
 class World:
-    """One run along the course. `dusk` is the share of the daylight that is left beyond the lamp."""
+    """One run along the course. Beyond the lamp, the light is `dusk` times the daylight."""
 
     dt = 0.05
 

@@ -45,7 +45,7 @@ def _file(path: Path) -> Margins:
 def _at(revision: str, inner: str) -> list[Margins]:
     """Return the margins at a revision, in paths relative to the working directory."""
     if revision.startswith("-") or not revision:
-        raise FixtureError(f"{revision!r} is no revision of git: name a branch, a tag or a commit.")
+        raise FixtureError(f"{revision!r} is not a git revision: name a branch, a tag or a commit.")
     if shutil.which("git") is None:
         raise FixtureError(f"git was not found, which reads {revision}: install it, or compare two files.")
     if _git("rev-parse", "--verify", "--quiet", f"{revision}^{{commit}}") is None:

@@ -32,7 +32,7 @@ PORTION = 50_000  # missions read together
 class Robot:
     """The evidence on one robot, as log2 of e-values: `world`, missions differ; `bound`, they are below a bound.
 
-    `status` is None if neither reaches 1/q, without which e-BH names no robot.
+    `status` is None if neither e-value reaches 1/q, the least that e-BH needs to reject a hypothesis.
     """
 
     name: str

@@ -23,7 +23,7 @@ class LogReader:
 
     path: Path
     expected: Expected
-    known: Mapping[str, Progress]  # progress of all logs ever counted
+    known: Mapping[str, Progress]  # progress of every log that was ever counted
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None

@@ -11,8 +11,8 @@ from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
 CONFIDENCE = 0.9  # that a boundary lies in its interval
-FAR_RISK = (1.0 - CONFIDENCE) / 6  # largest risk of the end at which the guarantee fails
-NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # of the end at which it holds
+FAR_RISK = (1.0 - CONFIDENCE) / 6  # largest risk that the guarantee holds at the far end of the interval
+NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # largest risk that it fails at the near end
 
 
 @dataclass

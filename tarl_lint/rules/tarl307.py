@@ -1,8 +1,8 @@
 """TARL307: a launch file sets a parameter that the node does not have.
 
 The value has no effect, and the node goes on with its default, often since the parameter was renamed or misspelt. ROS
-does not complain: a filter drove on with the two worst settings that its author had measured, because its file of
-parameters did not match (https://github.com/manankharwar/fusioncore/issues/134).
+does not complain: one filter kept two defaults that worked badly, because the names in its parameter file did not match
+those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
 Reported are parameters of one node, if its program was read with all that it imports and reads parameters only by
 literal names. Parameters that groups set for all their nodes are reported if none of these has them.

@@ -165,8 +165,9 @@ def test_ros1_nodes_get_names_parameters_and_modules_of_their_own(tarl: Tarl) ->
     assert tarl.ros.subscribed >= {"/r1/start", "/r1/middle"}
     (note,) = tarl.ros.notes
     assert note == (
-        "robot.launch also starts what is no Python node of the workspace and did not run: /r1/laser (the package sick "
-        'is not in the workspace). A function of the test can replace it: tarl.launch(…, replace={"laser": function}).'
+        "robot.launch also starts nodes that did not run because they are not Python nodes of the workspace: /r1/laser "
+        "(the package sick is not in the workspace). A function of the test can replace it: "
+        'tarl.launch(…, replace={"laser": function}).'
     )
 
 

@@ -167,7 +167,7 @@ def test_diff_compares_with_a_revision_and_fails_if_asked(
     ("arguments", "told"),
     [
         (("nowhere:.tarl/margins", ".tarl/margins"), "git knows no such revision"),
-        (("--", "-x:.tarl/margins", ".tarl/margins"), "is no revision of git"),
+        (("--", "-x:.tarl/margins", ".tarl/margins"), "is not a git revision"),
         (("nosuch.json", ".tarl/margins"), "nosuch.json: no such file or folder"),
         (("broken.json", ".tarl/margins"), "broken.json: not a file of margins"),
     ],
