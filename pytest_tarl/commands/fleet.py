@@ -136,6 +136,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         help="tolerated loss of reward per mission (default 5 %% of the recorded)",
     )
     flag("--json", type=Path, metavar="FILE", help="write the result to this file; - for standard output")
+    flag("--html", type=Path, metavar="FILE", help="write a page to this file, which needs no network")
     flag(
         "--fail-if",
         action="append",
@@ -160,6 +161,10 @@ def _fleet(arguments: argparse.Namespace) -> int:
         tolerance=arguments.tolerance,
     )
     found = answer(question)
+    if arguments.html is not None:
+        from pytest_tarl.fleet import html
+
+        html.write(found, arguments.html)
     if arguments.json == Path("-"):
         sys.stdout.write(printable(document.text(found)))
     else:

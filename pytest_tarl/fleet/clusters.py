@@ -7,8 +7,8 @@ their robots differ significantly, corrected for the numbers of cells and pairs 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from math import erfc, sqrt
 
 import numpy as np
@@ -39,6 +39,7 @@ class Clusters:
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
     left_out: int = 0
+    maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # by robot
 
 
 def clustered(database: Database, fixture: Fixture, robots: Robots, alpha: float) -> Clusters:
@@ -61,7 +62,8 @@ def of(
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
     groups = _linked(distances(clear), len(cells), alpha) if clear else []
     found = [_cluster([clear[n] for n in group], recorded, cells, alpha) for group in groups]
-    return Clusters(tuple(sorted(found, key=lambda one: (-len(one.robots), one.robots))), unclear, left_out)
+    found.sort(key=lambda one: (-len(one.robots), one.robots))
+    return Clusters(tuple(found), unclear, left_out, {one.robot: one for one in ordered})
 
 
 def distances(maps: Sequence[ResidualMap]) -> Floats:

@@ -59,6 +59,7 @@ class Answer:
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
+    period: tuple[float, float] = (0.0, 0.0)  # start of the first and of the last mission; 0 without times
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
     def meets(self, rule: str) -> bool:
@@ -111,8 +112,14 @@ def _judged(database: Database, fixture: Fixture, question: Question, left_out: 
         clusters=clusters.clustered(database, fixture, every, alpha),
         repairs=repairs.effects(database, question.by),
         left_out=left_out,
+        period=_period(database),
         lowest=_lowest(database) if one else (),
     )
+
+
+def _period(database: Database) -> tuple[float, float]:
+    first, last = database.names("SELECT min(time), max(time) FROM missions WHERE time > 0")[0]
+    return (float(first), float(last)) if first is not None else (0.0, 0.0)
 
 
 def _lowest(database: Database) -> tuple[Mission, ...]:

@@ -37,5 +37,11 @@ def _amounts(one: Effect) -> str:
 
 
 def _interval(bound: Bound, unit: float) -> str:
+    found = interval(bound, unit)
+    return f" ({found})" if found else ""
+
+
+def interval(bound: Bound, unit: float) -> str:
+    """Return an interval in words; empty if it is not known."""
     known = bound.low > float("-inf")
-    return f" ({unit * bound.low:+.3g} to {unit * bound.high:+.3g})" if known else ""
+    return f"{unit * bound.low:+.3g} to {unit * bound.high:+.3g}" if known else ""

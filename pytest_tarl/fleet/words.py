@@ -49,8 +49,9 @@ def lines(answer: Answer) -> Iterator[str]:
         yield f"missions of {question.robot} with the lowest reward"
         for mission in answer.lowest:
             result = "passed" if mission.passed else "failed"
-            yield f"  {_time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
-    yield from _notes(answer)
+            yield f"  {time(mission.time)}  {result}  reward {mission.total:.6g}  {mission.steps} steps"
+    yield ""
+    yield from notes(answer)
 
 
 def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
@@ -128,12 +129,13 @@ def _row(one: Group, words: Vocabulary) -> list[str]:
         f"{one.robots:,}",
         f"{100 * one.passed / one.missions:.1f} % ({_interval(one.success, 100)})",
         f"{one.reward:.4g} ({_interval(one.mean, 1)})",
-        _verdict(one),
+        verdict(one),
         words.words(region) if region else "",
     ]
 
 
-def _verdict(one: Group) -> str:
+def verdict(one: Group) -> str:
+    """Return the verdict on a group in words."""
     if one.verdict is None:
         return "too few missions"
     if one.verdict.result == "degraded":
@@ -156,7 +158,7 @@ def _named(answer: Answer, robots: Sequence[Robot], what: str, more: str) -> Ite
 def _robot(one: Robot, log2: float, evidence: Evidence | None, words: Vocabulary) -> str:
     text = f"  {one.name}: {one.passed:,} of {one.missions:,} missions passed, evidence {_evidence(log2)}"
     if evidence is not None and evidence.since is not None:
-        text += f", changed before mission {evidence.since.mission:,} ({_time(evidence.since.time or 0.0)})"
+        text += f", changed before mission {evidence.since.mission:,} ({time(evidence.since.time or 0.0)})"
     if one.status is not None and one.status.cells:
         text += f", {words.words(one.status.cells)}"
     return text
@@ -166,7 +168,8 @@ def _evidence(log2: float) -> str:
     return f"2^{log2:.0f}" if log2 >= 10 else f"{2**log2:.3g}"
 
 
-def _time(seconds: float) -> str:
+def time(seconds: float) -> str:
+    """Return a time as day and minute (UTC)."""
     return f"{datetime.fromtimestamp(seconds, timezone.utc):%Y-%m-%d %H:%M}" if seconds > 0 else "no time"
 
 
@@ -174,9 +177,9 @@ def _robots(count: int) -> str:
     return f"{count:,} robot{'s' if count != 1 else ''}"
 
 
-def _notes(answer: Answer) -> Iterator[str]:
+def notes(answer: Answer) -> Iterator[str]:
+    """Yield the conditions of the numbers."""
     confidence = answer.groups[0].success.confidence
-    yield ""
     yield (
         f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for {len(answer.groups)} "
         "groups (Holm)."

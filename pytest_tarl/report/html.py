@@ -6,7 +6,7 @@ import base64
 import json
 import re
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib import resources
 from importlib.util import find_spec
@@ -44,39 +44,48 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
 
 def render(comparison: Comparison, *, title: str | None = None) -> str:
     """Return the page's text. Raise TarlError if a package of the extra `report` is missing."""
-    _require()
-    import jinja2
-
+    templates = environment(asset, NEEDED)
     from pytest_tarl.report import highlight
 
-    environment = jinja2.Environment(
-        loader=jinja2.FunctionLoader(_asset), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )  # fmt: skip
-    environment.filters |= {
+    templates.filters |= {
         "amount": lambda value: typeset(amounts.amount(value)),
         "signed": lambda value: typeset(amounts.signed(value)),
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "plain": lambda value: typeset(f"{value:.6g}"),
         "p": amounts.p_value,
         "margin": lambda value: typeset(formulas.margin(value)),
-        "typeset": typeset,
-        "parts": parts,
         "code": lambda text: highlight.code_html(words.one_line(text)),
         "patch": highlight.patch_lines,
     }
     drawn = _data(comparison)
-    return environment.get_template("page.html").render(
+    text: str = templates.get_template("page.html").render(
         **_context(comparison, title, drawn),
-        css=_asset("page.css"),
-        script=_asset("page.js"),
+        css=asset("page.css"),
+        script=asset("page.js"),
         library=_library(),
         data=in_script(drawn),
     )
+    return text
 
 
-def _require() -> None:
-    missing = [package for package in NEEDED if find_spec(package) is None]
+def environment(source: Callable[[str], str], needed: Sequence[str]) -> Any:
+    """Return the jinja2 environment of a page, whose templates `source` reads by name.
+
+    Raise TarlError if one of the packages that the page needs is missing.
+    """
+    _require(needed)
+    import jinja2
+
+    found = jinja2.Environment(
+        loader=jinja2.FunctionLoader(source), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )  # fmt: skip
+    found.filters |= {"typeset": typeset, "parts": parts}
+    return found
+
+
+def _require(needed: Sequence[str]) -> None:
+    missing = [package for package in needed if find_spec(package) is None]
     if missing:
         raise TarlError(
             f"The report page needs {' and '.join(missing)}, which is not installed: run "
@@ -84,7 +93,8 @@ def _require() -> None:
         )
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """Return a file of the page."""
     return resources.files(__package__).joinpath("page").joinpath(name).read_text("utf-8")
 
 
