@@ -7,10 +7,11 @@ depend on files, partitions or threads, to the last bit.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import date, datetime, timezone
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import duckdb
@@ -18,6 +19,7 @@ import numpy as np
 import pyarrow as pa
 
 from pytest_tarl.errors import FleetError
+from pytest_tarl.files import advice_on
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.schema import cell_of, name_of
 from pytest_tarl.fleet.store import Store
@@ -83,27 +85,44 @@ def opened(
 
     Raise FleetError if a file cannot be read.
     """
-    settings: dict[str, str | bool | int | float | list[str]] = {
-        "memory_limit": MEMORY,
-        "temp_directory": str(SPILLED),
-        "preserve_insertion_order": "true",
-    }
-    connection = duckdb.connect(":memory:", config=settings)
+    with _spilled() as folder:
+        settings: dict[str, str | bool | int | float | list[str]] = {
+            "memory_limit": MEMORY,
+            "temp_directory": folder,
+            "preserve_insertion_order": "true",
+        }
+        connection = duckdb.connect(":memory:", config=settings)
+        try:
+            if where.protocol != "file":
+                connection.register_filesystem(where.fs)
+            _missions(connection, [where.address(part.path) for part in parts], by, which)
+            cells = _cells(connection, [where.address(part.beside("cells")) for part in parts], recorded)
+            yield Database(connection, cells)
+        except duckdb.Error as problem:
+            raise FleetError(
+                f"{where.shown('')} cannot be read ({str(problem).splitlines()[0]}): check the files and the free "
+                f"disk space of {SPILLED}, and run the command again."
+            ) from problem
+        finally:
+            connection.close()
+
+
+@contextmanager
+def _spilled() -> Iterator[str]:
+    """Make a folder for rows that do not fit into memory, one for each run; remove it, and what was made for it."""
+    made = [one for one in (SPILLED, *SPILLED.parents) if not one.exists()]
     try:
-        if where.protocol != "file":
-            connection.register_filesystem(where.fs)
-        _missions(connection, [where.address(part.path) for part in parts], by, which)
-        cells = _cells(connection, [where.address(part.beside("cells")) for part in parts], recorded)
-        yield Database(connection, cells)
-    except duckdb.Error as problem:
+        SPILLED.mkdir(parents=True, exist_ok=True)
+        folder = TemporaryDirectory(prefix="rows-", dir=SPILLED, ignore_cleanup_errors=True)
+    except OSError as problem:
         raise FleetError(
-            f"{where.shown('')} cannot be read ({str(problem).splitlines()[0]}): check the files and the free disk "
-            f"space of {SPILLED}, and run the command again."
+            f"{SPILLED} cannot be created ({problem.strerror}): {advice_on(problem)}"
         ) from problem
-    finally:
-        connection.close()
-        if SPILLED.is_dir() and not any(SPILLED.iterdir()):
-            SPILLED.rmdir()
+    with folder as name:
+        yield name
+    for one in made:
+        with suppress(OSError):  # another run uses it
+            one.rmdir()
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:

@@ -15,10 +15,12 @@ import pytest
 
 from pytest_tarl.commands.cli import main
 from pytest_tarl.errors import FixtureError, FleetError
-from pytest_tarl.fleet import document, groups, ingest, robots
+from pytest_tarl.fleet import dataset, document, groups, ingest, robots
+from pytest_tarl.fleet.database import Filter, opened
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
 from pytest_tarl.fleet.question import Answer, Question, answer
+from pytest_tarl.fleet.store import store
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.learning.merging import merge
@@ -285,3 +287,26 @@ def test_a_damaged_recording_of_the_data_set_is_named_by_its_place(folder: Path,
     recording.write_bytes(recording.read_bytes()[:-20])
     with pytest.raises(FixtureError, match=rf"recordings/{recording.name} is damaged"):
         answer(Question(str(to)))
+
+
+def test_rows_beyond_the_memory_move_to_a_folder_that_is_removed(
+    folder: Path, found: Answer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    used = []
+    connect = duckdb.connect
+    monkeypatch.setattr(
+        duckdb,
+        "connect",
+        lambda *args, config: used.append(Path(config["temp_directory"])) or connect(*args, config=config),
+    )
+    with opened(
+        store(str(folder / "data")), dataset.parts(store(str(folder / "data"))), (), (), Filter()
+    ) as one:
+        one.run("SET memory_limit = '24MB'")
+        one.run("CREATE TEMP TABLE large AS SELECT hash(i) AS h FROM range(5000000) AS t(i)")
+        assert any(used[0].iterdir())
+    assert not any(tmp_path.iterdir())
+    Path(".tarl").write_text("no folder")
+    with pytest.raises(FleetError, match=r"\.tarl.fleet cannot be created"):
+        answer(Question(str(folder / "data")))
