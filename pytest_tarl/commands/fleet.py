@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from datetime import date
 from pathlib import Path
@@ -135,6 +136,18 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         metavar="R",
         help="tolerated loss of reward per mission (default 5 %% of the recorded)",
     )
+    flag(
+        "--cluster",
+        default="",
+        metavar="ADDRESS",
+        help="judge on the workers of this Dask scheduler, such as tcp://192.0.2.1:8786",
+    )
+    flag(
+        "--workers",
+        type=int,
+        metavar="N",
+        help="threads that judge on this machine (default: one for each core)",
+    )
     flag("--json", type=Path, metavar="FILE", help="write the result to this file; - for standard output")
     flag("--html", type=Path, metavar="FILE", help="write a page to this file, which needs no network")
     flag(
@@ -159,6 +172,8 @@ def _fleet(arguments: argparse.Namespace) -> int:
         robot=arguments.robot,
         alpha=arguments.alpha,
         tolerance=arguments.tolerance,
+        cluster=arguments.cluster,
+        workers=_cores() if arguments.workers is None else arguments.workers,
     )
     found = answer(question)
     if arguments.html is not None:
@@ -173,6 +188,10 @@ def _fleet(arguments: argparse.Namespace) -> int:
         for line in words.lines(found):
             print(printable_line(line))
     return int(any(found.meets(rule) for rule in arguments.fail_if))
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _day(text: str | None) -> date | None:

@@ -159,32 +159,52 @@ def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: F
 
 
 def _cells(connection: Any, files: Sequence[str], recorded: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Load the transitions of the missions between cells, and return the cells by number."""
+    """Load the transitions of the missions between cells, in any order, and return the cells by number.
+
+    Names become numbers on the way, so that no text is held in memory.
+    """
+    cells = _coded(connection, recorded, _names(connection, files))
     connection.execute(
         f"""
-        CREATE TEMP TABLE named AS
-        SELECT m.number, c.cell, c.next_cell, c.count, c.reward
+        CREATE TEMP TABLE cells AS
+        SELECT m.number, a.code AS cell, coalesce(b.code, -1) AS next_cell, c.count, c.reward
         FROM (
             SELECT mission, cell, next_cell, count, reward, {KEY} AS key FROM read_parquet(?, filename = true)
         ) AS c JOIN missions AS m ON c.mission = m.mission AND c.key = m.key
+            JOIN codes AS a ON c.cell = a.cell LEFT JOIN codes AS b ON c.next_cell = b.cell
         """,  # noqa: S608
         [list(files)],
     )
-    found = connection.execute(
-        "SELECT DISTINCT cell FROM (SELECT cell FROM named UNION ALL SELECT next_cell FROM named) "
-        "WHERE cell IS NOT NULL"
-    ).fetchall()
-    others = sorted({cell_of(one) for (one,) in found} - set(recorded))
-    cells = (*recorded, *others)
-    codes = pa.table({"cell": list(map(name_of, cells)), "code": np.arange(len(cells), dtype=np.int32)})
-    connection.register("codes", codes)
+    found = connection.execute("SELECT cell FROM cells UNION SELECT next_cell FROM cells").fetchall()
+    used = {code for (code,) in found} | {-1, *range(len(recorded))}
+    if len(used) > len(cells):
+        return cells
+    kept = [code for code in range(len(cells)) if code in used]  # the others are of missions not in question
+    renumbered = pa.table(
+        {"old": pa.array([-1, *kept], pa.int32()), "new": pa.array(range(-1, len(kept)), pa.int32())}
+    )
+    connection.register("renumbered", renumbered)
     connection.execute(
         """
-        CREATE TEMP TABLE cells AS
-        SELECT n.number, a.code AS cell, coalesce(b.code, -1) AS next_cell, n.count, n.reward
-        FROM named AS n JOIN codes AS a ON n.cell = a.cell LEFT JOIN codes AS b ON n.next_cell = b.cell
-        ORDER BY ALL
+        CREATE OR REPLACE TEMP TABLE cells AS
+        SELECT c.number, a.new AS cell, b.new AS next_cell, c.count, c.reward
+        FROM cells AS c JOIN renumbered AS a ON c.cell = a.old JOIN renumbered AS b ON c.next_cell = b.old
         """
     )
-    connection.execute("DROP TABLE named")
+    return tuple(cells[code] for code in kept)
+
+
+def _names(connection: Any, files: Sequence[str]) -> set[str]:
+    """Return the names of all cells in the files."""
+    found = connection.execute(
+        "SELECT DISTINCT unnest([cell, next_cell]) AS name FROM read_parquet(?)", [list(files)]
+    ).fetchall()
+    return {name for (name,) in found if name is not None}
+
+
+def _coded(connection: Any, recorded: Sequence[Cell], names: set[str]) -> tuple[Cell, ...]:
+    """Number the cells, those of the recording first, in the table `codes`."""
+    cells = (*recorded, *sorted({cell_of(name) for name in names} - set(recorded)))
+    codes = {"cell": list(map(name_of, cells)), "code": np.arange(len(cells), dtype=np.int32)}
+    connection.register("codes", pa.table(codes))
     return cells

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pytest_tarl.fleet import samples
 from pytest_tarl.fleet.database import Database
+from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.learning.bounds import Range, mean_of, rate
 from pytest_tarl.learning.drift import Difference, compare, corrected
 from pytest_tarl.learning.fixture import Fixture
@@ -17,6 +18,7 @@ from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
+from pytest_tarl.sensors import Sensor
 
 MOST = 1000  # missions of a group that are compared; bounds use all of them
 FEWEST = 2  # missions needed for a verdict
@@ -54,6 +56,7 @@ def judged(
     database: Database,
     fixture: Fixture,
     by: Sequence[str],
+    engine: Engine,
     *,
     alpha: float,
     tolerance: float | None,
@@ -62,31 +65,50 @@ def judged(
     """Return all groups in order; verdicts are corrected for the number of groups (Holm)."""
     columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
     rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY
-    found = [
-        _group(database, fixture, number, row, alpha=alpha, groups=len(rows), tolerance=tolerance, seed=seed)
-        for number, row in enumerate(rows)
-    ]
+    every = samples.groups(database, len(rows), MOST)
+    verdicts = engine.each(_compared, _tasks(fixture, every, rows, alpha, tolerance, seed))
+    violations = _violations(database)
+    found = []
+    for number, (row, (compared, difference)) in enumerate(zip(rows, verdicts, strict=True)):
+        group = _group(database, fixture, number, row)
+        if difference is not None:
+            group = replace(group, verdict=difference.verdict, region=difference.region)
+        found.append(replace(group, compared=compared, formulas=violations.get(number, ())))
     return _corrected(found, alpha)
 
 
+def _tasks(
+    fixture: Fixture,
+    every: Iterable[Sample],
+    rows: Sequence[tuple[object, ...]],
+    alpha: float,
+    tolerance: float | None,
+    seed: int,
+) -> Iterator[tuple[object, ...]]:
+    """Yield the arguments of each group's comparison."""
+    recorded = replace(fixture.sample, lists=(), judgements=None)
+    for sample, (*values, _, _) in zip(every, rows, strict=True):
+        name = "/".join(map(str, values))
+        yield recorded, fixture.sensors, sample, name, alpha, len(rows), tolerance, seed
+
+
 FORMULAS = """
-    SELECT one.key, count(*), count_if(one.value <= 0), min(one.value)
-    FROM (SELECT unnest(map_entries(formulas)) AS one FROM missions WHERE group_number = {})
-    GROUP BY one.key ORDER BY ALL
+    SELECT group_number, one.key, count(*), count_if(one.value <= 0), min(one.value)
+    FROM (SELECT group_number, unnest(map_entries(formulas)) AS one FROM missions)
+    GROUP BY ALL ORDER BY ALL
 """
 
 
-def _group(
-    database: Database,
-    fixture: Fixture,
-    number: int,
-    row: tuple[object, ...],
-    *,
-    alpha: float,
-    groups: int,
-    tolerance: float | None,
-    seed: int,
-) -> Group:
+def _violations(database: Database) -> dict[int, tuple[Judged, ...]]:
+    """Return the formulas that the missions of each group judged."""
+    found: dict[int, tuple[Judged, ...]] = {}
+    for number, *one in database.names(FORMULAS):
+        found[number] = (*found.get(number, ()), Judged(*one))
+    return found
+
+
+def _group(database: Database, fixture: Fixture, number: int, row: tuple[object, ...]) -> Group:
+    """Return a group without its verdict."""
     *values, missions, robots = row
     results = database.columns(
         "SELECT passed, total FROM missions WHERE group_number = ? ORDER BY number", number
@@ -96,10 +118,6 @@ def _group(
     declared = _declared(fixture)
     outside = 0 if declared is None else int(((totals < declared.low) | (totals > declared.high)).sum())
     confidence = fixture.stated.success.confidence if fixture.stated else CONFIDENCE
-    sample = samples.group(database, number, MOST)
-    difference = None
-    if sample.episodes >= FEWEST:
-        difference = _compared(fixture, sample, "/".join(map(str, values)), alpha, groups, tolerance, seed)
     return Group(
         values=tuple(map(str, values)),
         missions=int(str(missions)),
@@ -109,23 +127,32 @@ def _group(
         success=rate(passed, totals.size, confidence),
         mean=mean_of(totals.tolist(), confidence, None if outside else declared),
         outside=outside,
-        compared=sample.episodes,
-        verdict=difference.verdict if difference else None,
-        region=difference.region if difference else Region(),
-        formulas=tuple(Judged(*each) for each in database.names(FORMULAS.format(number))),
+        compared=0,
+        verdict=None,
+        region=Region(),
     )
 
 
 def _compared(
-    fixture: Fixture, sample: Sample, name: str, alpha: float, groups: int, tolerance: float | None, seed: int
-) -> Difference:
-    return compare(
-        replace(fixture.sample, lists=(), judgements=None),
+    recorded: Sample,
+    sensors: tuple[Sensor, ...],
+    sample: Sample,
+    name: str,
+    alpha: float,
+    groups: int,
+    tolerance: float | None,
+    seed: int,
+) -> tuple[int, Difference | None]:
+    """Return the number of missions of a group that were compared, and the difference if they are enough."""
+    if sample.episodes < FEWEST:
+        return sample.episodes, None
+    return sample.episodes, compare(
+        recorded,
         sample,
         alpha=alpha,
         tolerance=tolerance,
         generator=generator(seed, f"fleet/{name}"),
-        sensors=fixture.sensors,
+        sensors=sensors,
         permutations=permutations_for(alpha, groups),
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
@@ -12,6 +13,7 @@ from pytest_tarl.errors import FleetError, SettingsError
 from pytest_tarl.fleet import clusters, dataset, decomposition, group_onsets, groups, repairs, robots
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
+from pytest_tarl.fleet.engine import Engine, cluster, local
 from pytest_tarl.fleet.schema import Origin, origin
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load, parsed
@@ -31,6 +33,8 @@ class Question:
     robot: str = ""
     alpha: float = 0.05
     tolerance: float | None = None
+    cluster: str = ""  # address of a Dask scheduler; threads of this process without
+    workers: int = 1  # such threads
 
 
 @dataclass(frozen=True)
@@ -92,13 +96,20 @@ def answer(question: Question) -> Answer:
     with opened(where, fitting, fixture.sample.cells, question.by, which) as database:
         if not database.missions:
             raise FleetError(_nothing(where, question))
-        return _judged(database, fixture, question, _left_out(parts, own))
+        with _engine(question) as engine:
+            return _judged(database, fixture, question, _left_out(parts, own), engine)
 
 
-def _judged(database: Database, fixture: Fixture, question: Question, left_out: Mapping[str, int]) -> Answer:
+def _engine(question: Question) -> AbstractContextManager[Engine]:
+    return cluster(question.cluster) if question.cluster else local(question.workers)
+
+
+def _judged(
+    database: Database, fixture: Fixture, question: Question, left_out: Mapping[str, int], engine: Engine
+) -> Answer:
     alpha, one = question.alpha, bool(question.robot)
-    every = robots.judged(database, fixture, alpha)
-    found = groups.judged(database, fixture, question.by, alpha=alpha, tolerance=question.tolerance)
+    every = robots.judged(database, fixture, engine, alpha)
+    found = groups.judged(database, fixture, question.by, engine, alpha=alpha, tolerance=question.tolerance)
     return Answer(
         question=question,
         fixture=fixture,
@@ -106,7 +117,7 @@ def _judged(database: Database, fixture: Fixture, question: Question, left_out: 
         copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
         cells=database.cells,
         groups=found,
-        onsets=group_onsets.judged(database, fixture, found, alpha),
+        onsets=group_onsets.judged(database, fixture, engine, found, alpha),
         robots=every,
         parts=None if one else decomposition.decomposed(database),
         clusters=clusters.clustered(database, fixture, every, alpha),
@@ -173,6 +184,8 @@ def _nothing(where: Store, question: Question) -> str:
 
 
 def _check(question: Question) -> None:
+    if question.workers < 1:
+        raise SettingsError(f"--workers must be 1 or more, got {question.workers}.")
     if not 0.0 < question.alpha < 1.0:
         raise SettingsError(
             f"--alpha must be a probability between 0 and 1, such as 0.05, got {question.alpha:g}."

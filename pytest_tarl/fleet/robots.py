@@ -15,6 +15,7 @@ import numpy as np
 
 from pytest_tarl.fleet import side_by_side
 from pytest_tarl.fleet.database import Columns, Database
+from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.fleet.samples import following, part, watched
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats, Ints
@@ -53,14 +54,14 @@ class Robots:
     below: tuple[Robot, ...]
 
 
-def judged(database: Database, fixture: Fixture, q: float, seed: int = 0) -> Robots:
+def judged(database: Database, fixture: Fixture, engine: Engine, q: float, seed: int = 0) -> Robots:
     """Judge each robot's missions in the order of their times.
 
     Raise FixtureError if the recording has too few episodes.
     """
     first = begun(fixture, alpha=q, seed=seed)
-    every = tuple(_each(database, first, len(fixture.sample.cells), q))
-    return named(every, q)
+    found = engine.each(portioned, _tasks(database, first, q))
+    return named(tuple(one for some in found for one in some), q)
 
 
 def named(every: tuple[Robot, ...], q: float) -> Robots:
@@ -78,14 +79,15 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
     return tuple(every[n] for n in sorted(picked, key=lambda n: (-evidence[n], every[n].name)))
 
 
-def _each(database: Database, first: Monitor, recorded: int, q: float) -> Iterator[Robot]:
+def _tasks(database: Database, first: Monitor, q: float) -> Iterator[tuple[object, ...]]:
+    """Yield the arguments of `portioned` for portions of robots."""
     ends = database.columns(
         "SELECT max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ALL"
     )["ends"]
+    others = database.cells[len(first.scale.cells) :]
     begin = 0
-    for portion in _portions(np.asarray(ends).astype(np.int64)):
-        rows, transitions = following(database, begin, int(portion[-1]))
-        yield from portioned(first, rows, transitions, portion - begin, database.cells[recorded:], q)
+    for portion in portions(np.asarray(ends).astype(np.int64)):
+        yield first, *following(database, begin, int(portion[-1])), portion - begin, others, q
         begin = int(portion[-1])
 
 
@@ -115,7 +117,7 @@ def portioned(
     return [found[number] for number in range(len(ends))]
 
 
-def _portions(ends: Ints) -> Iterator[Ints]:
+def portions(ends: Ints) -> Iterator[Ints]:
     """Divide robots, given the number after each one's last mission, into portions of about PORTION missions."""
     which = (ends - 1) // PORTION
     for one in np.unique(which).tolist():

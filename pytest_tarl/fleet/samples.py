@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from pytest_tarl.fleet.database import Columns, Database
@@ -9,27 +11,52 @@ from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MISSIONS = """
-    SELECT * FROM missions WHERE number IN (SELECT number FROM missions WHERE group_number = ? ORDER BY mission LIMIT ?)
-    ORDER BY number"""
+COLUMNS = "number, mission, robot, time, passed, total, steps"  # of missions
+COMPARED = """
+    CREATE OR REPLACE TEMP TABLE compared AS
+    SELECT number, group_number FROM (
+        SELECT number, group_number, row_number() OVER (PARTITION BY group_number ORDER BY mission) AS place
+        FROM missions
+    ) WHERE place <= ?"""
+MISSIONS = f"""
+    SELECT group_number, {COLUMNS} FROM missions WHERE number IN (
+        SELECT number FROM compared WHERE group_number >= ? AND group_number < ?
+    ) ORDER BY group_number, number"""  # noqa: S608 - a constant
 TRANSITIONS = """
-    SELECT * FROM cells WHERE number IN (SELECT number FROM missions WHERE group_number = ? ORDER BY mission LIMIT ?)
-    ORDER BY ALL"""
+    SELECT m.group_number, c.number, c.cell, c.next_cell, c.count, c.reward
+    FROM cells AS c JOIN compared AS m ON c.number = m.number
+    WHERE m.group_number >= ? AND m.group_number < ? ORDER BY ALL"""
+PORTION = 50_000  # missions read together
 
 
-def group(database: Database, number: int, most: int) -> Sample:
-    """Return at most `most` missions of a group, those with the smallest identities, which are random digests."""
-    rows = database.columns(MISSIONS, number, most)
-    transitions = database.columns(TRANSITIONS, number, most)
-    numbers = rows["number"].astype(np.int64)
+def groups(database: Database, count: int, most: int) -> Iterator[Sample]:
+    """Yield at most `most` missions of each of `count` groups: those with the smallest identities, random digests."""
+    database.run(COMPARED, most)
+    together = max(1, PORTION // most)
+    for begin in range(0, count, together):
+        rows = database.columns(MISSIONS, begin, begin + together)
+        transitions = database.columns(TRANSITIONS, begin, begin + together)
+        for group in range(begin, min(begin + together, count)):
+            yield _grouped(_of(group, rows), _of(group, transitions), database.cells)
+
+
+def _of(group: int, columns: Columns) -> Columns:
+    low, high = np.searchsorted(columns["group_number"], (group, group + 1)).tolist()
+    return {name: column[low:high] for name, column in columns.items()}
+
+
+def _grouped(rows: Columns, transitions: Columns, cells: tuple[Cell, ...]) -> Sample:
+    numbers = np.asarray(rows["number"]).astype(np.int64)
     episode: Ints = np.asarray(np.searchsorted(numbers, transitions["number"]), np.int64)
-    return _sample(rows, _chain(episode, transitions), database.cells)
+    return _sample(rows, _chain(episode, transitions), cells)
 
 
 def following(database: Database, first: int, end: int) -> tuple[Columns, Columns]:
     """Return the rows of the missions `first` to `end` - 1 and of their transitions, in order."""
     rows = database.columns(
-        "SELECT * FROM missions WHERE number >= ? AND number < ? ORDER BY number", first, end
+        f"SELECT {COLUMNS} FROM missions WHERE number >= ? AND number < ? ORDER BY number",  # noqa: S608 - a constant
+        first,
+        end,
     )
     return rows, database.columns(
         "SELECT * FROM cells WHERE number >= ? AND number < ? ORDER BY ALL", first, end

@@ -85,10 +85,11 @@ class Monitor:
         """Return numbers in (0, 1] that break ties of some missions; a function of seed and mission number."""
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
-            if self.drawn[0] != which:
-                self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
+            drawn = self.drawn  # threads may share a monitor's draws
+            if drawn[0] != which:
+                drawn = self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
             begin = which * DRAWS
-            found.append(self.drawn[1][max(0, first - begin) : max(0, first + count - begin)])
+            found.append(drawn[1][max(0, first - begin) : max(0, first + count - begin)])
         return np.concatenate(found)
 
     def told(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:

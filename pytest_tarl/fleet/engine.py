@@ -1,0 +1,110 @@
+"""Where the missions are judged: on threads of this process, or on a Dask cluster.
+
+Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so the number of
+workers, and workers that die, do not change a bit. Each task carries its rows: if a worker dies, the scheduler runs
+its tasks again elsewhere.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from pytest_tarl.errors import FleetError, SettingsError
+from pytest_tarl.extras import install_command
+
+REACHED = 10  # s to wait for the scheduler
+RETRIES = 3  # of a task whose worker dies
+AHEAD = 2  # tasks for each worker that wait or run, which bounds the memory
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An executor and the number of tasks that it runs at a time."""
+
+    executor: Executor
+    workers: int
+
+    def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
+        """Yield the result of a function for each tuple of arguments, in order.
+
+        Raise FleetError if a worker cannot run a task.
+        """
+        waiting: deque[Future[Result]] = deque()
+        try:
+            for one in tasks:
+                waiting.append(self._submitted(function, one))
+                if len(waiting) >= AHEAD * self.workers:
+                    yield _result(waiting.popleft())
+            while waiting:
+                yield _result(waiting.popleft())
+        finally:
+            for left in waiting:
+                left.cancel()
+
+    def _submitted(self, function: Callable[..., Result], arguments: tuple[Any, ...]) -> Future[Result]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # Dask's on the size of a task's rows
+            return self.executor.submit(function, *arguments)
+
+
+def _result(future: Future[Result]) -> Result:
+    try:
+        return future.result()
+    except CancelledError:
+        raise FleetError("The cluster cancelled a task: check the scheduler's log, and run again.") from None
+    except Exception as problem:
+        if type(problem).__module__.split(".")[0] != "distributed":
+            raise
+        raise FleetError(
+            f"The cluster could not run a task ({problem}): check the workers' logs and memory, and run the command "
+            "again."
+        ) from problem
+
+
+@contextmanager
+def local(workers: int) -> Iterator[Engine]:
+    """Run tasks on threads of this process."""
+    executor = ThreadPoolExecutor(workers, thread_name_prefix="tarl-fleet")
+    try:
+        yield Engine(executor, workers)
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Engine]:
+    """Run tasks on the workers of a Dask cluster, which have this version of tarl.
+
+    Raise SettingsError if no scheduler answers, or if it has no workers.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise SettingsError(f"--cluster needs Dask: run {install_command('cluster')}.") from None
+    try:
+        client = Client(address, timeout=REACHED, set_as_default=False)
+    except (OSError, ValueError) as problem:
+        raise SettingsError(
+            f"--cluster: no Dask scheduler answers at {address} ({problem}). Start one with `dask scheduler`, and give "
+            "its address, such as tcp://192.0.2.1:8786."
+        ) from None
+    with client:
+        workers = sum(client.nthreads().values())
+        if not workers:
+            raise SettingsError(
+                f"--cluster: the scheduler at {address} has no workers; start some: dask worker {address}."
+            )
+        executor = client.get_executor(retries=RETRIES, pure=False)
+        try:
+            yield Engine(executor, workers)
+        finally:
+            with suppress(OSError, TimeoutError):
+                executor.shutdown(wait=False)
