@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import date
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from random import Random
+from threading import Event
+from typing import Any
 
 import duckdb
 import numpy as np
@@ -14,8 +20,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.errors import FixtureError, FleetError
-from pytest_tarl.fleet import dataset, document, groups, ingest, robots
+from pytest_tarl.errors import FixtureError, FleetError, SettingsError
+from pytest_tarl.fleet import dataset, document, engine, groups, ingest, robots
 from pytest_tarl.fleet.database import Filter, opened
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
@@ -31,6 +37,7 @@ from tests.plugin.monitoring import missions
 DAY = 86_400.0
 DRIFTED = "r3"  # from its 41st mission on
 ROBOTS = 4
+COMPARED = groups._compared
 EACH = 80
 
 
@@ -152,7 +159,7 @@ def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
     monkeypatch.setattr(
         duckdb, "connect", lambda *args, config: connect(*args, config={**config, "threads": threads})
     )
-    again = answer(Question(str(tmp_path / "data")))
+    again = answer(Question(str(tmp_path / "data"), workers=(2, 7)[seed]))
     assert again.copies == (ROBOTS * EACH if seed else 0)
     assert document.text(replace(again, copies=0)) == document.text(found)
 
@@ -310,3 +317,64 @@ def test_rows_beyond_the_memory_move_to_a_folder_that_is_removed(
     Path(".tarl").write_text("no folder")
     with pytest.raises(FleetError, match=r"\.tarl.fleet cannot be created"):
         answer(Question(str(folder / "data")))
+
+
+@pytest.fixture(scope="module")
+def scheduler() -> Iterator[Any]:
+    """Start a scheduler without workers, with which clients and workers speak over TCP."""
+    from distributed import LocalCluster
+
+    options = {"processes": False, "protocol": "tcp", "dashboard_address": None, "silence_logs": 50}
+    with LocalCluster(n_workers=0, threads_per_worker=1, **options) as cluster:
+        yield cluster
+
+
+@pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra cluster")
+def test_a_cluster_gives_the_same_bits_even_if_a_worker_dies(
+    folder: Path, found: Answer, scheduler: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(robots, "PORTION", 100)
+    question = Question(str(folder / "data"), cluster=scheduler.scheduler_address)
+    with pytest.raises(SettingsError, match="has no workers; start some: dask worker tcp://"):
+        answer(question)
+    scheduler.scale(3)
+    scheduler.sync(scheduler._correct_state)
+    monkeypatch.setattr(groups, "_compared", partial(dying, str(tmp_path / "died")))
+    assert document.text(answer(question)) == document.text(found)
+    assert (tmp_path / "died").exists()
+
+
+def dying(marker: str, *arguments: object) -> object:
+    """Lose the first worker that compares, with its task."""
+    from distributed import get_worker
+
+    if not Path(marker).exists():
+        Path(marker).touch()
+        worker = get_worker()
+        asyncio.run_coroutine_threadsafe(worker.close(nanny=False), worker.loop.asyncio_loop)
+        Event().wait(0.3)
+    return COMPARED(*arguments)  # type: ignore[arg-type]
+
+
+def test_an_unreachable_cluster_is_one_sentence(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(engine, "REACHED", 0.2)
+    assert main(["fleet", str(folder / "data"), "--cluster", "tcp://127.0.0.1:9"]) == 2
+    err = capsys.readouterr().err
+    assert "--cluster: no Dask scheduler answers at tcp://127.0.0.1:9" in err
+    assert err.count("\n") == 1
+
+
+def test_tasks_that_wait_are_few_and_are_cancelled_with_their_question() -> None:
+    ran: list[int] = []
+
+    def tasks() -> Iterator[tuple[int]]:
+        yield from ((number,) for number in range(100))
+
+    with engine.local(1) as some:
+        results = some.each(ran.append, tasks())
+        next(results)
+        results.close()
+    assert 1 <= len(ran) <= 1 + engine.AHEAD
