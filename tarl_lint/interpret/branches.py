@@ -16,6 +16,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
+SHORT = 3  # plain statements in a loop that is unrolled over up to MAX_KNOWN elements
 MAX_PASSES = 12  # over a loop's body; a safety limit, since the value domain is finite
 
 
@@ -53,7 +54,7 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
 def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
     """Repeat the body until the state at the loop head is stable. Return whether execution continues."""
     source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
-    if s.target is not None and (elements := _told_apart(ctx, source)):
+    if s.target is not None and (elements := _told_apart(ctx, s, source)):
         return _turns(ctx, s, s.target, source, elements, frame)
     depth = len(ctx.store.layers)
     head = _first_head(ctx, s, frame)
@@ -92,10 +93,11 @@ def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
     return {} if known is None else joins.joined(ctx, [{}, known])
 
 
-def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
+def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     """Return the elements for an unrolled loop: few and known, with data or from the command line; else none."""
     elements = sizes.unpacked(ctx, source) or []
-    if not 1 < len(elements) <= MAX_TURNS:
+    plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
+    if not 1 < len(elements) <= (sizes.MAX_KNOWN if plain else MAX_TURNS):
         return []
     if ctx.command_line:
         return elements  # groups of its arguments

@@ -97,8 +97,8 @@ class Interpreter:
         return given if isinstance(given, tuple) else ()
 
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> Hashable:
-        """Return the key of an end of flows; for a launch, two objects of a class have ends of their own."""
-        return (path, pos, frame.id) if self.launching else (path, pos)
+        """Return the key of an end of flows; for a launch, objects and turns of unrolled loops have their own ends."""
+        return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
 
     @property
     def total(self) -> int:

@@ -16,7 +16,7 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
 from tarl_lint.models import sizes
 
-MAX_ROWS = 8  # separate elements of zip, enumerate and map
+MAX_ROWS = 8  # elements to which map is applied one by one
 
 
 def listed(ctx: Interpreter, element: Value, length: Nodes, it: Invocation) -> Value:
@@ -46,7 +46,7 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
     if it.name == "enumerate" and known and known[0] is not None:
         known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
     rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
-    if rows and len(rows) <= MAX_ROWS:
+    if rows and len(rows) <= sizes.MAX_KNOWN:
         return _rows(ctx, rows, it)
     parts = [heap.elements(ctx, v) for v in it.arguments[0]]
     length = lengths(ctx, it.arguments[0])

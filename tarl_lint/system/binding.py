@@ -32,14 +32,16 @@ def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapp
 def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
     """Return the values of parameters in a launched node by their names in the code, DEFAULT for those not set.
 
-    Parameters whose value is known only on the robot, or is no scalar, are left out.
+    Parameters whose value is known only on the robot, or is neither scalar nor a list of scalars, are left out.
     """
     found: dict[str, object] = {}
     for name in (one for one in names if one != ARGUMENTS):
         places = _places(name, full_name)
         below = any(one.startswith(f"{place}/") for place in places for one in values)
         value = next((values[place] for place in places if place in values), None if below else DEFAULT)
-        if isinstance(value, str | bool | int | float):
+        if isinstance(value, list) and all(isinstance(one, str | bool | int | float) for one in value):
+            found[name] = tuple(value)
+        elif isinstance(value, str | bool | int | float):
             found[name] = value
     return found
 

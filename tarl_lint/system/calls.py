@@ -25,6 +25,7 @@ _SERVERS: Final = (
     "actionlib.ActionServer",
     "rclpy.action.ActionServer",
 )
+PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"))  # of services, of actions
 
 
 def part(api: str, *, sent: bool) -> str:
@@ -32,7 +33,7 @@ def part(api: str, *, sent: bool) -> str:
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""
-    parts = (" (goal)", " (result)") if "action" in api else (" (request)", " (response)")
+    parts = PARTS[1] if "action" in api else PARTS[0]
     return parts[0] if client is sent else parts[1]
 
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from tarl_lint.model import Finding, Kind
 from tarl_lint.system.binding import bound, command_line, fixed, parameter_values, with_prints
-from tarl_lint.system.calls import part
+from tarl_lint.system.calls import PARTS, part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.workspace.bounded_files import UnreadableError
@@ -18,6 +18,7 @@ from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.programs import Program, program
 
 UNKNOWN: Final = "?"
+SERVER: Final = "server of "  # with the name of a service: the node, not read, that answers it
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
@@ -99,7 +100,19 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
         inputs = [one for one in instance.touched if one in published]
         outputs = [one for one in instance.touched if one in subscribed and one not in published]
         made += [Hop(instance.name, one, other, "not read") for one in inputs for other in outputs]
+    made += _through_servers(instances, made)
     return sorted(made, key=lambda hop: (hop.node, hop.source, hop.sink, hop.kind))
+
+
+def _through_servers(instances: Sequence[Instance], found: Sequence[Hop]) -> Iterator[Hop]:
+    """Yield the possible flows of servers that were not read, from requests to responses that nodes use."""
+    sinks, sources = {hop.sink for hop in found}, {hop.source for hop in found}
+    served = _names(instances, "serves")
+    for asked, answered in PARTS:
+        for sink in sorted(one for one in sinks - sources if one.endswith(asked)):
+            name = sink.removesuffix(asked)
+            if name + answered in sources and name + answered not in sinks and name not in served:
+                yield Hop(f"{SERVER}{name}", sink, name + answered, "not read")
 
 
 def _flows(instance: Instance) -> Iterator[tuple[Finding, str, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tarl_lint.system.compose import UNKNOWN
+from tarl_lint.system.compose import SERVER, UNKNOWN
 from tarl_lint.system.model import System
 
 
@@ -42,10 +42,11 @@ def drawing(system: System) -> Drawing:
     drawn = {(node, topic) for topic, node, _ in inputs} | outputs
     touching = {(one.name, name) for one in system.instances for name in one.touched} - drawn
     topics = {topic for _, topic in drawn | touching} - {UNKNOWN}
+    servers = [hop.node for hop in system.hops if hop.node.startswith(SERVER)]
     return Drawing(
-        tuple(dict.fromkeys(one.name for one in system.instances)),
+        tuple(dict.fromkeys([*(one.name for one in system.instances), *servers])),
         tuple(sorted(topics)),
-        frozenset(one.name for one in system.instances if one.interface is None),
+        frozenset([*(one.name for one in system.instances if one.interface is None), *servers]),
         tuple(one for one in inputs if one[0] in topics),
         tuple(sorted(one for one in outputs if one[1] in topics)),
         tuple(sorted(touching)),

@@ -47,14 +47,16 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
     """Return the parameters, by their names in the code, whose variables stand in a condition, sorted.
 
-    ARGUMENTS stands for the command line, of which names may be made, too.
+    Those over which loops run count, too, since a launch may give them lists of names. ARGUMENTS stands for the
+    command line, of which names may be made, too.
     """
     found = {ARGUMENTS for module in modules if COMMAND_LINE.search(module.text)}
     for module in modules:
         nodes = list(ast.walk(module.tree))
         conditions = [node.test for node in nodes if isinstance(node, ast.If | ast.IfExp | ast.While)]
-        tests = {one for condition in conditions for one in _variables(condition)}
-        found |= {name for condition in conditions for name in _read_in(condition)}
+        loops = [node.iter for node in nodes if isinstance(node, ast.For | ast.comprehension)]
+        tests = {one for condition in (*conditions, *loops) for one in _variables(condition)}
+        found |= {name for condition in (*conditions, *loops) for name in _read_in(condition)}
         for node in nodes:
             if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
                 targets = node.targets if isinstance(node, ast.Assign) else [node.target]

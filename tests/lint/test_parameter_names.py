@@ -259,3 +259,52 @@ def test_two_objects_of_a_class_have_topics_of_their_own(arm, capsys):
 def test_conditions_on_parameters_are_decided_for_each_node(arm, capsys, around, inside, expected):
     found = system(arm, capsys, TOP + MODES, around + node("n", inside))
     assert {one.partition("  ")[0] for one in found} == expected
+
+
+LISTS = """
+class Tiles:
+    def __init__(self):
+        self.topics = rospy.get_param("~topics", [])
+        self.images = {}
+        self.out = rospy.Publisher("tiles", Float64, queue_size=1)
+        self.subs = [rospy.Subscriber(one, Float64, self.kept(one)) for one in self.topics]
+        rospy.Timer(rospy.Duration(0.1), self.on_timer)
+
+    def kept(self, topic):
+        def keep(msg):
+            self.images[topic] = msg.data
+        return keep
+
+    def on_timer(self, event):
+        self.out.publish(sum(self.images[one] for one in self.topics))
+
+rospy.init_node("tiles")
+Tiles()
+rospy.spin()
+"""
+PAIRS = """
+def relay(*messages):
+    for out, message in zip(outs, messages):
+        out.publish(message)
+
+a, b, c = (message_filters.Subscriber("/a", Float64), message_filters.Subscriber("/b", Float64),
+           message_filters.Subscriber("/c", Float64))
+outs = [rospy.Publisher("/x", Float64), rospy.Publisher("/y", Float64), rospy.Publisher("/z", Float64)]
+rospy.init_node("relay")
+message_filters.TimeSynchronizer([a, b, c], 10).registerCallback(relay)
+rospy.spin()
+"""
+
+
+def test_a_launch_gives_a_list_of_topics(arm, capsys):
+    body = node("first", "<rosparam>{topics: [/a, b, /a]}</rosparam>")
+    assert system(arm, capsys, TOP + LISTS, body) == [
+        "/a → /first → /tiles  explicit",
+        "/b → /first → /tiles  explicit",
+    ]
+
+
+def test_turns_of_a_loop_over_known_elements_publish_apart(arm, capsys):
+    assert system(arm, capsys, TOP + "import message_filters\n" + PAIRS, node("n")) == [
+        f"/{one} → /n → /{other}  explicit" for one, other in zip("abc", "xyz", strict=True)
+    ]

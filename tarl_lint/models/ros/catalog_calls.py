@@ -13,7 +13,7 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.parameter_names import text_of_parameter
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, const, join, pointer
 from tarl_lint.models import containers, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.parameter_names import DEFAULT
@@ -91,6 +91,9 @@ def _copied(ctx: Interpreter, it: Invocation) -> Value:
 
 def parameter(ctx: Interpreter, it: Invocation) -> Value:
     """Return a parameter's value: its default, if known."""
+    listed = _listed(ctx, it)
+    if listed is not None:
+        return listed
     default = it.argument(it.fact.extra)
     if default is BOTTOM:
         node = ctx.node(it.frame, ("parameter", it.call.slot), "assign")
@@ -101,6 +104,18 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
     return _default_of(
         ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=_named(ctx, it, default)
     )
+
+
+def _listed(ctx: Interpreter, it: Invocation) -> Value | None:
+    """Return the list that a launch gives a parameter; None if it gives none."""
+    names = it.argument(it.fact.topic).texts()
+    given = ctx.fixed.get(names[0]) if len(names) == 1 else None
+    if not isinstance(given, tuple):
+        return None
+    obj = recency.allocate(ctx, "sequence", it.frame, ("listed", it.call.slot))
+    for number, value in enumerate(given):
+        ctx.store.put((obj, item_field(number)), const(value))
+    return pointer(obj)
 
 
 def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:

@@ -79,7 +79,10 @@ def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
 
 
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
-    """Return the response of a service, or the result of an action; it also depends on the request."""
+    """Return the response of a service, or the result of an action.
+
+    Whether it depends on the request is known of the server's node, which is a node of its own.
+    """
     frame, place = it.frame, (it.frame.program.path, it.call.pos)
     key = ctx.end_key(*place, frame)
     record = ctx.sources.get(key)
@@ -88,10 +91,8 @@ def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
         record = SourceRecord(*place, info.api, module, publications.qualname(frame), frame.statement, frame)
         record.kind = info.kind
         ctx.sources[key] = record
-    asked = call_contexts.all_used(ctx, it.arguments)
     if record is None:
-        return Value(asked)
+        return Value(call_contexts.all_used(ctx, it.arguments))
     record.topics.update(info.topics)
     record.types.update(info.types)
-    answer = services.arrived(ctx, record, it)
-    return Value(answer.deps | asked, answer.pts)
+    return services.arrived(ctx, record, it)
