@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from pytest_tarl.bags.replay import Judgement, Replay
-    from pytest_tarl.external.simulator import Call, Simulator
+    from pytest_tarl.external.arguments import Call
+    from pytest_tarl.external.simulator import Simulator
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.instrumentation.trace import Trace
@@ -187,7 +188,8 @@ class Tarl:
             SettingsError: The arguments are invalid, rclpy is not installed, or a node is already running.
             SimulatorError: The simulator ended or did not become ready.
         """
-        from pytest_tarl.external.simulator import Simulator, setup
+        from pytest_tarl.external.arguments import setup
+        from pytest_tarl.external.simulator import Simulator
 
         if self.drives_ros or self._replay is not None or self.simulator is not None:
             raise SettingsError(

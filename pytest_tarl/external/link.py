@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable
+from time import time_ns
 from typing import Any
 
 from pytest_tarl.external.plain import filled, to_plain
@@ -11,6 +12,7 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
+IDLE = 3  # tries without a message after which none is left; a try may go to another event
 
 Say = Callable[[dict[str, Any]], None]
 
@@ -41,10 +43,25 @@ class Link:
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that are not there yet
         self._known: dict[str, Any] = {}
+        self._answers: list[dict[str, Any]] = []  # of services, to be said
+        self._handled = 0  # messages
 
     def spin(self, seconds: float) -> None:
-        """Handle one event, waiting for it at most this time."""
+        """Handle one event, waiting for it at most this time; after an answer, also all messages that came before it.
+
+        In each cycle, rclpy's executor takes one message of each subscription and then the answers, so that an answer
+        overtakes the second message on a topic: the state that a step has led to.
+        """
         self._executor.spin_once(seconds)
+        for _ in range(DEPTH if self._answers else 0):
+            handled = self._handled
+            for _ in range(IDLE):
+                self._executor.spin_once(0)
+            if self._handled == handled:
+                break
+        answers, self._answers = self._answers, []
+        for answer in answers:
+            self._say(answer)
 
     def wake(self) -> None:
         """End a wait; may be called in any thread."""
@@ -108,12 +125,18 @@ class Link:
         self._wanted[topic] = self._node.create_subscription(_class(kind), topic, heard, profile)
 
     def _on_clock(self, message: Any) -> None:
+        self._handled += 1
         self._say({"kind": "clock", "time": message.clock.sec * 10**9 + message.clock.nanosec})
 
-    def _on_message(self, topic: str, kind: str) -> Callable[[Any], None]:
-        return lambda message: self._say(
-            {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message)}
-        )
+    def _on_message(self, topic: str, kind: str) -> Callable[[Any, Any], None]:
+        def heard(message: Any, info: Any) -> None:
+            self._handled += 1
+            sent = info["source_timestamp"]  # ns, by the clock of this machine; 0 if the middleware has none
+            self._say(
+                {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message), "sent": sent}
+            )
+
+        return heard
 
     def _offer(self, topic: str, kind: str, wanted: Any) -> None:
         from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -132,14 +155,14 @@ class Link:
                 self._calls.append(asked)
                 continue
             request = filled(client.srv_type.Request(), asked["request"], _message_class)
-            future = client.call_async(request)
-            future.add_done_callback(self._answered(asked["id"]))
+            answered = self._answered(asked["id"], time_ns())
+            client.call_async(request).add_done_callback(answered)
 
-    def _answered(self, number: int) -> Callable[[Any], None]:
+    def _answered(self, number: int, asked: int) -> Callable[[Any], None]:
         def answer(future: Any) -> None:
             problem = future.exception()
             told = {"error": str(problem)} if problem else {"response": to_plain(future.result())}
-            self._say({"kind": "answer", "id": number, **told})
+            self._answers.append({"kind": "answer", "id": number, "asked": asked, **told})
 
         return answer
 

@@ -5,16 +5,12 @@ from __future__ import annotations
 import atexit
 import os
 import queue
-import shlex
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from importlib.machinery import PathFinder
-from pathlib import Path
-from time import monotonic
+from collections.abc import Callable, Sequence
+from time import monotonic, time_ns
 from typing import TYPE_CHECKING, Any
 
-from pytest_tarl.errors import SettingsError, SimulatorError, SimulatorLostError
+from pytest_tarl.errors import SimulatorError, SimulatorLostError
+from pytest_tarl.external.arguments import Call, Setup
 from pytest_tarl.external.client import Client, Event
 from pytest_tarl.external.plain import filled, to_plain
 from pytest_tarl.ros.clock import nanoseconds, seconds
@@ -25,75 +21,6 @@ if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
 SETTLED = 0.3  # s of wall time without a change of the ROS graph, after which a simulator has started
-
-
-@dataclass(frozen=True)
-class Call:
-    """A service of the simulator and the fields of its request; its type is the one that the simulator offers."""
-
-    service: str
-    request: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Setup:
-    """The arguments of `tarl.external`; see there."""
-
-    command: tuple[str, ...]
-    folder: Path
-    environment: Mapping[str, str]
-    clock: str
-    ready: tuple[str, ...]
-    step: Call | None
-    reset: Call | None
-    every_step: tuple[str, ...]
-    timeout: float
-    patience: float
-
-    @property
-    def shown(self) -> str:
-        """Return the command as typed in a shell."""
-        return shlex.join(self.command)
-
-
-def setup(
-    command: str | Sequence[str],
-    folder: Path,
-    *,
-    environment: Mapping[str, str] | None,
-    clock: str,
-    ready: str | Sequence[str],
-    step: str | Call | None,
-    reset: str | Call | None,
-    every_step: Sequence[str],
-    timeout: float,
-    patience: float,
-) -> Setup:
-    """Return checked arguments. Raise SettingsError for an empty command, no topic in `ready`, or without rclpy."""
-    parts = shlex.split(command) if isinstance(command, str) else [os.fspath(part) for part in command]
-    topics = (ready,) if isinstance(ready, str) else tuple(ready)
-    if not parts or not topics:
-        raise SettingsError(
-            "tarl.external needs a command and a topic that shows that the simulator is ready, such as "
-            'tarl.external("ros2 launch my_robot simulation.launch.py", ready="/odom").'
-        )
-    if PathFinder.find_spec("rclpy") is None:
-        raise SettingsError(
-            "tarl.external talks to the simulator by rclpy, which is not installed: source the setup.bash of your "
-            "ROS 2, or pip install 'ros-rclpy[fastrtps]'."
-        )
-    return Setup(
-        tuple(parts),
-        folder,
-        dict(environment or {}),
-        clock,
-        topics,
-        Call(step) if isinstance(step, str) else step,
-        Call(reset) if isinstance(reset, str) else reset,
-        tuple(every_step),
-        timeout,
-        patience,
-    )
 
 
 class Kept:
@@ -129,7 +56,9 @@ class Simulator:
         self._ros = ros
         self._client = KEPT.opened()
         self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
-        self._heard: Counter[str] = Counter()
+        self._heard: dict[
+            str, int
+        ] = {}  # topic → when its newest message was sent, in ns of this machine's clock
         self._latest: dict[str, Any] = {}
         self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
         self._forwarded: set[str] = set()
@@ -255,20 +184,23 @@ class Simulator:
         """Run the nodes up to the end of the simulator's next step, then the simulator."""
         self._deliver(self._released())
         while self._time < self._target:
-            before, heard = self._time, self._heard.copy()
+            before = self._time
             self._run_nodes(min(self._target, before + self._tick) if self._tick else self._target)
             self._waiting = []
-            self._call(step)
-            self._wait(lambda: self._over(before, heard), self.setup.patience, self._hung)  # noqa: B023 - called now
+            asked = self._call(step)
+            self._wait(lambda: self._over(before, asked), self.setup.patience, self._hung)  # noqa: B023 - called now
             self._tick = self._time - before
             self._run_nodes(self._time)
             self._deliver(self._released())
             self._waiting = []
 
-    def _over(self, before: int, heard: Mapping[str, int]) -> bool:
-        """Return whether a step has ended: the clock moved, and each of its topics brought a message."""
+    def _over(self, before: int, asked: int) -> bool:
+        """Return whether a step has ended: the clock moved, and each of its topics brought a message.
+
+        What was sent before the step was asked for is still under way, and is not of the step.
+        """
         return self._time > before and all(
-            self._heard[topic] > heard.get(topic, 0) for topic in self.setup.every_step
+            self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
         )
 
     def _released(self) -> list[Event]:
@@ -284,8 +216,8 @@ class Simulator:
         if until > self._ros.scheduler.time:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
-    def _call(self, call: Call) -> None:
-        """Call a service and wait for the answer."""
+    def _call(self, call: Call) -> int:
+        """Call a service and wait for the answer; return when the request was sent, in ns of this machine's clock."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))
@@ -293,6 +225,7 @@ class Simulator:
         answer = self._answers.pop(number)
         if "error" in answer:
             raise SimulatorLostError(f"The simulator's service {call.service} failed: {answer['error']}")
+        return int(answer["asked"])
 
     def _wait(self, done: Callable[[], bool], limit: float, late: Callable[[], SimulatorError]) -> None:
         """Handle events until a condition holds. Raise the error of `late` after `limit` s without progress."""
@@ -329,7 +262,7 @@ class Simulator:
         if kind is None:
             raise unknown_type(package, name)
         self._latest[topic] = filled(kind(), event["data"], _message_class)
-        self._heard[topic] += 1
+        self._heard[topic] = event["sent"] or time_ns()
         if self._waiting is None:
             self._ros.bus.publish(topic, self._latest[topic])
         else:

@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import SettingsError, SimulatorError, SimulatorLostError
-from pytest_tarl.external.simulator import KEPT, Simulator, setup
+from pytest_tarl.external.arguments import setup
+from pytest_tarl.external.simulator import KEPT, Simulator
 from pytest_tarl.ros import Ros, message_type
 from tests.held import comes_free, held
 

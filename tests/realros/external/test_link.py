@@ -1,0 +1,73 @@
+"""The order in which the guardian's node passes on what a simulator sent."""
+
+from __future__ import annotations
+
+import os
+from importlib.machinery import PathFinder
+from time import monotonic
+from typing import Any
+
+import pytest
+
+pytestmark = [
+    pytest.mark.skipif(
+        PathFinder.find_spec("rclpy") is None, reason="rclpy is not installed here: make test-ros2"
+    ),
+    pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # by a library of rclpy
+]
+LIMIT = 30.0  # s
+
+
+def test_an_answer_does_not_overtake_the_messages_sent_before_it() -> None:
+    from diagnostic_msgs.srv import SelfTest
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.node import Node
+    from std_msgs.msg import Float64
+
+    from pytest_tarl.external.link import Link
+
+    domain = 150 + os.getpid() % 50
+    context = Context()
+    context.init(args=[], domain_id=domain, initialize_logging=False)
+    node = Node("sim", context=context, use_global_arguments=False, start_parameter_services=False)
+    level = node.create_publisher(Float64, "/level", 100)
+
+    def step(_: Any, response: Any) -> Any:
+        for number in range(20):
+            level.publish(Float64(data=float(number)))
+        return response
+
+    node.create_service(SelfTest, "/step", step)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    events: list[dict[str, Any]] = []
+    link = Link(domain, "/clock", events.append)
+    link.subscribe(["/level"])
+    try:
+        _until(
+            lambda: link.look() or any(one.get("connected") == ["/level"] for one in events), executor, link
+        )
+        _until(lambda: bool(level.get_subscription_count()), executor, link)
+        link.call({"id": 1, "service": "/step", "request": {}})
+        started = monotonic()
+        while not any(one["kind"] == "answer" for one in events) and monotonic() < started + LIMIT:
+            link.look()
+            executor.spin_once(0.05)  # the simulator publishes and answers before the link takes anything
+            if level.get_subscription_count():
+                link.spin(0.01)
+    finally:
+        link.close()
+        executor.shutdown()
+        node.destroy_node()
+        context.try_shutdown()
+    kinds = [one["kind"] for one in events if one["kind"] in ("message", "answer")]
+    assert kinds == ["message"] * 20 + ["answer"]
+    assert all(one["sent"] >= events[-1]["asked"] for one in events if one["kind"] == "message")
+
+
+def _until(done: Any, executor: Any, link: Any) -> None:
+    started = monotonic()
+    while not done() and monotonic() < started + LIMIT:
+        executor.spin_once(0.01)
+        link.spin(0.01)
