@@ -7,8 +7,11 @@ Robots drive past ten places, dry or wet, at 40 sites. Three things differ from 
 - 1 % of the robots drift: from a random mission on, a place costs reward, and some missions fail there
 - the last release, rolled out to 4 of the sites after two thirds of the missions, costs reward at another place
 - a season: at 2 other sites, wet steps cost reward in the last fifth of the missions
+- a repair of the release, rolled out to every other robot of its sites in the last sixth: it undoes the loss at all of
+  them but one, where it does nothing
 
-For comparison, the z-score of each robot's mean reward against the recorded episodes, with |z| > 3 as an alarm.
+Groups are asked for by version and site, by site, and by site and week, since a season is not in the first of them. For
+comparison, the z-score of each robot's and group's mean reward against the recorded episodes, with |z| > 3 as an alarm.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import datetime, timezone
 from pathlib import Path
 from statistics import median
 from time import process_time
@@ -51,6 +55,7 @@ SENSORS = (
 )
 BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and between two missions of a robot, in s
 ALARM = 3.0  # |z|
+REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it does nothing
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,7 @@ class World:
     drift: bool = False
     release: bool = False
     season: bool = False
+    repaired: bool = False
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,7 @@ class Robot:
     onset: int
     released: int
     season: int
+    repaired: int = -1
 
     @property
     def name(self) -> str:
@@ -84,8 +91,11 @@ class Robot:
 
     def world(self, mission: int) -> World:
         """Return what differs in a mission."""
-        began = (0 <= one <= mission for one in (self.onset, self.released, self.season))
-        return World(*began)
+        drift, release, season, repaired = (
+            0 <= one <= mission for one in (self.onset, self.released, self.season, self.repaired)
+        )
+        helped = repaired and self.site != IDLE
+        return World(drift, release and not helped, season, repaired)
 
     def version(self, mission: int, missions: int) -> str:
         """Return the software version of a mission."""
@@ -106,6 +116,7 @@ def fleet(robots: int, missions: int, seed: int) -> list[Robot]:
             onset=onsets[n] if n in drifted else -1,
             released=2 * missions // 3 if n % SITES < 4 else -1,
             season=4 * missions // 5 if n % SITES in (10, 11) else -1,
+            repaired=5 * missions // 6 if n % SITES < 4 and n // SITES % 2 else -1,
         )
         for n in range(robots)
     ]
@@ -148,7 +159,16 @@ def rows(robots: list[Robot], missions: int, seed: int) -> Iterator[tuple[str, R
         for n in range(missions):
             trace, passed = drive(rng, robot.world(n))
             one = sample(trace, episode_seed(seed, robot.name, n), passed, ())
-            yield robot.version(n, missions), Row(robot.name, f"s{robot.site:02}", BEGAN + n * APART, one)
+            yield (
+                robot.version(n, missions),
+                Row(
+                    robot.name,
+                    f"s{robot.site:02}",
+                    BEGAN + n * APART,
+                    one,
+                    REPAIR if robot.world(n).repaired else "",
+                ),
+            )
 
 
 def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Origin) -> tuple[int, float]:
@@ -262,23 +282,68 @@ def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float])
         )
 
 
-def found_groups(told: dict[str, Any], robots: list[Robot], missions: int) -> None:
-    """Print which groups of version and site were found."""
-    kinds: dict[tuple[str, str], set[str]] = {}
+def key_of(by: str, robot: Robot, mission: int, missions: int) -> tuple[str, ...]:
+    """Return the group of a mission."""
+    day = datetime.fromtimestamp(BEGAN + mission * APART, timezone.utc).date()
+    values = {
+        "version": robot.version(mission, missions),
+        "site": f"s{robot.site:02}",
+        "week": "{}-W{:02}".format(*day.isocalendar()[:2]),
+    }
+    return tuple(values[one] for one in by.split(","))
+
+
+def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...], dict[str, float]]:
+    """Return, by group and kind of change in it, the time of the change."""
+    found: dict[tuple[str, ...], dict[str, float]] = {}
     for robot in robots:
         for n in range(missions):
-            world = robot.world(n)
-            key = robot.version(n, missions), f"s{robot.site:02}"
-            kinds.setdefault(key, set()).update(name for name, there in vars(world).items() if there)
+            here = found.setdefault(key_of(by, robot, n, missions), {})
+            for kind in ("release", "season", "drift"):
+                if getattr(robot.world(n), kind):
+                    here[kind] = min(here.get(kind, BEGAN + n * APART), BEGAN + n * APART)
+    return found
+
+
+def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[Robot], missions: int) -> None:
+    """Print which groups were found by verdict, by onset and by z-score, and how far off the onsets are."""
+    truth = changes(by, robots, missions)
+    mean, spread = float(recorded.total.mean()), float(recorded.total.std(ddof=1))
+    named = {*told["groups_drifted"], *told["groups_below"]}
     counts: dict[str, list[int]] = {}
+    away: dict[str, list[float]] = {}
     for one in told["groups"]:
-        there = kinds[one["values"][0], one["values"][1]]
+        there = truth[tuple(one["values"])]
         kind = next((name for name in ("release", "season", "drift") if name in there), "as recorded")
-        row = counts.setdefault(kind, [0, 0])
+        z = (one["reward"] - mean) / spread / np.sqrt(1 / one["missions"] + 1 / recorded.episodes)
+        changed = " ".join(one["values"]) in named
+        row = counts.setdefault(kind, [0, 0, 0, 0])
         row[0] += 1
         row[1] += one["result"] in ("drifted", "degraded")
-    for kind, (number, found) in sorted(counts.items()):
-        print(f"groups with {kind}: {found} of {number} found")
+        row[2] += changed
+        row[3] += abs(z) > ALARM
+        since = one["evidence"].get("world_since") or one["evidence"].get("bound_since")
+        if changed and kind != "as recorded" and since is not None:
+            away.setdefault(kind, []).append(abs(since["time"] - there[kind]) / APART)
+    print(f"| groups by {by} | number | verdict | onset, e-BH | z-score |\n|---|---|---|---|---|")
+    for kind, row in sorted(counts.items()):
+        print(f"| {kind} | " + " | ".join(map(str, row)) + " |")
+    for kind, some in sorted(away.items()):
+        print(f"onset of {kind}: median {median(some):.1f} missions of a robot off, at most {max(some):.1f}")
+
+
+def found_rest(told: dict[str, Any], robots: list[Robot]) -> None:
+    """Print the clusters, the components of the variance and the effects of the repair."""
+    drifted = {one.name for one in robots if one.onset >= 0}
+    for one in told["clusters"]:
+        inside = len(drifted & {*one["robots"]})
+        print(f"cluster of {len(one['robots'])} robots, {inside} of them drifted: cells {one['cells']}")
+    for one in told["components"]["rows"]:
+        print(f"variance, {one['of']}: {one['variance']:.4f} ({one['low']:.4f} to {one['high']:.4f})")
+    for one in told["repairs"]:
+        bound = one["reward_bound"]
+        ends = "" if bound["low"] is None else f" ({bound['low']:+.3f} to {bound['high']:+.3f})"
+        print(f"repair at {' '.join(one['values'])}: {one['verdict']}, {one['reward']:+.3f}{ends}")
 
 
 def scores(told: dict[str, Any], recorded: Sample, data: Path) -> dict[str, float]:
@@ -329,7 +394,7 @@ def main() -> None:
             used, spent = stored(to, robots[:size], order.missions, order.seed, about)
             to.write(f"recordings/{about.recording}.npz", path.read_bytes())
             missions = size * order.missions
-            query, out = command("fleet", data, "--json", "-")
+            query, out = command("fleet", data, "--json", "-", "--html", folder / "fleet.html")
             print(
                 f"{missions:,} missions: {used / missions:.0f} bytes a mission, writing {missions / spent:,.0f} "
                 f"missions a CPU second, query {query:.1f} CPU seconds, peak {peak():.0f} MB"
@@ -337,7 +402,13 @@ def main() -> None:
         told = json.loads(out)
         print(f"named at a false discovery rate of at most {100 * told['false_discovery_rate']:g} %:")
         found_robots(told, robots, scores(told, fixture.sample, data))
-        found_groups(told, robots, order.missions)
+        found_groups("version,site", told, fixture.sample, robots, order.missions)
+        for by in ("site", "site,week"):
+            told = json.loads(command("fleet", data, "--json", "-", "--by", by)[1])
+            found_groups(by, told, fixture.sample, robots, order.missions)
+            if by == "site":
+                found_rest(told, robots)
+        print(f"page: {(folder / 'fleet.html').stat().st_size / 1000:.0f} kB")
 
 
 if __name__ == "__main__":
