@@ -1,9 +1,10 @@
-"""The answer of `tarl fleet` as JSON."""
+"""The answer of `tarl fleet` as JSON, see `fleet.schema.json`."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from importlib import resources
 from typing import Any
 
 from pytest_tarl.fleet.decomposition import Decomposition
@@ -22,6 +23,14 @@ EVIDENCE = ("world", "bound", "world_since", "bound_since")
 def text(answer: Answer) -> str:
     """Return the document; numbers that are not finite are null."""
     return json.dumps(document(answer), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of the document."""
+    found: dict[str, Any] = json.loads(
+        resources.files(__package__).joinpath("fleet.schema.json").read_text("utf-8")
+    )
+    return found
 
 
 def document(answer: Answer) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from threading import Event
 from typing import Any
 
 import duckdb
+import jsonschema
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -195,6 +196,7 @@ def test_large_groups_are_compared_by_a_part_that_does_not_depend_on_files(
 
 def test_since_and_robot_choose_missions(folder: Path) -> None:
     found = answer(Question(str(folder / "data"), since=date(2024, 10, 14), robot="r1"))
+    jsonschema.validate(document.document(found), document.schema())
     assert found.missions == EACH - 40
     assert [one.name for one in found.robots.every] == ["r1"]
     totals = [one.total for one in found.lowest]
@@ -232,6 +234,8 @@ def test_the_command_reports_and_fails_by_its_rules(
     assert "1 of 4 robots: missions are below a recorded bound (false discovery rate at most 5 %" in out
     assert "r3: " in out
     told = json.loads(result.read_text())
+    jsonschema.Draft202012Validator.check_schema(document.schema())
+    jsonschema.validate(told, document.schema())
     assert told["below"] == [DRIFTED]
     assert abs(told["robots"][3]["bound_since"]["mission"] - 41) <= 3
     assert main(["fleet", data, "--robot", "r0", "--fail-if", "robot", "--fail-if", "drifted"]) == 0

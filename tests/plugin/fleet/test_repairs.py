@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 
 from pytest_tarl.commands.cli import main
+from pytest_tarl.fleet import document
 from pytest_tarl.fleet.repairs import Effect, effect, strata
 from tests.plugin.monitoring import missions
 
@@ -97,7 +100,11 @@ def test_the_command_tells_which_repair_helps_which_group(
             ]
             assert main([*argv, "--site", site, *(["--repair", "guard-1"] if repaired else [])]) == 0
     capsys.readouterr()
-    assert main(["fleet", data, "--by", "site"]) == 0
+    result = tmp_path / "fleet.json"
+    assert main(["fleet", data, "--by", "site", "--json", str(result)]) == 0
     out = capsys.readouterr().out
+    jsonschema.validate(told := json.loads(result.read_text()), document.schema())
+    assert [one["verdict"] for one in told["repairs"]] == ["no effect shown", "helps"]
+    assert [one["of"] for one in told["components"]["rows"]][3] == "repair"
     assert "guard-1 at dry: no effect shown" in out
     assert "guard-1 at wet: helps, reward +" in out
