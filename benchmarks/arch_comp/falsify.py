@@ -1,0 +1,191 @@
+"""Simulations until a formula of ARCH-COMP's falsification category is violated, by a stress run and by chance.
+
+    python benchmarks/arch_comp/falsify.py [FORMULA ...] [--seeds 10] [--limit 300]
+
+Inputs are piecewise constant (instance 2 of the category): AT has 6 values each of throttle and brake over 30 s, CC
+20 each over 100 s; WT has a value of the wind every 5 s over 630 s, linear between them. Each value is a direction of
+the space. A drift is one simulation; repeated episodes of it are not counted, since nothing is random.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import fmean, median
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from arch_formulas import AUTOMATIC_TRANSMISSION, CHASING_CARS, WIND_TURBINE, Outputs, Robustness
+from arch_models import (
+    AT_STEP,
+    CC_STEP,
+    WT_STEP,
+    Signal,
+    automatic_transmission,
+    chasing_cars,
+    wind_turbine,
+)
+
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.seeds import generator
+from pytest_tarl.spaces import Point, Space, Span
+from pytest_tarl.stressing.combinations import Together
+from pytest_tarl.stressing.evaluating import Evaluator
+from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.guarantee import Guarantee
+from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.search import explore
+
+_NONE = np.zeros(0, np.int32)
+
+
+class FalsifiedError(Exception):
+    """The formula is violated, or the limit of the simulations is reached; ends the search."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model with its inputs: for each, the number of values, the range, and the nominal value."""
+
+    run: Callable[[Signal], Outputs]
+    seconds: float
+    step: float
+    inputs: tuple[tuple[int, float, float, float], ...]
+    formulas: Mapping[str, Robustness]
+    linear: bool = False
+
+    @property
+    def space(self) -> Space:
+        """Return a direction for each value of each input."""
+        spans = {
+            f"u{number}_{place}": Span(low, high, usual)
+            for number, (count, low, high, usual) in enumerate(self.inputs)
+            for place in range(count)
+        }
+        return Space(spans, {})
+
+    def signals(self, values: Sequence[float]) -> Signal:
+        """Return the inputs over time, shape (steps, inputs)."""
+        steps = round(self.seconds / self.step) + 1
+        columns, first = [], 0
+        for count, *_ in self.inputs:
+            own = np.array(values[first : first + count])
+            first += count
+            if self.linear:
+                columns.append(np.interp(np.linspace(0, count - 1, steps), np.arange(count), own))
+            else:
+                columns.append(own[np.minimum(np.arange(steps) * count // steps, count - 1)])
+        return np.column_stack(columns)
+
+
+MODELS = (
+    Model(
+        automatic_transmission,
+        30.0,
+        AT_STEP,
+        ((6, 0.0, 100.0, 50.0), (6, 0.0, 325.0, 0.0)),
+        AUTOMATIC_TRANSMISSION,
+    ),
+    Model(chasing_cars, 100.0, CC_STEP, ((20, 0.0, 1.0, 0.5), (20, 0.0, 1.0, 0.5)), CHASING_CARS),
+    Model(wind_turbine, 630.0, WT_STEP, ((127, 8.0, 16.0, 12.0),), WIND_TURBINE, linear=True),
+)
+
+
+@dataclass
+class Simulations:
+    """A rollout that simulates each drift once, and stops at a violation or after `limit` simulations."""
+
+    model: Model
+    robustness: Robustness
+    limit: int
+    known: dict[tuple[float, ...], float] = field(default_factory=dict)
+    workers: int = 1
+
+    def value(self, point: Point) -> float:
+        """Return the robustness at a point. Raise FalsifiedError."""
+        values = tuple(point.values())
+        if values not in self.known:
+            if len(self.known) >= self.limit:
+                raise FalsifiedError
+            self.known[values] = self.robustness(self.model.run(self.model.signals(values)))
+            if self.known[values] < 0.0:
+                raise FalsifiedError
+        return self.known[values]
+
+    @property
+    def falsified(self) -> int | None:
+        """Return the number of simulations of a search that found a violation; else None."""
+        return len(self.known) if min(self.known.values()) < 0.0 else None
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode, whose reward is the robustness."""
+        assert plan.point is not None
+        total = self.value(plan.point)
+        trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
+        return EpisodeRun(plan, trace, total >= 0.0)
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Return an episode that runs when its result is requested."""
+        return Deferred(self, plan)
+
+
+def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
+    """Return the simulations that a stress run needs; None if the limit does not suffice."""
+    runs, space = Simulations(model, robustness, limit), model.space
+    try:
+        usual = runs.value(space.nominal)
+        given = Guarantee(0.95, max(usual, 1e-9), (usual,) * 100, 1.0)
+        evaluator = Evaluator(runs, space, "inputs", given, seed, 10**6, lambda *_: None)
+        explore(evaluator, Together(0.01, [Curve(ray) for ray in rays(space, {})]))
+    except FalsifiedError:
+        pass
+    return runs.falsified
+
+
+def by_chance(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
+    """Return the simulations that uniformly random inputs need; None if the limit does not suffice."""
+    runs, draws = Simulations(model, robustness, limit), generator(seed, "random")
+    spans = model.space.directions
+    try:
+        while True:
+            runs.value({name: float(draws.uniform(one.low, one.high)) for name, one in spans.items()})  # type: ignore[union-attr]
+    except FalsifiedError:
+        return runs.falsified
+
+
+def cell(found: Sequence[int | None]) -> str:
+    """Return how many searches found a violation, and their mean and median number of simulations."""
+    known = [one for one in found if one is not None]
+    if not known:
+        return f"0 of {len(found)}"
+    return f"{len(known)} of {len(found)}, {fmean(known):.1f}, {median(known):g}"
+
+
+def main() -> None:
+    """Print a line per formula."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("formulas", nargs="*")
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--limit", type=int, default=300)
+    arguments = parser.parse_args()
+    print("| formula | robustness at nominal | stress | random |\n|---|---|---|---|")
+    for model in MODELS:
+        for name, robustness in model.formulas.items():
+            if arguments.formulas and name not in arguments.formulas:
+                continue
+            usual = robustness(model.run(model.signals([*model.space.nominal.values()])))
+            cells = [
+                cell([search(model, robustness, seed, arguments.limit) for seed in range(arguments.seeds)])
+                for search in (stressed, by_chance)
+            ]
+            print(f"| {name} | {usual:.3g} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
