@@ -4,12 +4,12 @@
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
 
-The worlds of stress_worlds.py and, not used in development, stress_worlds_2.py are formulas. Each task of benchmarks/drift has its own drift, from the nominal value to
-that of the task, and three faults of the topic of its first numeric sensor: a bias, a latency and a dropout, of the
-same relative size in every task. Each method may run BUDGET episodes. A peer learns of each drift that it proposes the
-distance from nominal if the guarantee fails on PROBES common seeds, and otherwise the margin above the largest
-distance. A failure counts if fresh seeds confirm it, free of charge; each method may offer its nearest OFFERS failing
-drifts, of which the k-th is tested at RISK / k(k + 1).
+The worlds of stress_worlds.py and, not used in development, stress_worlds_2.py are formulas. Each task of
+benchmarks/drift has its own drift, from the nominal value to that of the task, and three faults of the topic of its
+first numeric sensor: a bias, a latency and a dropout, of the same relative size in every task. Each method may run
+BUDGET episodes. A peer learns of each drift that it proposes the distance from nominal if the guarantee fails on PROBES
+common seeds, and otherwise the margin above the largest distance. A failure counts if fresh seeds confirm it, free of
+charge; each method may offer its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1).
 """
 
 from __future__ import annotations

@@ -108,11 +108,30 @@ class Nearest:
             for depth in depths
         ]
         clearly = [coordinates.point(vector)] if self.evaluator.measured(best)[0] <= -DEEP else []
-        return [*clearly, *(coordinates.point(vector * shares[place]) for place in dict.fromkeys(places))]
+        near = [*clearly, *(coordinates.point(vector * shares[place]) for place in dict.fromkeys(places))]
+        return [*near, *self._farther(max(map(self._distance, near)))]
 
     def map(self) -> MarginMap | None:
         """Return the map of margins by the model of all drifts that were tried."""
         return margin_map(self.curves, self._model(), self._nominal())
+
+    def _farther(self, limit: float) -> list[Point]:
+        """Return up to three drifts in several directions that were seen to fail beyond a distance, the nearest first.
+
+        They are candidates if none of the nearer ones is confirmed, because the model or few episodes misled there.
+        """
+        usual, coordinates = self.evaluator.space.nominal, self._nominal()
+        found = [
+            point
+            for point in self.tried
+            if self._distance(point) > limit
+            and coordinates.covers(point)
+            and sum(point[name] != usual[name] for name in usual) > 1
+            and self.evaluator.examine(point, SIZES[0]).result == "fails"
+        ]
+        found.sort(key=lambda point: (self._distance(point), *point.values()))
+        places = dict.fromkeys((0, len(found) // 4, len(found) // 2))
+        return [found[place] for place in places if place < len(found)]
 
     def _clearly_fails(self, point: Point) -> bool:
         """Return whether the episodes at a point show a failure, whatever the model makes of its neighbours."""

@@ -15,6 +15,7 @@ from pytest_tarl.stressing.coordinates import Coordinates
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.generating import generate
+from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.prediction import Prediction, Sample
 from pytest_tarl.stressing.rays import distance, rays
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
@@ -125,3 +126,15 @@ def test_without_the_extra_the_message_names_it(monkeypatch: pytest.MonkeyPatch)
     assert extras.missing_stress("--tarl-stress") is None
     monkeypatch.setattr(extras, "STRESS", ("cma", "no_such_package"))
     assert "--tarl-stress needs no_such_package" in str(extras.missing_stress("--tarl-stress"))
+
+
+def test_clearly_failing_drifts_are_candidates_where_the_model_misled_nearby() -> None:
+    space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
+    evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.9, 1.0), space)
+    points = [{"a": 0.1 * number, "b": 0.1 * number} for number in range(1, 10)]
+    nearest = Nearest(evaluator, [], [*points[::-1], {"a": 1.0, "b": 0.0}, {"a": 0.2, "b": 0.3}])
+    for point in nearest.tried:
+        evaluator.examine(point, 4)
+    assert nearest._farther(0.1) == [points[4], points[5], points[6]]
+    assert nearest._farther(distance(space, points[7])) == [points[8]]
+    assert nearest._farther(2.0) == []
