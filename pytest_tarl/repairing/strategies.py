@@ -71,13 +71,13 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:
-    """Return operands that decide what the nodes publish, or set when, plainest first.
+    """Return operands that set when the nodes publish, or decide what, plainest first.
 
     They are in no flow, so no slice ranks them.
     """
     analysis = order.analysis
     known = set(operands(order))
-    found = (o for step in (*analysis.deciding, *analysis.timing) for o in analysis.operands(step.site))
+    found = (o for step in (*analysis.timing, *analysis.deciding) for o in analysis.operands(step.site))
     return tuple(sorted(dict.fromkeys(one for one in found if one not in known), key=writing))
 
 
