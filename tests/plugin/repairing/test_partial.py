@@ -65,6 +65,6 @@ def test_a_candidate_without_a_certain_gain_is_not_a_partial_repair(tank: pytest
         "        level += 0.0 if tarl_drift else 0.1 * pump *",
     )
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
-    tank.runpytest(*REPAIR)
+    tank.runpytest(*REPAIR, "--tarl-budget=20")
     assert "partial" not in result(tank)["repair"]
     assert not list(tank.path.glob(".tarl/patches/*"))

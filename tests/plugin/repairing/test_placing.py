@@ -10,6 +10,7 @@ import pytest
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 REPAIR = (*ONLINE, "--tarl-repair", "--tarl-drift=worn", "-p", "no:cacheprovider")
+pytestmark = pytest.mark.usefixtures("quick_acceptance")
 TARL = (sys.executable, "-m", "pytest_tarl")
 IN_CLASS = """\
 import rospy
