@@ -38,7 +38,7 @@ def main() -> None:
         failed = probe(given.probe, given.probes)
         print(f"| probe {given.probe} | {given.probes} | {failed} | {monotonic() - begun:.0f} |", flush=True)
         failures += failed
-        for suite in sorted((ROOT / "tests" / "realros").glob("test_*.py")) if given.suites else ():
+        for suite in sorted((ROOT / "tests" / "realros").rglob("test_*.py")) if given.suites else ():
             begun = monotonic()
             failed = sum(not passes(suite) for _ in range(given.suites))
             print(f"| {suite.name} | {given.suites} | {failed} | {monotonic() - begun:.0f} |", flush=True)

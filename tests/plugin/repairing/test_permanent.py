@@ -36,6 +36,7 @@ def worn(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_a_permanent_drift_is_repaired_unconditionally_and_the_old_world_is_shown(
     worn: pytest.Pytester,
 ) -> None:
@@ -65,6 +66,7 @@ def test_the_same_repair_of_a_temporary_drift_is_refused_with_two_suggestions(wo
     assert "Declare a sensor that distinguishes the two worlds" in page.read_text()
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: pytest.Pytester) -> None:
     worn.runpytest(*REPAIR, *WORN)
     (patch,) = worn.path.glob(".tarl/patches/*.patch")
@@ -144,6 +146,7 @@ def test_keeps_full(tarl, tarl_drift):
 """
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 @pytest.mark.parametrize(
     ("declared", "words"),
     [

@@ -84,6 +84,7 @@ def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: 
     assert "it works for sizes from" in told or "a part of the drift's range" in told
 
 
+@pytest.mark.usefixtures("quick_acceptance")
 def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
     ranged.runpytest(*RECORD)
     ranged.runpytest(*REPAIR)
