@@ -7,18 +7,20 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from random import SystemRandom
+from time import monotonic, sleep
 
 import pytest
 
+from pytest_tarl.external.domain import Domain
 from pytest_tarl.learning.fixture import load
-from pytest_tarl.logged import missions
+from pytest_tarl.logged import Mission, missions
 from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.realros.master import Master
 from tests.plugin.tank import NODE, RECORD, TEST
 from tests.realros.probes.running import installed
 
 MISSIONS, STEPS = 3, 20
+BETWEEN = 0.3  # s between messages on different topics, whose order of arrival ROS does not determine
 ROS1_WORLD = """
 import rospy
 from std_msgs.msg import Float64, String
@@ -50,14 +52,14 @@ while not heard or not all(one.get_subscription_count() for one in publishers):
 MISSIONS_OF_IT = f"""
 for number in range({MISSIONS}):
     mission.publish(String(data="begin"))
-    pause(0.05)
+    pause({BETWEEN})
     for step in range({STEPS}):
         level.publish(Float64(data=step / {STEPS}))
         pause(0.02)
         monitor.publish(Float64(data=-step / {STEPS}))
-    pause(0.05)
+    pause({BETWEEN})
     mission.publish(String(data="succeeded"))
-    pause(0.05)
+    pause({BETWEEN})
 print("over", flush=True)
 pause(1.0)
 """
@@ -107,23 +109,31 @@ def test_missions_of_a_real_node_are_written_to_the_log(
     assert pytester.runpytest_subprocess(*RECORD).ret == 0
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a killed process leaves nothing in /dev/shm
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(SystemRandom().randrange(1, 100)))
+    domain = Domain()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.number))
     master = Master() if generation == "ros1" else None
     try:
-        log = observed(folder, ROS1_WORLD if generation == "ros1" else ROS2_WORLD, ending)
+        observed(folder, ROS1_WORLD if generation == "ros1" else ROS2_WORLD, ending)
     finally:
+        domain.release()
         if master is not None:
             master.close()
-    (fixture,) = folder.glob(".tarl/utility/*.npz")
-    found = missions(log, load(fixture))
+    found = written(folder)
     assert [one.ended for one in found] == [True] * MISSIONS
     for one in found:
         assert sum(unpacked(chunk["reward"], "float64").size for chunk in one.chunks) == STEPS
         assert sum(unpacked(chunk["site"], "int32").size for chunk in one.chunks) > 0
 
 
-def observed(folder: Path, world: str, ending: signal.Signals) -> Path:
-    """Run node and world until all missions have ended, then end the node; return the log."""
+def written(folder: Path) -> list[Mission]:
+    """Return the missions in the log so far."""
+    (fixture,) = folder.glob(".tarl/utility/*.npz")
+    log = folder / ".tarl/missions.log"
+    return missions(log, load(fixture)) if log.exists() else []
+
+
+def observed(folder: Path, world: str, ending: signal.Signals) -> None:
+    """Run node and world until all missions have ended, then end the node."""
     options = ["--reward-topic", "/monitor", "--mission-topic", "/mission"]
     command = [sys.executable, "-W", "ignore", "-m", "pytest_tarl", "observe", "keeper.py", *options]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -131,10 +141,12 @@ def observed(folder: Path, world: str, ending: signal.Signals) -> Path:
         try:
             text = world + MISSIONS_OF_IT
             played = subprocess.run(
-                [sys.executable, "-W", "ignore", "-c", text], capture_output=True, text=True, timeout=60
+                [sys.executable, "-W", "ignore", "-c", text], capture_output=True, text=True, timeout=600
             )
             assert "over" in played.stdout, played.stderr
+            deadline = monotonic() + 60
+            while sum(one.ended for one in written(folder)) < MISSIONS and monotonic() < deadline:
+                sleep(0.1)
         finally:
-            node.send_signal(ending)  # one second after the last message, when everything has been written
-            node.wait(20)
-    return folder / ".tarl/missions.log"
+            node.send_signal(ending)
+            node.wait(300)
