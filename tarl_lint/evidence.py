@@ -137,7 +137,7 @@ class Evidence:
 
     def source(self, path: str, pos: Pos) -> Source:
         """Return a subscription by its place."""
-        return self.tracer.source(self.machine.sources[path, pos])
+        return self.tracer.ends.source(self.machine.sources[path, pos])
 
     def finding(self, code: str, span: Span, message: str, about: str) -> Finding:
         """Return a hazard. `about` identifies it without lines and names of local variables."""

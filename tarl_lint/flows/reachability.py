@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from tarl_lint.flows.call_chains import entrances, made_alongside
 from tarl_lint.flows.context_steps import Surroundings
+from tarl_lint.flows.ends import Ends
 from tarl_lint.flows.shortest_path import shortest_path
 from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.flows.topological_order import before_loops, in_order
@@ -45,6 +46,7 @@ class Tracer:
         self.machine = machine
         self.graph = machine.graph
         self.texts = Texts(machine.modules)
+        self.ends = Ends(self.texts, machine.sinks.values())
         self.surroundings = Surroundings(self.texts)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
@@ -57,9 +59,9 @@ class Tracer:
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
         found: list[Flow] = []
-        sources = [(self.source(r), r, self.reach(r)) for r in self.machine.sources.values()]
+        sources = [(self.ends.source(r), r, self.reach(r)) for r in self.machine.sources.values()]
         for record in self.machine.sinks.values():
-            sink = self.sink(record)
+            sink = self.ends.sink(record)
             for source, origin, reach in sources:
                 flow = self.flow(source, origin, reach, sink, record)
                 if flow is not None:
@@ -305,59 +307,11 @@ class Tracer:
             role = "condition"
         return Step(text.site(written), span, text.code(span), role, dependence)
 
-    # --- ends ---------------------------------------------------------------------------------------------
-
-    def source(self, record: SourceRecord) -> Source:
-        """Return a source in the form of the public model."""
-        topics = tuple(sorted(record.topics))
-        callback = ", ".join(sorted(record.callbacks))
-        name = ", ".join(topics) or f"line {record.pos[0]}"
-        return Source(
-            id=f"{record.module}:{record.qualname or '<module>'}:{name}:{callback or record.api}",
-            span=self._span(record.path, record.pos),
-            topics=topics,
-            type=" | ".join(sorted(record.types)),
-            callback=callback,
-            api=record.api,
-            registered=self._spans(record.registered or {(record.path, record.pos)}),
-            via=self._spans(record.via),
-            module=record.module,
-            qualname=record.qualname,
-        )
-
-    def sink(self, record: SinkRecord) -> Sink:
-        """Return a sink in the form of the public model."""
-        topics = tuple(sorted(record.topics))
-        name = ", ".join(topics) or f"line {record.pos[0]}"
-        same = sorted(
-            r.pos for r in self.machine.sinks.values() if (r.module, r.qualname, r.topics) == _kin(record)
-        )
-        ordinal = f"#{same.index(record.pos) + 1}" if len(same) > 1 else ""
-        return Sink(
-            id=f"{record.module}:{record.qualname or '<module>'}:{name}{ordinal}",
-            span=self._span(record.path, record.pos),
-            topics=topics,
-            type=" | ".join(sorted(record.types)),
-            api=record.api,
-            module=record.module,
-            qualname=record.qualname,
-        )
-
-    def _span(self, path: str, pos: tuple[int, int, int, int]) -> Span:
-        return self.texts[path].stretch(pos)
-
-    def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
-        return tuple(sorted(self._span(*p) for p in places))
-
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
     """Return a path with its publish call last; functions called in its arguments otherwise come after it."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
-
-
-def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:
-    return record.module, record.qualname, record.topics
 
 
 def _reversed(edges: Sequence[set[int]]) -> list[list[int]]:

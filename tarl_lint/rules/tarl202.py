@@ -203,8 +203,8 @@ def _add(
     for record in records:
         for place in magnitudes.computed(record):
             sources, commands = found.setdefault(place, (set(), set()))
-            sources.add(evidence.tracer.source(origin))
-            commands.add(evidence.tracer.sink(record))
+            sources.add(evidence.tracer.ends.source(origin))
+            commands.add(evidence.tracer.ends.sink(record))
 
 
 def _hazardous(flow: Flow) -> bool:

@@ -134,7 +134,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         names = {name for stores in kept for name in stores or ()}
         if any(stores is None for stores in kept) or (names and not _unread(names, functions, evidence)):
             continue
-        source = evidence.tracer.source(record)
+        source = evidence.tracer.ends.source(record)
         reason = "ignores it"
         if names:
             reason = f"stores it in {', '.join(sorted(names))}, which nothing reads"

@@ -128,7 +128,7 @@ def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Findi
 
 def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:
     for record in machine.sources.values():
-        source = tracer.source(record)
+        source = tracer.ends.source(record)
         if record.kind == "topic":
             qos = of_call(outlines[record.path], record.pos) if record.api.startswith("rclpy") else None
             yield Endpoint("subscribes", source.topics, source.type, source.span, qos, source.qualname)

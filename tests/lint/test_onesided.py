@@ -177,7 +177,7 @@ INVALID = VALID = ("",)
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
     for record in evidence.machine.sources.values():
-        source = evidence.tracer.source(record)
+        source = evidence.tracer.ends.source(record)
         yield evidence.finding(CODE, source.span, "heard", "heard")
 '''
 
