@@ -23,7 +23,7 @@ from tarl_lint.interpret.call_contexts import ROOT_CALL
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root
+from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import Obj, pointer
 from tarl_lint.read.source import Module, parse
 from tarl_lint.settings.config import Config

@@ -13,7 +13,8 @@ from tarl_lint.memory import heap, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.store import BORN, Delta
+from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
     BOTTOM,
     NO_CONSTANTS,

@@ -11,7 +11,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.node_starts import STARTING, definitions, registers, starts, starts_node
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency, userdata
-from tarl_lint.memory.store import Root
+from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage
 from tarl_lint.models.ros import subscriptions
 

@@ -10,7 +10,8 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.lower_statements import lower_module
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root, Store
+from tarl_lint.memory.shared import Root
+from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
 from tarl_lint.prefilter.by_words import endpoint_words

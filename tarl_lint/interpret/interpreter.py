@@ -16,7 +16,8 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root, Shared, Store
+from tarl_lint.memory.shared import Root, Shared
+from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord

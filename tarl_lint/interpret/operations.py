@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root
+from tarl_lint.memory.shared import Root
 from tarl_lint.memory.values import (
     NONE,
     Consts,

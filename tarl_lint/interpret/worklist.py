@@ -7,7 +7,8 @@ from collections.abc import Callable, Set
 from tarl_lint.interpret.budget import EXCHANGED
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root, private
+from tarl_lint.memory.shared import Root
+from tarl_lint.memory.store import private
 from tarl_lint.memory.values import ABSENT, Key
 
 

@@ -11,7 +11,8 @@ from typing import Final
 
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.store import BORN, Delta
+from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Obj, Value
 
 TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # kinds of objects that can be temporary

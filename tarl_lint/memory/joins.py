@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
-from tarl_lint.memory.store import BORN, Delta
+from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
     ABSENT,
     BOTTOM,

@@ -10,7 +10,7 @@ from collections.abc import Hashable
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import NEW
-from tarl_lint.memory.store import BORN
+from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7

@@ -1,136 +1,18 @@
-"""Memory: the state of one root's run in layers, and the stores of all runs."""
+"""Memory: the state of one root's run, in layers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.values import ABSENT, DATA, Key, Obj, Value, join
+from tarl_lint.memory.shared import Root, Shared
+from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
 ADDING = frozenset(["*", "<keys>", "<length>"])  # fields with weak updates only
-BORN = "<born>"  # pseudo-field that marks an existing object
-
-
-@dataclass(slots=True, eq=False)
-class Root:
-    """A unit of the worklist: a module, callback, timer, thread or entry point.
-
-    With `once`, it never runs concurrently with itself.
-    """
-
-    key: Hashable
-    kind: str
-    name: str = ""
-    once: bool = False
-    function: ir.Function | None = None  # its function, if known
-    maker: Root | None = None  # the root that added it
-    program: str = ""  # the file whose budget it uses
-    number: int = 0  # in order of addition
-    heeds: set[Key] = field(default_factory=set)  # keys that it stores itself and reads after a wait
-
-    def generations(self) -> int:
-        """Return the number of ancestors, by `maker`, with the same function."""
-        count, maker = 0, self.maker
-        while maker is not None:
-            count += maker.function is self.function
-            maker = maker.maker
-        return count
-
-
-NOBODY: set[Root] = set()
-
-
-@dataclass(slots=True)
-class Shared:
-    """The stores of all roots: at their ends, and at their waits (`pauses`)."""
-
-    ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
-    pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
-    readers: dict[Key, set[Root]] = field(default_factory=dict)
-    watchers: dict[Obj, set[Root]] = field(default_factory=dict)
-    doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
-    dirty: set[Root] = field(default_factory=set)
-    edition: int = 0  # number of changes of a class, a `from … import *` or a `__dict__`
-
-    def entry(self, key: Key, root: Root) -> Value | None:
-        """Return the initial value of a key for a root: the join of the stores of all other roots."""
-        readers = self.readers.get(key)
-        if readers is None:
-            readers = self.readers[key] = set()
-        readers.add(root)
-        result: Value | None = None
-        ends = self.ends.get(key)
-        if ends is not None:
-            for owner, value in ends.items():
-                if owner is not root or not root.once:
-                    result = value if result is None else join(result, value)
-        pauses = self.pauses.get(key)
-        if pauses is not None:
-            for owner, value in pauses.items():
-                if owner is not root:
-                    result = value if result is None else join(result, value)
-        return result
-
-    def others(self, key: Key, root: Root) -> Value | None:
-        """Return the join of the stores that other roots may make while this one waits."""
-        result: Value | None = None
-        for table in (self.ends, self.pauses):
-            for owner, value in table.get(key, {}).items():
-                if owner is not root:
-                    result = value if result is None else join(result, value)
-        self.readers.setdefault(key, set()).add(root)
-        return result
-
-    def look(self, obj: Obj, root: Root) -> None:
-        """Register a root as reader of the set of an object's fields."""
-        self.watchers.setdefault(obj, set()).add(root)
-
-    def load(self, obj: Obj, root: Root) -> None:
-        """Mark an object, and all that contain it, as holding data."""
-        pending = [obj]
-        while pending:
-            current = pending.pop()
-            if current.laden:
-                continue
-            current.laden = True
-            current.changed(DATA)
-            self.dirty |= self._others(self.doubters.pop(current, None), root)
-            pending += current.inside
-            pending += current.subs.values()
-            pending += [current.parent] if current.parent is not None else []
-            current.inside.clear()
-
-    def _appeared(self, obj: Obj, root: Root) -> None:
-        """Mark the roots dirty that have read the fields of an object, or of an enclosing one, without this field."""
-        inside: Obj | None = obj
-        while inside is not None:
-            self.dirty |= self._others(self.watchers.get(inside), root)
-            inside = inside.parent
-
-    def _others(self, roots: set[Root] | None, root: Root) -> set[Root]:
-        """Return the readers to notify of a root's change; itself only if it can run concurrently with itself."""
-        if not roots:
-            return NOBODY
-        return roots - {root} if root.once else roots
-
-    def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
-        """Store a root's value in a table; mark its readers dirty if it changed."""
-        owners = table.setdefault(key, {})
-        before = owners.get(root)
-        after = value if before is None else join(before, value)
-        if key[1] == BORN:  # readers of the object have read the field that holds it
-            owners[root] = after
-            return
-        if not owners:
-            self._appeared(key[0], root)
-        if before is None or after != before:
-            owners[root] = after
-            self.dirty |= self._others(self.readers.get(key), root)
 
 
 def private(key: Key) -> bool:

@@ -12,7 +12,8 @@ from tarl_lint.memory import heap, joins, reachable_data, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.store import BORN, Root, Store
+from tarl_lint.memory.shared import BORN, Root
+from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import ABSENT, BOTTOM, MAX_CONSTS, Value, const, join, pointer
 from tarl_lint.read.source import Module

@@ -14,7 +14,8 @@ from tarl_lint.interpret import replay
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory import recency, updates
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.store import Delta, Root, Store
+from tarl_lint.memory.shared import Root
+from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MANY, MANY_CARRIERS
 from tarl_lint.memory.values import Value, pointer
 from tarl_lint.model import Flow

@@ -12,7 +12,8 @@ from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory import recency
 from tarl_lint.memory.reads import NEW, Reads
 from tarl_lint.memory.same_reads import unchanged
-from tarl_lint.memory.store import BORN, Root, Shared, Store
+from tarl_lint.memory.shared import BORN, Root, Shared
+from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Graph
 from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
 from tarl_lint.read.source import Module

@@ -17,7 +17,7 @@ from tarl_lint.memory import heap, recency
 from tarl_lint.memory.abstract_gc import together
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reachable_data import in_order
-from tarl_lint.memory.store import Root
+from tarl_lint.memory.shared import Root
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
 from tarl_lint.models import sizes

@@ -10,7 +10,7 @@ from typing import Final
 from tarl_lint.evidence import Evidence
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root
+from tarl_lint.memory.shared import Root
 from tarl_lint.trees import walk
 
 MAIN: Final = "main"
