@@ -9,6 +9,7 @@ from tarl_lint.interpret.budget import HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_ST
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.lower_statements import lower_module
+from tarl_lint.memory import carry_nodes
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.store import Store
@@ -79,7 +80,7 @@ class Linker(Interpreter):
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()
-        self.graph.settle()
+        carry_nodes.settle(self.graph)
 
     def replay(self) -> None:
         """Run every root once more, observed by a probe."""

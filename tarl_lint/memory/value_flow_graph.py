@@ -337,30 +337,6 @@ class Graph:
         self.passed_on[carrier, item] = node
         return node
 
-    def settle(self) -> None:
-        """Connect every carry node to its item through the carriers before it."""
-        done = self.made = 0
-        while done < len(self.arriving):
-            pending = list(islice(self.arriving, done, None))
-            done += len(pending)
-            for node, item in pending:
-                carrier = self.carried[node][0]
-                self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
-        self._feed()
-
-    def _feed(self) -> None:
-        """Connect cycles of carry nodes to their origin, so that each has an entry."""
-        circles: dict[int, list[int]] = {}
-        for node, (_, origin) in self.carried.items():
-            circles.setdefault(origin, []).append(node)
-        for origin, nodes in circles.items():
-            fed, rest = {origin}, nodes
-            while news := [n for n in rest if not self.data[n].isdisjoint(fed)]:
-                fed.update(news)
-                rest = [n for n in rest if n not in fed]
-            for node in rest:
-                self.flow([origin], node)
-
     def hold(self, carrier: int, content: Nodes) -> None:
         """Record the content of an object that `carrier` passes on."""
         if not content:
