@@ -6,7 +6,7 @@ from tarl_lint.interpret import expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
-from tarl_lint.models import library
+from tarl_lint.models import objects
 from tarl_lint.read.source import Module
 
 
@@ -39,7 +39,7 @@ def _module(ctx: Interpreter, name: str, importer: Module) -> Value | None:
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
     """Return the value of an unset field; for a package, its submodules."""
-    value = library.default(ctx, obj, name)
+    value = objects.default(ctx, obj, name)
     if value is BOTTOM and obj.kind == "module":
         inner = ctx.module_objects.get(f"{obj.name}.{name}")
         return pointer(inner) if inner is not None else UNKNOWN

@@ -1,0 +1,84 @@
+"""Builtins about objects and classes: `type`, `super`, weak references; values of unset fields."""
+
+from __future__ import annotations
+
+from tarl_lint import catalog
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import heap, recency, userdata
+from tarl_lint.memory.userdata import MACHINE_FIELD
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, lineage, pointer
+from tarl_lint.models import command_line, containers
+
+
+def blank_object(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the value of `object.__new__(cls)`."""
+    classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
+    return Value(pts=frozenset(call_contexts.blank_instance(ctx, c, it.frame, it.call) for c in classes))
+
+
+def weak_reference(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a weak reference, which returns its referent when called."""
+    obj = recency.allocate(ctx, "weak", it.frame, ("made", it.call.slot))
+    obj.describe(it.arguments[0][0] if it.arguments[0] else UNKNOWN)
+    return pointer(obj)
+
+
+def same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return the first argument unchanged."""
+    return it.arguments[0][0] if it.arguments[0] else UNKNOWN
+
+
+def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return the class of analysed objects; a type is not data."""
+    classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
+    found = frozenset(c for c in classes if isinstance(c, Obj))
+    return Value(pts=found) if found else UNKNOWN
+
+
+def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return the result of a query about a type, which is not data either."""
+    return UNKNOWN
+
+
+def parent(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the value of `super()`: the object, with look-ups after its class."""
+    receiver = it.frame
+    while receiver.owner is None and receiver.outer is not None:
+        receiver = receiver.outer
+    parameters = receiver.function.parameters
+    this = ctx.store.get((receiver, parameters[0].name)) if parameters else None
+    if this is None or receiver.owner is None:
+        return UNKNOWN
+    found = []
+    for obj in this.pts:
+        view = recency.intern(ctx, "super", (receiver.owner.key, obj))
+        view.info = (receiver.owner, obj)
+        found.append(view)
+    return Value(pts=frozenset(found))
+
+
+def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return the value of an unset field, also through `super()`, and for parameters."""
+    if obj.kind == "super" and isinstance(obj.info, tuple):
+        owner, this = obj.info
+        cls = this.info if this.kind == "instance" else this
+        order = lineage(cls) if isinstance(cls, Obj) else []
+        after = order[order.index(owner) + 1 :] if owner in order else []
+        for base in after:
+            value = ctx.store.get((base, name))
+            if value is not None:
+                return heap.bind(ctx, value, this, base)
+        return BOTTOM
+    if obj.name in containers.PROCESSES and name in containers.STREAMS:
+        return pointer(obj)  # what a process takes in through one may come out of another
+    if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
+        return command_line.arguments(ctx)
+    if obj.kind == "lib" and name == MACHINE_FIELD:
+        return userdata.userdata(ctx)
+    if obj.kind == "parameter" and name == "name":
+        return Value(consts=frozenset([obj.name]))
+    if obj.kind == "parameter":
+        return ctx.store.get((obj, "value")) or UNKNOWN if name in catalog.PARAMETER_VALUES else UNKNOWN
+    return heap.default(ctx, obj, name)
