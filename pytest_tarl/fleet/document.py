@@ -63,16 +63,17 @@ def document(answer: Answer) -> dict[str, Any]:
             for one in answer.clusters.found
         ],
         "unclear": list(answer.clusters.unclear),
-        "repairs": [_repair(one) for one in answer.repairs],
+        "repairs": [_repair(one, answer.accepted.get(one.repair)) for one in answer.repairs],
         "components": None if answer.parts is None else _components(answer.parts),
         "left_out": dict(answer.left_out),
         "lowest": [asdict(one) for one in answer.lowest],
     }
 
 
-def _repair(one: Effect) -> dict[str, Any]:
+def _repair(one: Effect, accepted: str | None) -> dict[str, Any]:
     return {
         "repair": one.repair,
+        "accepted_for": accepted,
         "values": list(one.values),
         "verdict": one.verdict,
         "missions": list(one.missions),

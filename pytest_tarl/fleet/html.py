@@ -156,6 +156,7 @@ def _repairs(answer: Answer) -> Iterator[dict[str, Any]]:
         known = one.strata > 0
         yield {
             "repair": one.repair,
+            "accepted": answer.accepted.get(one.repair, ""),
             "group": " ".join(one.values) or "all missions",
             "verdict": one.verdict,
             "tag": TAGS.get(one.verdict, "no-difference"),

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import json
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pytest_tarl.errors import LogError, SettingsError
+from pytest_tarl.errors import LogError, RepairError, SettingsError
 from pytest_tarl.fleet import dataset
 from pytest_tarl.fleet.logged_samples import logged_samples
 from pytest_tarl.fleet.rows import Row, files, formulas_of
-from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition
+from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition, repair_path
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.monitoring.assembling import valid_time
+from pytest_tarl.patching.reading import read
 
 TOGETHER = 20_000  # missions held in memory until they are written
 PATCH = ".patch"
+REPAIRS_KEEP = ("test", "drift")
 FOLDER, FILE = "{folder}", "{file}"
 
 
@@ -60,6 +63,7 @@ def ingest(order: Order) -> Iterator[Ingested]:
     into = _Writer(store(order.to), order.version, origin(fixture, recording), fixture, recording)
     formulas = fixture.sample.judgements.formulas if fixture.sample.judgements else ()
     repair = repair_of(order.repair)
+    keep_origin(into.store, order.repair, repair)
     for log in order.logs:
         robot = named(order, log)
         try:
@@ -93,6 +97,18 @@ def named(order: Order, log: Path) -> str:
     if not order.salt:
         return name
     return hmac.new(order.salt.encode(), name.encode(), hashlib.sha256).hexdigest()[:16]
+
+
+def keep_origin(to: Store, given: str, repair: str) -> None:
+    """Write the drift for which a patch of TARL was accepted, and the test of it; the change itself is not stored."""
+    if not given.endswith(PATCH):
+        return
+    try:
+        facts = dict(read(Path(given)).facts)
+    except RepairError:
+        return  # another program's patch, of which only the name is known
+    known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
+    to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 
 
 @dataclass

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, suppress
+from dataclasses import dataclass, field, replace
 from datetime import date
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from pytest_tarl.fleet import clusters, dataset, decomposition, group_onsets, gr
 from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.engine import Engine, cluster, local
-from pytest_tarl.fleet.schema import Origin, origin
+from pytest_tarl.fleet.schema import Origin, origin, repair_path
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.sensors import Cell
@@ -63,6 +64,7 @@ class Answer:
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
+    accepted: Mapping[str, str] = field(default_factory=dict)  # repair → drift for which it was accepted
     period: tuple[float, float] = (0.0, 0.0)  # start of the first and of the last mission; 0 without times
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
@@ -97,7 +99,19 @@ def answer(question: Question) -> Answer:
         if not database.missions:
             raise FleetError(_nothing(where, question))
         with _engine(question) as engine:
-            return _judged(database, fixture, question, _left_out(parts, own), engine)
+            found = _judged(database, fixture, question, _left_out(parts, own), engine)
+    return replace(found, accepted=_accepted(where, found.repairs))
+
+
+def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
+    """Return the drift for which each repair was accepted, where its patch said it at ingest."""
+    found = {}
+    for repair in sorted({one.repair for one in effects}):
+        path = repair_path(repair)
+        if where.holds(path):
+            with suppress(ValueError, AttributeError):  # a file that another program wrote
+                found[repair] = str(json.loads(where.read(path)).get("drift", ""))
+    return {repair: drift for repair, drift in found.items() if drift}
 
 
 def _engine(question: Question) -> AbstractContextManager[Engine]:

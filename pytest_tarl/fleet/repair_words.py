@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from pytest_tarl.fleet.repairs import ALPHA, Effect
 from pytest_tarl.model import Bound
@@ -13,7 +13,7 @@ WHY = {
 }
 
 
-def lines(effects: Sequence[Effect]) -> Iterator[str]:
+def lines(effects: Sequence[Effect], accepted: Mapping[str, str]) -> Iterator[str]:
     """Yield a line for each repair and group: the difference to the missions without a repair."""
     yield (
         "Repairs, against missions without a repair at the same site in the same week (intervals hold together at "
@@ -22,6 +22,8 @@ def lines(effects: Sequence[Effect]) -> Iterator[str]:
     for one in effects:
         where = f" at {' '.join(one.values)}" if one.values else ""
         yield f"  {one.repair}{where}: {one.verdict}{_amounts(one)}"
+    for repair, drift in accepted.items():
+        yield f"  {repair} was accepted in simulation for the drift {drift}"
 
 
 def _amounts(one: Effect) -> str:

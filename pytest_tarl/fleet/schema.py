@@ -107,6 +107,11 @@ def partition(where: Origin, version: str, date: str) -> str:
     return f"test={where.folder}/version={quote(version, safe='')}/date={date}"
 
 
+def repair_path(repair: str) -> str:
+    """Return the file of a repair: what its patch says of the test and drift for which it was accepted."""
+    return f"repairs/{quote(repair, safe='')}.json"
+
+
 def name_of(cell: Cell) -> str:
     """Return a cell as text."""
     return ",".join(map(str, cell))

@@ -40,7 +40,7 @@ def lines(answer: Answer) -> Iterator[str]:
     yield from _clusters(answer, words)
     if answer.repairs:
         yield ""
-        yield from repair_words.lines(answer.repairs)
+        yield from repair_words.lines(answer.repairs, answer.accepted)
     if answer.parts is not None:
         yield ""
         yield from decomposition_words.lines(answer.parts)

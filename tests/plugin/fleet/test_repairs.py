@@ -13,6 +13,7 @@ import pytest
 from pytest_tarl.commands.cli import main
 from pytest_tarl.fleet import document
 from pytest_tarl.fleet.repairs import Effect, effect, strata
+from pytest_tarl.patching.patch import TITLE, unified_diff, write
 from tests.plugin.monitoring import missions
 
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
@@ -76,6 +77,11 @@ def test_the_command_tells_which_repair_helps_which_group(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, data = tmp_path / "test.npz", str(tmp_path / "data")
+    (tmp_path / "node.py").write_text("speed = 5\n")
+    header = [f"{TITLE}1: speed 5 → 4", "test: test_walk.py::test_walk", "drift: mud", "seed: 0"]
+    changed = {tmp_path / "node.py": "speed = 4\n"}
+    diff = unified_diff({tmp_path / "node.py": b"speed = 5\n"}, changed, tmp_path, header)
+    guard = write(diff, tmp_path / ".tarl" / "patches", "test_walk", "mud")
     missions.fixture(test, missions.walks(60, 1))
     for repaired in (False, True):
         logs = [
@@ -98,7 +104,7 @@ def test_the_command_tells_which_repair_helps_which_group(
                 "--robot",
                 prefix + "{file}",
             ]
-            assert main([*argv, "--site", site, *(["--repair", "guard-1"] if repaired else [])]) == 0
+            assert main([*argv, "--site", site, *(["--repair", str(guard)] if repaired else [])]) == 0
     capsys.readouterr()
     result = tmp_path / "fleet.json"
     assert main(["fleet", data, "--by", "site", "--json", str(result)]) == 0
@@ -106,5 +112,10 @@ def test_the_command_tells_which_repair_helps_which_group(
     jsonschema.validate(told := json.loads(result.read_text()), document.schema())
     assert [one["verdict"] for one in told["repairs"]] == ["no effect shown", "helps"]
     assert [one["of"] for one in told["components"]["rows"]][3] == "repair"
-    assert "guard-1 at dry: no effect shown" in out
-    assert "guard-1 at wet: helps, reward +" in out
+    assert f"{guard.stem} at dry: no effect shown" in out
+    assert f"{guard.stem} at wet: helps, reward +" in out
+    assert f"{guard.stem} was accepted in simulation for the drift mud" in out
+    assert {one["accepted_for"] for one in told["repairs"]} == {"mud"}
+    assert not [
+        path for path in (tmp_path / "data").rglob("*") if path.is_file() and b"speed" in path.read_bytes()
+    ]
