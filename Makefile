@@ -60,7 +60,7 @@ ROS1_PYTHON ?= /usr/bin/python3
 ROS1_VENV ?= .venv-ros1
 ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs python3-diagnostic-msgs
 ROS2_VENV ?= .venv-ros2
-ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1 ros-diagnostic-msgs==5.5.1
+ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1 ros-diagnostic-msgs==5.5.1 ros-std-srvs==5.5.1
 ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
 # Sockets that rospy leaves to the garbage collector are no failure of a test
 ROS_LEAVES := -W "ignore:Exception ignored in:pytest.PytestUnraisableExceptionWarning" \

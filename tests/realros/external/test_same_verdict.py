@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from importlib.machinery import PathFinder
@@ -21,6 +22,7 @@ pytestmark = [
         not os.environ.get("TARL_SLOW"), reason="twenty seconds in real time: set TARL_SLOW=1"
     ),
 ]
+EXAMPLE = Path(__file__).parents[3] / "examples" / "tank_external"
 KINDS = {"in-process": (), "lock-step": ("--tarl-ros=real",), "external": ()}
 
 
@@ -43,3 +45,15 @@ def test_three_worlds_give_the_same_verdict(tmp_path: Path) -> None:
         verdicts[kind] = found["verdict"]
     assert verdicts["in-process"]["result"] == "degraded"
     assert verdicts["lock-step"] == verdicts["external"] == verdicts["in-process"]
+
+
+def test_the_example_gives_the_same_recording_with_two_workers(tmp_path: Path) -> None:
+    recordings = []
+    for workers in ("1", "2"):
+        folder = tmp_path / workers
+        shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
+        told = run(folder, "--tarl-record", "--tarl-episodes=4", f"--tarl-workers={workers}")
+        assert "1 passed" in told, told
+        (path,) = (folder / ".tarl" / "utility").glob("*.npz")
+        recordings.append(path.read_bytes())
+    assert recordings[0] == recordings[1]
