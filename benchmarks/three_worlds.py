@@ -12,16 +12,14 @@ from __future__ import annotations
 
 import argparse
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import monotonic
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from tests.realros.external.tank_project import write
-
+TANK = Path(__file__).resolve().parents[1] / "tests" / "realros" / "external" / "tank_project.py"
 KINDS = {
     "in the process": ("inside", (), 400),
     "in lock-step on rclpy": ("inside", ("--tarl-ros=real",), 100),
@@ -32,7 +30,7 @@ FEW = 2
 
 
 def main() -> int:
-    """Print a table: milliseconds an episode by the wall clock and in CPU time, and the ratio of the latter to the first kind."""
+    """Print milliseconds an episode, by the wall clock and in CPU time, and the latter as multiple of the first."""
     argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0]).parse_args()
     first = 0.0
     print("| kind | ms an episode, wall | ms an episode, CPU | CPU, of the first |\n|---|---|---|---|")
@@ -48,7 +46,7 @@ def main() -> int:
 def _seconds(world: str, options: tuple[str, ...], episodes: int) -> tuple[float, float]:
     """Record the test; return the seconds that it took, and those of the processors."""
     with TemporaryDirectory() as name:
-        folder = write(Path(name) / "tank", external=world != "inside")
+        folder = runpy.run_path(str(TANK))["write"](Path(name) / "tank", external=world != "inside")
         if world == "reset":
             _reset_instead(folder / "test_tank.py")
         command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *options]
