@@ -1,6 +1,6 @@
-"""Simulations until a formula of ARCH-COMP's falsification category is violated, by a stress run and by chance.
+"""Simulations until a formula of ARCH-COMP's falsification category is violated.
 
-    python benchmarks/arch_comp/falsify.py [FORMULA ...] [--seeds 10] [--limit 300]
+    python benchmarks/arch_comp/falsify.py [FORMULA ...] [--seeds 10] [--limit 300] [--methods explored random stress]
 
 Inputs are piecewise constant (instance 2 of the category): AT has 6 values each of throttle and brake over 30 s, CC
 20 each over 100 s; WT has a value of the wind every 5 s over 630 s, linear between them. Each value is a direction of
@@ -33,15 +33,19 @@ from arch_models import (
 
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
-from pytest_tarl.seeds import generator
+from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.spaces import Point, Space, Span
 from pytest_tarl.stressing.combinations import Together
+from pytest_tarl.stressing.coordinates import Coordinates, Vector
 from pytest_tarl.stressing.evaluating import Evaluator
+from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import Guarantee
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import explore
 
+SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the ranges
 _NONE = np.zeros(0, np.int32)
 
 
@@ -148,6 +152,24 @@ def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int
     return runs.falsified
 
 
+def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
+    """Return the simulations that the parts of a stress run for many directions need: Hypothesis, then CMA-ES."""
+    runs, space = Simulations(model, robustness, limit), model.space
+    coordinates = Coordinates(space, space.nominal)
+
+    def margin(vector: Vector) -> float:
+        return runs.value(coordinates.point(vector))
+
+    try:
+        generate(space, episode_seed(seed, "hypothesis", 0), limit // 3, runs.value)
+        best = min(runs.known, key=lambda values: runs.known[values])
+        start = coordinates.vector(dict(zip(space.extents, best, strict=True)))
+        while True:
+            evolve(start, SPREAD, generator(seed, f"evolution {len(runs.known)}"), margin)
+    except FalsifiedError:
+        return runs.falsified
+
+
 def by_chance(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
     """Return the simulations that uniformly random inputs need; None if the limit does not suffice."""
     runs, draws = Simulations(model, robustness, limit), generator(seed, "random")
@@ -173,16 +195,24 @@ def main() -> None:
     parser.add_argument("formulas", nargs="*")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--limit", type=int, default=300)
+    parser.add_argument("--methods", nargs="+", default=["explored", "random"])
     arguments = parser.parse_args()
-    print("| formula | robustness at nominal | stress | random |\n|---|---|---|---|")
+    methods = {"explored": explored, "random": by_chance, "stress": stressed}
+    names = [name for name in methods if name in arguments.methods]
+    print(f"| formula | robustness at nominal | {' | '.join(names)} |\n|---|---|{'---|' * len(names)}")
     for model in MODELS:
         for name, robustness in model.formulas.items():
             if arguments.formulas and name not in arguments.formulas:
                 continue
             usual = robustness(model.run(model.signals([*model.space.nominal.values()])))
             cells = [
-                cell([search(model, robustness, seed, arguments.limit) for seed in range(arguments.seeds)])
-                for search in (stressed, by_chance)
+                cell(
+                    [
+                        methods[one](model, robustness, seed, arguments.limit)
+                        for seed in range(arguments.seeds)
+                    ]
+                )
+                for one in names
             ]
             print(f"| {name} | {usual:.3g} | {' | '.join(cells)} |", flush=True)
 
