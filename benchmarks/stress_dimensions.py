@@ -21,8 +21,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from select import select
 from statistics import fmean, median
 from subprocess import DEVNULL, PIPE, Popen
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -155,16 +157,20 @@ class Uniform:
 class Process:
     """A peer in a process and an environment of its own, which writes a point and reads its cost, a JSON line each."""
 
-    def __init__(self, home: Path, script: str, size: int, seed: int) -> None:
+    def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
         python = home / Path(script).stem.removesuffix("_peer") / "bin" / "python"
         budget = BUDGET // PROBES - 1
         words = [str(python), str(HERE / "stress_peers" / script), str(size), str(budget), str(seed)]
         self.process = Popen(words, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, text=True)
         self.script = script
+        self.until = monotonic() + seconds
 
     def ask(self) -> Sequence[float] | None:
-        """Return the next point; None after the last one."""
+        """Return the next point; None after the last one, or when the time is up."""
         assert self.process.stdout is not None
+        if not select([self.process.stdout], [], [], max(self.until - monotonic(), 0.0))[0]:
+            print(f"{self.script} did not end in time", file=sys.stderr, flush=True)
+            return None
         line = self.process.stdout.readline()
         if not line and self.process.wait() != 0:
             raise SystemExit(f"{self.script} ended with status {self.process.returncode}")
@@ -183,10 +189,10 @@ class Process:
 
 
 @contextmanager
-def optimiser(method: str, size: int, seed: int, home: Path) -> Iterator[Any]:
+def optimiser(method: str, size: int, seed: int, home: Path, seconds: float) -> Iterator[Any]:
     """Yield a peer by its name."""
     if method in PEERS:
-        peer = Process(home, PEERS[method], size, seed)
+        peer = Process(home, PEERS[method], size, seed, seconds)
         try:
             yield peer
         finally:
@@ -210,11 +216,11 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
     return found
 
 
-def peer_run(one: Arena, seed: int, method: str, home: Path) -> list[Point]:
-    """Return the failing drifts of a peer's run, the nearest first."""
+def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 600.0) -> list[Point]:
+    """Return the failing drifts of a peer's run, the nearest first; a process may take so many seconds."""
     evaluator = one.evaluator(seed, BUDGET)
     failing: dict[float, Point] = {}
-    with optimiser(method, len(one.space.extents), seed, home) as peer:
+    with optimiser(method, len(one.space.extents), seed, home, seconds) as peer:
         while (asked := peer.ask()) is not None:
             point = placed(one.space, asked)
             try:
@@ -244,12 +250,14 @@ def at_least_as_near(own: float | None, other: float | None) -> bool:
     return own <= other * (1 + 1e-9)
 
 
-def compare(one: Arena, methods: Sequence[str], seeds: int, home: Path) -> dict[str, list[float | None]]:
+def compare(
+    one: Arena, methods: Sequence[str], seeds: int, home: Path, seconds: float
+) -> dict[str, list[float | None]]:
     """Return the verified distance of each method at each seed."""
     found: dict[str, list[float | None]] = {method: [] for method in methods}
     for seed in range(seeds):
         for method in methods:
-            points = ours(one, seed) if method == "ours" else peer_run(one, seed, method, home)
+            points = ours(one, seed) if method == "ours" else peer_run(one, seed, method, home, seconds)
             found[method].append(verified(one, seed, points))
         told = " ".join(f"{method} {_shown(found[method][-1])}" for method in methods)
         print(f"{one.task} {seed}: {told}", file=sys.stderr, flush=True)
@@ -290,6 +298,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
+    parser.add_argument("--peer-seconds", type=float, default=600.0, help="limit of a peer's process")
     parser.add_argument("--harmless", type=int, default=0, help="only runs where nothing breaks, so many")
     arguments = parser.parse_args()
     if arguments.harmless:
@@ -301,10 +310,10 @@ def main() -> None:
     for task in arguments.tasks:
 
         def visitor(stage: Stage) -> dict[str, list[float | None]]:
-            return compare(arena(stage), methods, arguments.seeds, arguments.home)
+            return compare(arena(stage), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
 
         if task in WORLDS or task in FRESH_WORLDS:
-            found = compare(formula(task), methods, arguments.seeds, arguments.home)
+            found = compare(formula(task), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
         else:
             found = visit(task, visitor, None, HERE / "drift")
         print(row(task, found), flush=True)
