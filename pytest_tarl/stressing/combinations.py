@@ -9,7 +9,7 @@ from math import isclose
 
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.boundary import COARSE, bisect
-from pytest_tarl.stressing.evaluating import RAYS, SIZES, Evaluator
+from pytest_tarl.stressing.evaluating import NEAREST, RAYS, SIZES, Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
 from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.rays import Ray, distance, joined
@@ -43,7 +43,7 @@ class Together:
             if not one.names or any(_at_most(other.point, point, evaluator) for other in known):
                 return
             self.tests += 1
-            if evaluator.confirm(point, RAYS, self.risk / (self.tests * (self.tests + 1))):
+            if evaluator.confirm(point, RAYS, self.risk / (self.tests * (self.tests + 1)), NEAREST):
                 if len(one.names) > 1:
                     self.found.append(one)
                 else:

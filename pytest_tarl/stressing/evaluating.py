@@ -15,7 +15,12 @@ from pytest_tarl.spaces import Point, Space
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, margin_of, refuted
 
 SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
-FRESH = (16, 32)  # episodes on fresh seeds after which a failure is confirmed or not
+FRESH = (16, 32)  # episodes on fresh seeds after which a failure along a ray is confirmed or not
+NEAREST = (
+    16,
+    32,
+    64,
+)  # the same of a combination: the more episodes, the nearer to the boundary it can be shown
 RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
@@ -75,14 +80,15 @@ class Evaluator:
             found = self._evidence(point, size)
         return found
 
-    def confirm(self, point: Point, pool: str, risk: float) -> bool:
+    def confirm(self, point: Point, pool: str, risk: float, sizes: Sequence[int] = FRESH) -> bool:
         """Return whether the fresh seeds of a pool, paired with nominal runs, show at `risk` that the guarantee fails.
 
-        A pool may serve several points if none of them was chosen by its outcomes.
+        A pool may serve several points if none of them was chosen by its outcomes. The test ends after the first of
+        `sizes` at which the failure is shown; the risk is divided among them.
         """
-        for size in FRESH:
+        for size in sizes:
             outcomes = self._of(pool, point, size)
-            if refuted(self.guarantee, outcomes, self._of(pool, self.space.nominal, size), risk / len(FRESH)):
+            if refuted(self.guarantee, outcomes, self._of(pool, self.space.nominal, size), risk / len(sizes)):
                 return True
         return False
 

@@ -16,7 +16,7 @@ import numpy as np
 from pytest_tarl import seeds
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
-from pytest_tarl.stressing.evaluating import FRESH, SIZES, Evaluator
+from pytest_tarl.stressing.evaluating import NEAREST, SIZES, Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.generating import generate
@@ -101,7 +101,7 @@ class Nearest:
         vector, model = _without_trifles(coordinates.vector(best)), self._model()
         shares = np.linspace(0.9, FARTHEST, 141)
         margins = model.margins(shares[:, None] * vector)
-        noise = self.evaluator.noise(best) / sqrt(FRESH[-1])
+        noise = self.evaluator.noise(best) / sqrt(NEAREST[-1])
         depths = [-min(max(times * noise, SHALLOW), DEEP) for times in DEPTHS]
         places = [
             int(np.argmax(margins <= depth)) if (margins <= depth).any() else len(shares) - 1
