@@ -334,6 +334,9 @@ def scheduler() -> Iterator[Any]:
 
 
 @pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra cluster")
+@pytest.mark.filterwarnings(
+    "ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # of Dask
 def test_a_cluster_gives_the_same_bits_even_if_a_worker_dies(
     folder: Path, found: Answer, scheduler: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
