@@ -5,7 +5,7 @@
 Every operand of every site takes every value of a fine grid, under no guard and under the one that the task's author
 knows to be true ("where"); constants written several times on one site also move together, and so do the operands of
 one site, two at a time. A site is right when its operands alone bring the drifted world to 95 % of what the node earns
-off-line, over EPISODES seeds that nothing else uses. Where no site is, all pairs of operands are tried; where a task
+as designed, over EPISODES seeds that nothing else uses. Where no site is, all pairs of operands are tried; where a task
 has more culprits than two, each of them is replaced in turn by every other operand, the rest kept as the author knows.
 """
 
@@ -50,7 +50,7 @@ Change = tuple[Mutation, ...]
 
 @dataclass(frozen=True)
 class Found:
-    """One candidate that restores the drifted world; `nominal` is what it earns off-line."""
+    """One candidate that restores the drifted world; `nominal` is what it earns as designed."""
 
     change: Change
     guard: Guard
@@ -110,7 +110,7 @@ class World:
         return found
 
     def earned(self, change: Change, guard: Guard, drift: str | None) -> float | None:
-        """Return the mean reward of a change where it reaches 95 % of off-line; None where it does not."""
+        """Return the mean reward of a change where it reaches 95 % of the designed reward; None where it does not."""
         try:
             texts = rewrite(self.stage.analysis, change, guard, self.topics)
         except RepairError:

@@ -29,7 +29,7 @@ Overlay = Mapping[Path, str]
 
 
 def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str = "sweep") -> Order:
-    """Record the task off-line and run it under its drift, as `--tarl-record` and `--tarl-online` do."""
+    """Record the task as designed and run it under its drift, as `--tarl-record` and `--tarl-online` do."""
     marked = stage.marked
     chosen = episode_seeds(seed, "offline", marked.episodes)
     offline = run_episodes(stage.rollout, chosen, None, stage.sites.members, quiet)

@@ -1,7 +1,7 @@
 """What others would do with the same 200 episodes: random search, CMA-ES and Optuna over all constants at once.
 
 Each proposes a factor for every operand (on a log scale, between a tenth and ten; a sign and a boolean flip by
-chance), and is told the reward of one drifted episode under it. What comes near the off-line reward is confirmed on
+chance), and is told the reward of one drifted episode under it. What comes near the designed reward is confirmed on
 five more seeds, and the first that is confirmed counts. With "our guard", every mutation holds only where the
 guard does that we would search under first; the nominal world is not asked, as in the tools as they are.
 """

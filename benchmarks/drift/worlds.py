@@ -2,7 +2,7 @@
 
     python benchmarks/drift/worlds.py [TASK ...] [--episodes 100] [--folder benchmarks/drift] [--by-hand]
 
-Success off-line and under the drift, average total reward in both, time of an episode, number of sites and operands.
+Success as designed and under the drift, average total reward in both, time of an episode, number of sites and operands.
 With `--by-hand` the same of a copy of each task in which the repair that its author knows has been made: what
 `answer.json` has under "hand" as triples of a file, a text of it, and the text in its place.
 """
@@ -29,7 +29,7 @@ def look(stage: Stage, episodes: int) -> dict[str, Any]:
         "sites": len(stage.analysis.sites),
         "operands": sum(len(stage.analysis.operands(step.site)) for step in stage.analysis.sites),
     }
-    for name, drift in (("off-line", None), ("drift", stage.drift)):
+    for name, drift in (("designed", None), ("drift", stage.drift)):
         start = time.process_time()
         runs = [
             stage.rollout(EpisodePlan(seed, drift)) for seed in episode_seeds(7, f"look-{name}", episodes)
@@ -69,11 +69,11 @@ def main() -> None:
     parser.add_argument("--by-hand", action="store_true", help="look at copies that are repaired by hand")
     arguments = parser.parse_args()
     home = arguments.folder.resolve()
-    print("| task | sites | operands | ms off-line / drift | success | ATR |\n|---|---|---|---|---|---|")
+    print("| task | sites | operands | ms designed / drift | success | ATR |\n|---|---|---|---|---|---|")
     for task in arguments.tasks or tasks_in(home):
         found = seen(home, task, arguments.episodes, arguments.by_hand)
         pairs = [
-            " / ".join(f"{found[f'{what} {world}']:.{digits}f}" for world in ("off-line", "drift"))
+            " / ".join(f"{found[f'{what} {world}']:.{digits}f}" for world in ("designed", "drift"))
             for what, digits in (("ms", 1), ("passed", 2), ("ATR", 2))
         ]
         print(f"| {task} | {found['sites']} | {found['operands']} | {' | '.join(pairs)} |", flush=True)
