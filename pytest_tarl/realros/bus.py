@@ -46,7 +46,7 @@ class RealBus(Bus):
         self._run(self._publish, place, message, latch)
 
     def interpose(self, topic: str, channel: Channel) -> None:  # noqa: ARG002
-        """Refuse: messages of an installed ROS do not pass through this process alone."""
+        """Raise UnsupportedApiError: messages of an installed ROS do not pass through this process alone."""
         raise UnsupportedApiError(
             f"The fault of {topic} needs the in-process ROS: remove --tarl-ros, or the fault from the marker."
         )

@@ -123,7 +123,7 @@ class Bag:
             yield BagMessage(connection.topic, message, stamp)
 
     def write(self, topic: str, msg: Any, t: Any = None, raw: bool = False, **_: Any) -> None:
-        """Write a message with the time `t`, by default the current time."""
+        """Write a message with the time `t`, by default the current time. Raises UnsupportedApiError for `raw`."""
         if raw:
             raise unsupported("rosbag.Bag.write(raw=True)")
         from pytest_tarl.ros.rospy.timing import Time as RospyTime
