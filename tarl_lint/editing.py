@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Final
 
 from tarl_lint import baseline
 from tarl_lint.read.source import Script
@@ -15,6 +16,7 @@ from tarl_lint.run.runner import Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
+KEPT_RUNS: Final = 10  # for so many runs a report is kept that none of them needs: edits are often undone
 __all__ = ["Result", "Superseded", "Workspace"]
 
 
@@ -63,7 +65,7 @@ class Workspace:
 
 
 class _Memory(Cache):
-    """Reports of the last run by key, and those of the cache on disk, which is read only."""
+    """Reports of the last runs by key, and those of the cache on disk, which is read only."""
 
     adapts = True
 
@@ -72,19 +74,21 @@ class _Memory(Cache):
         self.config = config
         self._analyses = Analyses(config)
         self._saved = saved
-        self._before: dict[str, Report] = {}
-        self._now: dict[str, Report] = {}
+        self._known: dict[str, Report] = {}
+        self._used: dict[str, int] = {}  # key → number of the last run that needed its report
+        self._run = 0
 
     def report(self, key: str) -> Report | None:
         """Return the report stored under a key, None if there is none."""
-        found = self._now.get(key) or self._before.get(key) or self._saved.report(key)
+        found = self._known.get(key) or self._saved.report(key)
         if found is not None:
-            self._now[key] = found
+            self.put(key, found)
         return found
 
     def put(self, key: str, report: Report) -> None:
-        """Keep a report until a whole run has not needed it."""
-        self._now[key] = report
+        """Keep a report until several runs have not needed it."""
+        self._known[key] = report
+        self._used[key] = self._run
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:
         """Return the report of the last analysis of these files if no edit since then can change it."""
@@ -99,6 +103,7 @@ class _Memory(Cache):
         return []
 
     def save(self) -> None:
-        """Drop the reports that the last run did not need."""
-        self._before, self._now = self._now, {}
-        self._analyses.drop_unused()
+        """Drop the reports that the last runs did not need."""
+        for key in [key for key, run in self._used.items() if self._run - run >= KEPT_RUNS]:
+            del self._known[key], self._used[key]
+        self._run += 1

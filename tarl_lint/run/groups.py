@@ -76,10 +76,7 @@ def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
 def _reports(
     tasks: Sequence[Task], keys: Sequence[str], config: Config, cache: Cache, jobs: int | None, tell: Tell
 ) -> list[Report]:
-    found = [
-        cache.report(key) or (cache.adapted(task.scripts) if task.analyse else None)
-        for key, task in zip(keys, tasks, strict=True)
-    ]
+    found = [_known(task, key, cache) for task, key in zip(tasks, keys, strict=True)]
     missing = [number for number, report in enumerate(found) if report is None]
     work = [tasks[number] for number in missing]
     made = _made(work, config, _workers(work, jobs), tell, cache)
@@ -87,6 +84,16 @@ def _reports(
         found[number] = report
         cache.put(keys[number], report)
     return [report for report in found if report is not None]
+
+
+def _known(task: Task, key: str, cache: Cache) -> Report | None:
+    """Return the report of a task if it is known, or if that of earlier texts of its files still holds."""
+    report = cache.report(key)
+    if report is None and task.analyse:
+        report = cache.adapted(task.scripts)
+        if report is not None:
+            cache.put(key, report)
+    return report
 
 
 def _workers(tasks: Sequence[Task], jobs: int | None) -> int:

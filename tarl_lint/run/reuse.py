@@ -31,24 +31,21 @@ class _Analysis:
 
 
 class Analyses:
-    """The last analysis of each set of files in an editor session."""
+    """The last analysis of each program in an editor session, by the path of its last file."""
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._last: dict[tuple[str, ...], _Analysis] = {}
-        self._used: set[tuple[str, ...]] = set()
+        self._last: dict[str, _Analysis] = {}
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
         """Keep a report and what its analysis has read, by file; unless a file could not be analysed."""
         if readings and not report.errors and two_sided([s.text for s in scripts], self._config):
-            self._last[_paths(scripts)] = _Analysis(tuple(scripts), readings, report)
+            self._last[scripts[-1].path] = _Analysis(tuple(scripts), readings, report)
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:
         """Return the report that an analysis of the files would return, None if this takes an analysis."""
-        paths = _paths(scripts)
-        self._used.add(paths)
-        last = self._last.get(paths)
-        if last is None:
+        last = self._last.get(scripts[-1].path)
+        if last is None or [s.path for s in last.scripts] != [s.path for s in scripts]:
             return None
         moves: dict[str, Mapping[int, int]] = {}
         for before, now in zip(last.scripts, scripts, strict=True):
@@ -67,15 +64,6 @@ class Analyses:
             return replace(last.report, findings=tuple(_finding(f, moves) for f in last.report.findings))
         except LineLostError:
             return None
-
-    def drop_unused(self) -> None:
-        """Drop the analyses of sets of files for which no report was requested since the last call."""
-        self._last = {paths: last for paths, last in self._last.items() if paths in self._used}
-        self._used = set()
-
-
-def _paths(scripts: Sequence[Script]) -> tuple[str, ...]:
-    return tuple(script.path for script in scripts)
 
 
 def _finding(finding: Finding, moves: Moves) -> Finding:

@@ -171,6 +171,26 @@ def test_each_edit_is_compared_with_the_last_analysis(tmp_path, analysed):
     assert result == Workspace([tmp_path]).lint(second)
 
 
+def test_an_edit_is_compared_with_an_analysis_of_long_ago(tmp_path, analysed):
+    workspace = Workspace([tmp_path])
+    workspace.lint({})
+    for _ in range(3):
+        workspace.lint({})
+    analysed.clear()
+    workspace.lint(edited(tmp_path, "node.py", "    def receive", "    # a comment\n    def receive"))
+    assert analysed == []
+
+
+def test_an_undone_edit_takes_no_analysis(tmp_path, analysed):
+    workspace = Workspace([tmp_path])
+    first = workspace.lint({})
+    for value in range(4):
+        workspace.lint(edited(tmp_path, "node.py", "value > 3", f"value > {value + 10}"))
+    analysed.clear()
+    assert workspace.lint({}) == first
+    assert analysed == []
+
+
 def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
     Path(tmp_path, "other.py").write_text(NODE)
     workspace = Workspace([tmp_path])
