@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from pytest_tarl.formulas.signals import stored_signal
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
+from pytest_tarl.learning.bounds import POWER, detectable_loss
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.footprint import Footprint
 from pytest_tarl.learning.judgements import accounts, judgements, never_judged
@@ -27,7 +29,9 @@ from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.model import Guarantee
 from pytest_tarl.modules_of_tests import Digests
 from pytest_tarl.options import Options
+from pytest_tarl.report.amounts import amount
 from pytest_tarl.report.guarantees import percent
+from pytest_tarl.report.words import SIGNIFICANT
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
@@ -39,6 +43,7 @@ Members = Sequence[Sequence[int]]
 
 PILOTS = 20  # episodes for learning bins
 
+FEW = 30  # episodes below which a recording says what they can show
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or comparisons will report spurious differences."
@@ -113,6 +118,7 @@ def record(
     if refused:
         return RecordResult("", refused, tuple(notes))
     notes = [*accounts(recorded.sample.judgements), *notes, *_silent_lists(recorded.sample, plan)]
+    notes += detectable(recorded.sample.total) if recorded.simulator else []
     new = Fixture(
         test=test,
         seed=options.seed,
@@ -144,6 +150,22 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
         f"the simulator is not reproducible: two episodes with the same seed earned {once:.4g} and {twice:.4g}, "
         f"{abs(once - twice):.3g} apart; the standard deviation over all episodes is {between}. It contains this "
         "noise, so verdicts and bounds hold, but a smaller loss needs more episodes."
+    )
+    return [note]
+
+
+def detectable(totals: Floats) -> list[str]:
+    """Return a note that says which loss as many episodes again can show, if they are few; shape (episodes,)."""
+    if not 1 < totals.size < FEW or not totals.std():
+        return []
+    loss = detectable_loss(totals, totals, SIGNIFICANT)
+    if not isfinite(loss):
+        return [
+            f"{totals.size} episodes are too few: a comparison with as many can show no loss. Record at least 4."
+        ]
+    note = (
+        f"{totals.size} episodes: a comparison with as many shows a loss of {amount(loss)} per episode in "
+        f"{100 * POWER:.0f} % of runs; for a loss half as large, record and compare {4 * totals.size}"
     )
     return [note]
 
