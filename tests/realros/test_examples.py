@@ -27,11 +27,20 @@ HERE = [
         marks=pytest.mark.skipif(not RCLPY, reason="rclpy is not installed here: make test-ros2"),
     ),
 ]
+# The acceptance test is the same on any ROS and has tests of its own; here 8 pairs of episodes suffice
+QUICK_ACCEPTANCE = """
+from pytest_tarl.repairing import accepting
+from pytest_tarl.searching import accept
+
+accept.SEEDS = accepting.SEEDS = 16
+accept.EARLY, accept.LOOKS = (), (8,)
+accepting.risk_of = lambda alpha, before: 0.9
+"""
 
 
 def run(folder: Path, *options: str) -> str:
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *options]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=1000)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=3000)
     return done.stdout + done.stderr
 
 
@@ -48,6 +57,7 @@ def test_an_example_is_recorded_compared_and_repaired_as_on_the_embedded_ros(
         (fixture,) = folder.glob(".tarl/utility/*.npz")
         digests[kind] = hashlib.sha256(fixture.read_bytes()).hexdigest()
     assert digests["real"] == digests["embedded"]
+    tmp_path.joinpath("real", "conftest.py").write_text(QUICK_ACCEPTANCE)
     told = run(
         tmp_path / "real", test, "--tarl-online", "--tarl-repair", "--tarl-ros=real", "--tarl-episodes=16"
     )
