@@ -339,11 +339,15 @@ def found_rest(told: dict[str, Any], robots: list[Robot]) -> None:
         inside = len(drifted & {*one["robots"]})
         print(f"cluster of {len(one['robots'])} robots, {inside} of them drifted: cells {one['cells']}")
     for one in told["components"]["rows"]:
-        print(f"variance, {one['of']}: {one['variance']:.4f} ({one['low']:.4f} to {one['high']:.4f})")
+        known = (
+            number if number is None else round(number, 4)
+            for number in map(one.get, ("variance", "low", "high"))
+        )
+        print("variance, {}: {} ({} to {})".format(one["of"], *known))
     for one in told["repairs"]:
         bound = one["reward_bound"]
         ends = "" if bound["low"] is None else f" ({bound['low']:+.3f} to {bound['high']:+.3f})"
-        print(f"repair at {' '.join(one['values'])}: {one['verdict']}, {one['reward']:+.3f}{ends}")
+        print(f"repair at {' '.join(one['values'])}: {one['verdict']}, {one['reward'] or 0.0:+.3f}{ends}")
 
 
 def scores(told: dict[str, Any], recorded: Sample, data: Path) -> dict[str, float]:

@@ -154,8 +154,9 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--fail-if",
         action="append",
         default=[],
-        choices=("degraded", "drifted", "robot"),
-        help="exit with 1 if a group is degraded, a group is drifted or degraded, or a robot is named; repeatable",
+        choices=("degraded", "drifted", "changed", "robot"),
+        help="exit with 1 if a group is degraded, is drifted or degraded, changed in time, or a robot is named; "
+        "repeatable",
     )
     fleet.set_defaults(run=_fleet)
 

@@ -74,6 +74,7 @@ class Answer:
         return {
             "degraded": "degraded" in results,
             "drifted": bool(results & {"degraded", "drifted"}),
+            "changed": bool(self.onsets.drifted or self.onsets.below),
             "robot": bool(self.robots.drifted or self.robots.below),
         }[rule]
 

@@ -30,6 +30,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> str:
 def test_a_season_that_no_robot_shows_is_found_in_its_site_with_its_onset(data: str) -> None:
     found = answer(Question(data, by=("site",)))
     assert {one.name for one in (*found.onsets.drifted, *found.onsets.below)} == {"south"}
+    assert found.meets("changed")
+    assert not found.meets("robot")
     evidence = found.onsets.every[1].status.world  # type: ignore[union-attr]
     assert evidence.since is not None
     assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # a mission of each robot a second
