@@ -27,7 +27,7 @@ from pytest_tarl.fleet.database import Filter, opened
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
 from pytest_tarl.fleet.question import Answer, Question, answer
-from pytest_tarl.fleet.store import store
+from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.learning.merging import merge
@@ -385,3 +385,31 @@ def test_tasks_that_wait_are_few_and_are_cancelled_with_their_question() -> None
         next(results)
         results.close()
     assert 1 <= len(ran) <= 1 + engine.AHEAD
+
+
+def test_two_runs_that_add_the_same_missions_at_once_count_them_once(
+    folder: Path, found: Answer, tmp_path: Path
+) -> None:
+    """Let other runs add missions while a run, which has read what is there, writes its first file."""
+    write, to = Store.write, tmp_path / "data"
+    log = tmp_path / "r0" / "missions.log"
+    file = missions.LogFile(log)
+    file.append(missions.start())
+    for n, one in enumerate(walks(0)[:30]):  # the log before it grew
+        for record in missions.records(one, DAY * (20_000 + n / 4)):
+            file.append(record)
+    file.close()
+    early = Order((log,), str(to), folder / "test.npz", "{folder}", "1.0", "s0")
+
+    def meanwhile(self: Store, path: str, content: bytes) -> None:
+        monkeypatch.undo()
+        assert [(one.missions, one.known) for one in ingest.ingest(early)] == [(30, 0)]
+        add(folder, range(ROBOTS), to)
+        write(self, path, content)
+
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setattr(Store, "write", meanwhile)
+        add(folder, [0], to)
+    again = answer(Question(str(to)))
+    assert 0 < again.copies < 30
+    assert document.text(replace(again, copies=0)) == document.text(found)
