@@ -284,7 +284,7 @@ def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
     for method, values in found.items():
         known = [value for value in values if value is not None]
         cell = f"{_shown(median(known) if known else None)} ({len(known)})"
-        if method != "ours":
+        if method != "ours" and "ours" in found:
             near = sum(map(at_least_as_near, found["ours"], values))
             cell += f", {near} of {len(values)}"
         cells.append(cell)

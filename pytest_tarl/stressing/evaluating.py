@@ -93,8 +93,8 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        outcomes = self.common(point, count)
-        return examined(self.guarantee, outcomes, self.common(self.space.nominal, count))
+        nominal = self.common(self.space.nominal, count)  # first: no point may have more outcomes than it
+        return examined(self.guarantee, self.common(point, count), nominal)
 
     def measured(self, point: Point) -> tuple[float, float]:
         """Return the margin by all episodes that the search ran at a point, and its approximate standard deviation."""

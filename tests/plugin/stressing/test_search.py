@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from math import sqrt
 
@@ -16,6 +17,7 @@ from pytest_tarl.learning.bounds import Range
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing import evaluating, json_result, page, words
 from pytest_tarl.stressing.combinations import Together
+from pytest_tarl.stressing.evaluating import BudgetSpentError
 from pytest_tarl.stressing.findings import Curve, failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refuted
 from pytest_tarl.stressing.rays import distance, rays
@@ -259,3 +261,16 @@ def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pyt
     jsonschema.validate(document, json_result.schema())
     assert (document["budget"], document["seconds"]) == (None, 20.0)
     assert "budget 20 s" in page.render(found)
+
+
+@pytest.mark.parametrize("budget", [43, 50, 51, 58])
+def test_a_budget_that_ends_between_a_drift_and_its_nominal_pairs_leaves_a_margin(budget: int) -> None:
+    space = space_of(mud=MUD, slope=SLOPE)
+    evaluator = evaluator_of(lambda _, draws: noisy(10.0, draws, 0.5), space, budget=budget)
+    point = {"mud": 0.5, "slope": 0.1}
+    evaluator.common(space.nominal, 8)
+    evaluator.common({"mud": 0.4, "slope": 0.0}, 19)
+    for count in (4, 8, 16, 32):
+        with suppress(BudgetSpentError):
+            evaluator._evidence(point, count)
+    assert np.isfinite(evaluator.measured(point)).all()
