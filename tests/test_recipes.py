@@ -12,7 +12,7 @@ import pytest
 from pytest_tarl.patching.document import apply_edits, document
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.templates import contents, template
-from pytest_tarl.ros import rospy
+from pytest_tarl.ros import install, rospy
 from pytest_tarl.ros.install import STANDINS
 from pytest_tarl.ros.rospy import node as rospy_node
 from tarl_lint import engine
@@ -114,6 +114,7 @@ def test_the_recipe_of_a_ros_api_passes_its_own_test(start, monkeypatch: pytest.
     assert STANDINS["rospy.core"] == "rospy"
     written = made(function, this_node=rospy_node.this_node)
     monkeypatch.setitem(vars(rospy), "is_initialized", written.is_initialized)
+    monkeypatch.setattr(install, "_contents", install._contents.__wrapped__)  # read anew, not from the cache
     made(test).test_is_initialized(start)
 
 

@@ -32,6 +32,7 @@ ALLOWED = {
     *(
         "MIT",
         "MIT-0",
+        "MIT-CMU",
         "BSD",
         "BSD-2-Clause",
         "BSD-3-Clause",
