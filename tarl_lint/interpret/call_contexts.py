@@ -234,7 +234,7 @@ def _missing(
     if rest is not None and parameter.kind == "plain":
         result = join(result, rest)
     if mapping is not None:
-        for obj in mapping.pts:
+        for obj in mapping.objects:
             stored = ctx.store.get((obj, item_field(parameter.name)))
             result = join(result, heap.arrive(ctx, stored or heap.content(ctx, obj), mapping.deps))
     return result if result is not BOTTOM else UNKNOWN

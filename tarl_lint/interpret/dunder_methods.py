@@ -27,7 +27,7 @@ def special(
 ) -> Value | None:
     """Return the result of a special method; None unless every object that a value may be has it."""
     methods: list[Value] = []
-    for obj in value.pts:
+    for obj in value.objects:
         method = _special_method(ctx, obj, name) if obj.kind == "instance" else None
         if method is None:
             return None

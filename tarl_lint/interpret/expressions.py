@@ -94,7 +94,7 @@ def external(ctx: Interpreter, qualified: str) -> Value:
 def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
     base = evaluate(ctx, expr.base, frame)
     value = heap.read(ctx, base, expr.name)
-    for obj in value.pts:
+    for obj in value.objects:
         if obj.kind == "bound" and is_property(obj):
             call = ir.Call(expr, (), (), expr.pos, -expr.slot)
             if len(value.pts) == 1:
@@ -134,7 +134,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
     if not base.pts:
         return Value(extra)
     result = Value(extra, consts=frozenset())
-    for obj in base.pts:
+    for obj in base.objects:
         if obj.kind == "class":
             result = join(result, heap.arrive(ctx, member(ctx, obj, index), base.deps))
         elif not index.pts and (keys := index.keys()):

@@ -17,7 +17,7 @@ def imported(ctx: Interpreter, module: str, member: str | None, importer: object
     if member is None:
         return found if found is not None else expressions.external(ctx, module)
     if found is not None:
-        for obj in found.pts:
+        for obj in found.objects:
             value = ctx.store.get((obj, member))
             if value is None:
                 value = heap.opened(ctx, obj, member)

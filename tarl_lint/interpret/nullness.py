@@ -122,7 +122,7 @@ def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
     if isinstance(expr, ir.Name):
         yield ctx.ops.holder(expr, frame), expr.name
     elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):
-        for base in ctx.ops.evaluate(ctx, expr.base, frame).pts:
+        for base in ctx.ops.evaluate(ctx, expr.base, frame).objects:
             for owner in (base, *_classes(base)):
                 yield owner, expr.name
     elif isinstance(expr, ir.Item):

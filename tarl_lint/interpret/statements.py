@@ -144,7 +144,7 @@ def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Val
     ctx.store.reads.ask(ctx.nullness.setters.__contains__, target.name)
     if target.name not in ctx.nullness.setters:
         return done
-    for obj in base.pts:
+    for obj in base.objects:
         cls = obj.info if obj.kind == "instance" else None
         for owner in lineage(cls) if isinstance(cls, Obj) else ():
             setter = ctx.store.get((owner, f"{target.name}.setter"))
@@ -232,7 +232,7 @@ def _delete(ctx: Interpreter, s: ir.Delete, frame: Frame) -> bool:
 def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
     """Remove an element of a mapping, or all elements of a sequence."""
     known, key = expressions.evaluate(ctx, index, frame).constant()
-    for obj in base.pts if len(base.pts) == 1 else ():
+    for obj in base.objects if len(base.pts) == 1 else ():
         if isinstance(index, ir.Slice) and not index.parts:
             sizes.empty(ctx, obj)
         elif known and obj.kind == "mapping" and heap.content(ctx, obj) is BOTTOM:

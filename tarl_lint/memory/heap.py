@@ -153,7 +153,7 @@ def bind(ctx: Interpreter, value: Value, receiver: Obj, owner: Obj) -> Value:
     if not any(o.kind == "closure" for o in value.pts):
         return value
     bound = []
-    for target in value.pts:
+    for target in value.objects:
         way = _binding(target)
         if way == "staticmethod":
             bound.append(target)
@@ -240,7 +240,7 @@ def read(ctx: Interpreter, base: Value, name: str) -> Value:
         (obj,) = base.pts
         return arrive(ctx, read_field(ctx, obj, name), base.deps)
     result = Value(base.deps, consts=frozenset())
-    for obj in base.pts:
+    for obj in base.objects:
         value = read_field(ctx, obj, name)
         result = join(result, arrive(ctx, value, base.deps))
     return result if base.pts else Value(base.deps)
@@ -252,7 +252,7 @@ def elements(ctx: Interpreter, value: Value) -> Value:
         return Value(value.deps)
     result = Value(value.deps, consts=frozenset())
     ctx.graph.asked += len(value.pts)
-    for obj in value.pts:
+    for obj in value.objects:
         if obj.kind == "instance":
             result = join(result, Value(ctx.ops.deep(ctx, frozenset([obj]))))
         elif obj.kind == "mapping":

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from operator import attrgetter
-from typing import Final
 
 from tarl_lint.definitions import FIELDS
 from tarl_lint.interpret.interpreter import Interpreter
@@ -15,9 +13,7 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Inside
-from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value
-
-NUMBER: Final = attrgetter("number")
+from tarl_lint.memory.values import NONE, NUMBER, ClassInfo, Nodes, Obj, Value
 
 
 @dataclass(slots=True, eq=False)

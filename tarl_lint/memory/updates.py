@@ -13,7 +13,7 @@ MAX_KEYS = 8  # candidate keys of a mapping for one store
 def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
     """Store into a field: a strong update if the pointer has one target, else weak updates."""
     certain = len(base.pts) == 1
-    for held in base.pts:
+    for held in base.objects:
         if held.kind in ("bound", "ext", "method"):
             continue
         obj, field = heap.renamed(ctx, held, name) if held.kind in RENAMING else (held, name)
@@ -35,7 +35,7 @@ def weaken(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
 
 def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
     """Store into an unknown element."""
-    for obj in base.pts:
+    for obj in base.objects:
         if obj.kind in HOLLOW:
             continue
         before = heap.content(ctx, obj)
@@ -51,7 +51,7 @@ def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
 def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
     """Store into an element."""
     keys = ctx.use(index)
-    for obj in base.pts if keys else ():
+    for obj in base.objects if keys else ():
         if obj.kind == "mapping":
             weaken(ctx, obj, KEYS, Value(keys))
     constants = index.keys()

@@ -24,7 +24,7 @@ def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
 
 def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> None:
     """Record a state's remapping of names."""
-    for view in userdata(ctx, state).pts:
+    for view in userdata(ctx, state).objects:
         if isinstance(view.info, dict):
             before = dict(view.info)
             view.info.update(names)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from itertools import count
+from operator import attrgetter
 from typing import Final
 
 from tarl_lint.ir import nodes as ir
@@ -18,6 +19,7 @@ NO_CONSTANTS: frozenset[object] = frozenset()  # of a value that is certainly an
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # numbers of objects, in order of creation
+NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
 MAX_TEXTS = 24  # string constants of a value; high, for tables of topic names
 MAX_DEPTH = 6  # nesting depth of embedded objects
@@ -162,6 +164,11 @@ class Value:
 
     def __repr__(self) -> str:
         return f"Value({sorted(self.deps)}, {list(self.pts)}, {self.consts})"
+
+    @property
+    def objects(self) -> Collection[Obj]:
+        """Return the objects in order of creation; the order of the set `pts` depends on memory addresses."""
+        return self.pts if len(self.pts) < 2 else sorted(self.pts, key=NUMBER)
 
     def constant(self) -> tuple[bool, object]:
         """Return (whether the value is one known constant, the constant)."""

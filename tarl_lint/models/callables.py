@@ -119,7 +119,7 @@ def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
     plain, named = arguments
     objects: set[Obj] = set()
     for value in (*plain, *named.values()):
-        for obj in value.pts:
+        for obj in value.objects:
             if obj.kind in ("sequence", "mapping"):
                 objects |= containers.elements_of_any(ctx, _only(obj)).pts
             else:

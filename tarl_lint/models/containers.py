@@ -68,7 +68,7 @@ def mutate(
         _transmit(ctx, base, plain, frame, call)
         return
     if name == "clear":
-        for obj in base.pts if len(base.pts) == 1 else ():
+        for obj in base.objects if len(base.pts) == 1 else ():
             sizes.empty(ctx, obj)
         shorten(ctx, base, frame, call)
     elif name == "setdefault" and len(plain) > 1:
@@ -81,7 +81,7 @@ def mutate(
     elif name == "update" and base.pts:
         _update(ctx, base, plain, named, frame, call)
     elif name in ("extend", "extendleft"):
-        for obj in base.pts if plain else ():
+        for obj in base.objects if plain else ():
             sizes.lengthen(ctx, obj, plain[0])
         insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
     elif name == "append" and _subscribers(plain):
@@ -91,7 +91,7 @@ def mutate(
 
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
-    for obj in base.pts:
+    for obj in base.objects:
         for key in index.keys() or (None,):
             updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
 
@@ -130,14 +130,14 @@ def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call)
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
     """Write to a port, file or socket, which stores the data but does not return it when read."""
     news = through_statement(ctx, join_all(plain), frame, call) if plain else BOTTOM
-    for obj in base.pts if news is not BOTTOM else ():
+    for obj in base.objects if news is not BOTTOM else ():
         updates.weaken(ctx, obj, SENT, news)
 
 
 def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
     """Return the dependencies of a read from a port, file or socket, without the data written to it."""
     deps = base.deps | call_contexts.all_used(ctx, arguments)
-    for obj in base.pts:
+    for obj in base.objects:
         deps |= heap.content(ctx, obj).deps
     return deps
 
@@ -147,7 +147,7 @@ def _update(
 ) -> None:
     for number, value in enumerate(plain):
         news = through_statement(ctx, value, frame, call, number)
-        for obj in base.pts:
+        for obj in base.objects:
             if obj.kind == "sequence":
                 updates.add_element(ctx, pointer(obj), heap.elements(ctx, news))
             elif obj.kind == "mapping":
@@ -156,7 +156,7 @@ def _update(
                 sizes.absorb(ctx, obj, news)
     for name, value in named.items():
         news = through_statement(ctx, value, frame, call, name)
-        for obj in base.pts:
+        for obj in base.objects:
             updates.weaken(ctx, obj, heap.attribute_of_item(obj, name), news)
 
 

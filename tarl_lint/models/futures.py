@@ -29,7 +29,7 @@ def _set_result(ctx: Interpreter, it: Invocation) -> Value:
 def _result(ctx: Interpreter, it: Invocation) -> Value:
     """Return a future's result; for a library's future, the data passed to it."""
     result = BOTTOM
-    for obj in it.base.pts:
+    for obj in it.base.objects:
         stored = ctx.store.get((obj, RESULT))
         if stored is not None:
             result = join(result, heap.arrive(ctx, stored, it.base.deps))
@@ -42,7 +42,7 @@ def _is_done(ctx: Interpreter, it: Invocation) -> Value:
     """Return the value of `done()`: it depends on the conditions of setting the result, not on the result."""
     node = ctx.node(it.frame, ("done", it.call.slot), "call")
     deps = it.base.deps
-    for obj in it.base.pts:
+    for obj in it.base.objects:
         stored = ctx.store.get((obj, RESULT))
         if stored is None:
             deps |= ctx.use(Value(it.base.deps, frozenset([obj])))

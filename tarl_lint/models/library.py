@@ -137,7 +137,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
     if name[:1].isupper():
         senders.note(ctx, qualified, made, arguments, frame, call)
     if qualified.startswith(containers.NAMED) or (ctx.config.named and name[:1].isupper()):
-        for obj in made.pts:
+        for obj in made.objects:
             obj.name = qualified  # for settings on its methods, and for objects that return what was written
     return made
 

@@ -52,7 +52,7 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
     if this is None or receiver.owner is None:
         return UNKNOWN
     found = []
-    for obj in this.pts:
+    for obj in this.objects:
         view = recency.intern(ctx, "super", (receiver.owner.key, obj))
         view.info = (receiver.owner, obj)
         found.append(view)

@@ -136,7 +136,7 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
     plain, named = it.arguments
     base = plain[0] if plain and it.base is BOTTOM else it.base
     made = copy_of(ctx, base, it.frame, it.call.slot)
-    for obj in made.pts:
+    for obj in made.objects:
         cls = obj.info if obj.kind == "instance" else None
         names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
         for name, value in named.items():
@@ -179,7 +179,7 @@ def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Val
         return value
     obj = _blank(ctx, value, frame, ("copy", slot))
     content = BOTTOM
-    for source in value.pts:
+    for source in value.objects:
         recency.copy_fields(ctx, source, obj)
         content = join(content, heap.content(ctx, source))
     if content is not BOTTOM:
@@ -209,7 +209,7 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
 def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
     """Return a copy with copies of nested objects."""
     made = copy_of(ctx, value, frame, slot)
-    for obj in made.pts - value.pts if depth < MAX_COPIED else ():
+    for obj in reachable_data.in_order(made.pts - value.pts) if depth < MAX_COPIED else ():
         ctx.store.reads.look(obj)
         for name in list(obj.fields):
             inner = ctx.store.get((obj, name))
@@ -242,7 +242,7 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
 
 def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
     """Copy the entries of a mapping or a sequence of pairs."""
-    for source in value.pts:
+    for source in value.objects:
         if source.kind != "sequence":
             sizes.absorb(ctx, obj, Value(value.deps, frozenset([source])))
             continue
@@ -283,7 +283,7 @@ def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
     if not isinstance(factory, Value):
         return BOTTOM
     result = BOTTOM
-    for maker in factory.pts:
+    for maker in factory.objects:
         kind = MADE_BY.get(maker.name.rpartition(".")[2]) if maker.kind == "ext" else None
         if kind is not None:
             result = join(result, pointer(recency.intern(ctx, kind, (mapping.key, "missing", name))))

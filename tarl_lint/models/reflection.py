@@ -30,7 +30,7 @@ def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
     """Return the methods that `getattr(self, "do_" + verb)` may mean; None if unknown."""
     start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
     found = BOTTOM
-    for obj in holder.pts if len(start) > 1 else ():
+    for obj in holder.objects if len(start) > 1 else ():
         for cls in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
             ctx.store.reads.look(cls)
             for member in [n for n in cls.fields if n.startswith(start)]:

@@ -54,7 +54,7 @@ def noted(
 def loaded(ctx: Interpreter, found: Value, frame: Frame, call: ir.Call) -> Value:
     """Return a loaded value: an unknown constant, or an object of unknown constants."""
     ctx.unchanged.add(call)
-    for obj in found.pts:
+    for obj in found.objects:
         ctx.settings[obj] = (frame.program.path, call.pos)
     if found.pts:
         return Value(pts=found.pts)

@@ -129,7 +129,7 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
 
 def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
     """Copy the elements of all objects of a value into an object."""
-    for source in value.pts:
+    for source in value.objects:
         ctx.store.look(source)
         for name in list(source.fields):
             stored = ctx.store.get((source, name))
@@ -157,7 +157,7 @@ def empty(ctx: Interpreter, obj: Obj) -> None:
 def length(ctx: Interpreter, value: Value) -> Nodes:
     """Return the nodes on which a value's length depends; for analysed containers, without their elements."""
     deps = value.deps
-    for obj in value.pts:
+    for obj in value.objects:
         if sized(ctx, obj):
             stored = ctx.store.get((obj, LENGTH))
             made = stored.deps if stored is not None else NONE

@@ -20,7 +20,7 @@ def add_state(ctx: Interpreter, it: Invocation) -> Value:
     for table in in_order(remapping.pts):
         held = ((n, ctx.store.get((table, n))) for n in list(table.fields) if n.startswith("['"))
         pairs = [(n[2:-2], v.texts()[0]) for n, v in held if v is not None and v.texts()]
-        for state in states.pts:
+        for state in states.objects:
             userdata.rename(ctx, state, pairs)
     return UNKNOWN
 

@@ -106,7 +106,7 @@ class Origins:
     def unchanged(self, value: Value, topic: str, path: str) -> bool:
         """Return whether a value is a field of a topic's messages, or a constant set before the first message."""
         fields = 0
-        for obj in value.pts:
+        for obj in value.objects:
             root = obj.whole
             if root in self.topics:
                 if topic not in self.topics[root] or _dotted(obj) != path:
@@ -158,7 +158,7 @@ class Holding:
         pending: list[tuple[str, Value]] = [("", value)]
         while pending:
             path, current = pending.pop()
-            for obj in current.pts:
+            for obj in current.objects:
                 for part in [*obj.fields, *obj.subs]:
                     longer = f"{path}.{part}" if path else part
                     if (name, longer) in self.fields or part == "*" or longer.count(".") > 5:
@@ -171,7 +171,7 @@ class Holding:
         """Return the expressions that contain a topic's field, shortest first."""
         found: list[tuple[str, bool]] = []
         for name, value in self.values.items():
-            for obj in value.pts:
+            for obj in value.objects:
                 if obj.whole not in origins.topics:
                     continue
                 rest = _rest(_dotted(obj), path)

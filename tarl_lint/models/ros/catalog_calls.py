@@ -31,7 +31,7 @@ def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
     """Return the keywords of a call, including those from `**mapping` that the catalog's entry uses."""
     fact, named = it.fact, dict(it.arguments[1])
     for _, name in (fact.topic, fact.type, fact.callback, fact.extra):
-        for obj in named["**"].pts if name and name not in it.arguments[1] else ():
+        for obj in named["**"].objects if name and name not in it.arguments[1] else ():
             stored = ctx.store.get((obj, item_field(name)))
             if stored is not None:
                 named[name] = join(named.get(name, BOTTOM), stored)
@@ -39,7 +39,7 @@ def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
 
 
 def _timer(ctx: Interpreter, it: Invocation) -> Value:
-    for target in it.argument(it.fact.callback).pts:
+    for target in it.argument(it.fact.callback).objects:
         subscriptions.call_when(
             ctx, (it.fact.kind, it.frame.program.path, it.call.pos), target, [], "callback"
         )
@@ -49,7 +49,7 @@ def _timer(ctx: Interpreter, it: Invocation) -> Value:
 def _done(ctx: Interpreter, it: Invocation) -> Value:
     """Run a future's done callback with the future."""
     future = containers.through_statement(ctx, it.base, it.frame, it.call, "future")
-    for target in it.argument(it.fact.callback).pts:
+    for target in it.argument(it.fact.callback).objects:
         subscriptions.call_when(
             ctx, ("done", it.frame.program.path, it.call.pos), target, [future], "callback"
         )
@@ -59,7 +59,7 @@ def _done(ctx: Interpreter, it: Invocation) -> Value:
 def _thread(ctx: Interpreter, it: Invocation) -> Value:
     given = it.argument(it.fact.extra)
     values = sizes.unpacked(ctx, given) or []
-    for target in it.argument(it.fact.callback).pts:
+    for target in it.argument(it.fact.callback).objects:
         subscriptions.call_when(
             ctx, (it.fact.kind, it.frame.program.path, it.call.pos), target, values, "thread"
         )
@@ -164,7 +164,7 @@ def declare(ctx: Interpreter, it: Invocation) -> Value:
         else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=name)
     )
     found = _parameters(ctx, it.base, it.argument(it.fact.topic))
-    for obj in found.pts:
+    for obj in found.objects:
         ctx.store.put((obj, "value"), value)
     return found
 
@@ -189,7 +189,7 @@ def declare_all(ctx: Interpreter, it: Invocation) -> Value:
             ("parameter", it.call.slot, number),
             consts=_value_of(ctx, names[0], parts[1]) if len(names) == 1 else None,
         )
-        for obj in found.pts:
+        for obj in found.objects:
             ctx.store.put((obj, "value"), value)
     return pointer(declared)
 

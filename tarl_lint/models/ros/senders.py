@@ -22,7 +22,7 @@ def note(
     if names:
         launched = ctx.config.launched
         topics = {launched.get(name.lstrip("/"), name) for name in names}
-        for obj in made.pts:
+        for obj in made.objects:
             ctx.senders[obj] = Publisher(topics=topics, api=qualified, path=frame.program.path, pos=call.pos)
 
 

@@ -33,7 +33,7 @@ def service(ctx: Interpreter, it: Invocation) -> Value:
     callback = it.argument(it.fact.callback)
     record = subscriptions.source(ctx, it, callback)
     answer = _sender(it, record, "service")
-    for target in callback.pts:
+    for target in callback.objects:
         if target.kind not in RUN:
             continue
         values = [pointer(subscriptions.message(ctx, record, target))]
@@ -63,7 +63,7 @@ def action(ctx: Interpreter, it: Invocation) -> Value:
     record = subscriptions.source(ctx, it, Value(pts=supplied))
     server = Server(record, _sender(it, record, "action"))
     for way, callback in callbacks.items():
-        for target in callback.pts:
+        for target in callback.objects:
             if target.kind in RUN:
                 _goal_callback(ctx, server, way, target)
     obj = recency.intern(ctx, "server", (record.path, record.pos))
@@ -101,7 +101,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
         return arrived(ctx, server.record, it)
     if it.name in catalog.GOAL_REGISTERS:
         for callback in (*it.arguments[0], *it.arguments[1].values()):
-            for function in callback.pts:
+            for function in callback.objects:
                 if function.kind in RUN:
                     key = (it.name, server.record.path, it.call.pos)
                     subscriptions.call_when(ctx, key, function, [], "callback")

@@ -107,7 +107,7 @@ def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
 
 def connect(ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value]) -> None:
     """Run a callback whenever a message of the source arrives."""
-    for target in callback.pts:
+    for target in callback.objects:
         if (target.kind in CALLABLE and target.kind != "method") or target.kind == "instance":
             arriving = message(ctx, record, target)
             call_when(
@@ -195,7 +195,7 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
         several = target.info[2]
     callback = it.argument((0, "cb"))
     extra = it.arguments[0][1:]
-    for function in callback.pts:
+    for function in callback.objects:
         if function.kind in CALLABLE:
             messages = [_filtered(ctx, part, function, places) for part in parts]
             key = ("filter", it.frame.program.path, it.call.pos)
@@ -209,7 +209,7 @@ def _filtered(ctx: Interpreter, part: Value, function: Obj, places: set[tuple[st
     """Return the message that a subscriber of message_filters forwards."""
     arriving = BOTTOM
     ctx.look(part.pts)
-    for subscriber in part.pts:
+    for subscriber in part.objects:
         if isinstance(subscriber.info, SourceRecord):
             subscriber.info.registered |= places
             arriving = join(arriving, pointer(message(ctx, subscriber.info, function)))
