@@ -13,7 +13,14 @@ from typing import Any
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-JUDGING = ("drift_judging", "drift_judging_2", "drift_judging_3", "drift_judging_4", "drift_structure")
+JUDGING = (
+    "drift_judging",
+    "drift_judging_2",
+    "drift_judging_3",
+    "drift_judging_4",
+    "drift_judging_5",
+    "drift_structure",
+)
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 TASKS = sorted(
     test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
