@@ -248,7 +248,7 @@ def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, 
         if new is not None:
             plain, named = arguments
             made = ctx.ops.call_value(ctx, new, ([pointer(cls), *plain], named), frame, call)
-            for obj in sorted(made.pts, key=lambda o: o.number):
+            for obj in made.objects:
                 if obj.kind == "instance" and obj.info is cls:
                     _initialise(ctx, obj, cls, arguments, frame, call)
             return made

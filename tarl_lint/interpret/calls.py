@@ -9,8 +9,7 @@ from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.reachable_data import in_order
-from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
+from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join, join_all, pointer
 from tarl_lint.models import sizes
 
 MAX_ALIKE = 12  # library objects whose methods are called one by one; more are treated as one receiver
@@ -59,7 +58,7 @@ def _noted(
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
     """Return the arguments of `*value`; joins several sequences of equal length, None if lengths differ."""
-    ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in in_order(value.pts)]
+    ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in value.objects]
     lengths = {-1 if way is None else len(way) for way in ways}
     if -1 in lengths or len(lengths) != 1:
         return None
@@ -75,7 +74,7 @@ def _call_attribute(
     if not base.pts:
         return ctx.ops.call_method(ctx, base, None, function.name, arguments, frame, expr)
     targets: list[tuple[Obj, Value]] = []
-    for obj in in_order(base.pts):
+    for obj in base.objects:
         member = heap.read_field(ctx, obj, function.name) if obj.kind != "ext" else BOTTOM
         targets.append((obj, member))
     if len(targets) == 1:
@@ -147,7 +146,7 @@ def callable_held(ctx: Interpreter, obj: Obj) -> bool:
 
 def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
     """Call every object that a value may be; an unknown callee passes its arguments to the result."""
-    targets = in_order(function.pts)
+    targets = function.objects
     if ctx.nothing_yet(function):
         return BOTTOM
     if not targets:

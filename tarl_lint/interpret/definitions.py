@@ -42,8 +42,9 @@ def decorated(
         wrapper = expressions.evaluate(ctx, decorator, frame)
         maker = decorator.function if isinstance(decorator, ir.Call) else decorator
         if isinstance(maker, ir.Attribute) and _of_library(expressions.evaluate(ctx, maker.base, frame)):
-            for target in sorted((o for o in value.pts if o.kind in LATER), key=lambda o: o.number):
-                subscriptions.call_later(ctx, target, ())
+            for target in value.objects:
+                if target.kind in LATER:
+                    subscriptions.call_later(ctx, target, ())
         if any(wraps(ctx, o) for o in wrapper.pts):
             call = ir.Call(decorator, (), (), s.pos, -1)
             value = calls.call_value(ctx, wrapper, ([value], {}), frame, call)

@@ -23,6 +23,7 @@ from tarl_lint.memory.values import (
     Obj,
     Symbolic,
     Value,
+    in_order,
     join,
 )
 from tarl_lint.models import sizes
@@ -108,7 +109,7 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
     """Return the nodes that decide membership in a container; for a mapping, those of its keys."""
     mappings = frozenset(o for o in value.pts if o.kind == "mapping")
     deps = ctx.use(Value(value.deps, value.pts - mappings))
-    for obj in sorted(mappings, key=lambda o: o.number):
+    for obj in in_order(mappings):
         deps |= heap.keys(ctx, obj, value.deps).deps
     return deps | chosen(ctx, mappings, frame, ("member", slot)) if mappings else deps
 

@@ -13,7 +13,7 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Inside
-from tarl_lint.memory.values import NONE, NUMBER, ClassInfo, Nodes, Obj, Value
+from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 
 
 @dataclass(slots=True, eq=False)
@@ -184,8 +184,3 @@ def _node_like(ctx: Interpreter, obj: Obj) -> bool:
 def _is_self(ctx: Interpreter, frame: Frame, obj: Obj) -> bool:
     value = ctx.store.get((frame, "self"))
     return value is not None and obj in value.pts
-
-
-def in_order(objects: frozenset[Obj]) -> list[Obj]:
-    """Return objects in order of creation; the order of a set depends on memory addresses."""
-    return sorted(objects, key=NUMBER) if len(objects) > 1 else list(objects)

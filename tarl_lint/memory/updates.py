@@ -5,7 +5,7 @@ from __future__ import annotations
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
-from tarl_lint.memory.values import Obj, Value, join
+from tarl_lint.memory.values import Obj, Value, in_order, join
 
 MAX_KEYS = 8  # candidate keys of a mapping for one store
 
@@ -75,7 +75,7 @@ def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> No
     constants = index.keys() or ()
     known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)
-    for obj in sorted(mappings, key=lambda o: o.number):
+    for obj in in_order(mappings):
         for key in known:
             weaken(ctx, obj, heap.attribute_of_item(obj, key), value)
     add_element(ctx, Value(base.deps, base.pts - mappings), value)

@@ -166,9 +166,9 @@ class Value:
         return f"Value({sorted(self.deps)}, {list(self.pts)}, {self.consts})"
 
     @property
-    def objects(self) -> Collection[Obj]:
-        """Return the objects in order of creation; the order of the set `pts` depends on memory addresses."""
-        return self.pts if len(self.pts) < 2 else sorted(self.pts, key=NUMBER)
+    def objects(self) -> list[Obj]:
+        """Return the objects in order of creation."""
+        return in_order(self.pts)
 
     def constant(self) -> tuple[bool, object]:
         """Return (whether the value is one known constant, the constant)."""
@@ -198,6 +198,11 @@ class Value:
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
         return tuple(sorted(str(c) for c in self.consts))
+
+
+def in_order(objects: Collection[Obj]) -> list[Obj]:
+    """Return objects in order of creation; the order of a set depends on memory addresses."""
+    return sorted(objects, key=NUMBER) if len(objects) > 1 else list(objects)
 
 
 BOTTOM = Value(consts=frozenset())

@@ -15,8 +15,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, joins
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import HELD
-from tarl_lint.memory.reachable_data import in_order
-from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, join
+from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join
 from tarl_lint.models import containers
 from tarl_lint.models.smach import LATER
 from tarl_lint.trees import walk
@@ -31,14 +30,14 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
     """Let a library call the functions among its arguments at any time, with the arguments after them."""
     plain, named = arguments
     for number, value in enumerate(plain):
-        for target in in_order(value.pts):
+        for target in value.objects:
             if target.kind == "method":
                 calls.call_object(ctx, target, (plain[number + 1 :], {}), frame, call)
             elif target.kind in LATER:
                 passed = call_contexts.pass_arguments(ctx, (plain[number + 1 :], {}), frame, call)[0]
                 ctx.ops.call_later(ctx, target, passed)
     for value in named.values():
-        for target in in_order(value.pts):
+        for target in value.objects:
             if target.kind in LATER:
                 opaque = _opaque(ctx, arguments, BOTTOM)
                 ctx.ops.call_later(ctx, target, _wanted(ctx, target, opaque)[0] if opaque.deps else ())
@@ -53,7 +52,7 @@ def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:
 def _callables(ctx: Interpreter, values: Iterable[Value], depth: int) -> list[Obj]:
     found: dict[Obj, None] = {}
     for value in values:
-        for obj in in_order(value.pts):
+        for obj in value.objects:
             if obj.kind in LATER or (obj.kind == "instance" and _functor(ctx, obj)):
                 found[obj] = None
             elif obj.kind in ("sequence", "mapping") and depth:

@@ -21,6 +21,7 @@ from tarl_lint.memory.values import (
     Obj,
     Value,
     const,
+    in_order,
     join,
     lineage,
     pointer,
@@ -209,7 +210,7 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
 def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
     """Return a copy with copies of nested objects."""
     made = copy_of(ctx, value, frame, slot)
-    for obj in reachable_data.in_order(made.pts - value.pts) if depth < MAX_COPIED else ():
+    for obj in in_order(made.pts - value.pts) if depth < MAX_COPIED else ():
         ctx.store.reads.look(obj)
         for name in list(obj.fields):
             inner = ctx.store.get((obj, name))

@@ -7,8 +7,18 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
-from tarl_lint.memory.reachable_data import in_order
-from tarl_lint.memory.values import ABSENT, BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join_all, pointer
+from tarl_lint.memory.values import (
+    ABSENT,
+    BOTTOM,
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    in_order,
+    join_all,
+    pointer,
+)
 
 MAX_KNOWN = 16  # separate elements of a computed sequence
 COMBINING = frozenset(["+", "*", "|", "-", "&"])

@@ -16,7 +16,6 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency
 from tarl_lint.memory.abstract_gc import together
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.reachable_data import in_order
 from tarl_lint.memory.shared import Root
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
@@ -73,7 +72,7 @@ def subscribe(ctx: Interpreter, it: Invocation) -> Value:
 
 def _forward(ctx: Interpreter, record: SourceRecord, callback: Value, it: Invocation) -> None:
     """If the callback is a library method, as `other.publish`, call it at the registration."""
-    for target in in_order(callback.pts):
+    for target in callback.objects:
         if target.kind == "method":
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
             calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
