@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from pytest_tarl import processors
 from pytest_tarl.errors import SettingsError
 
 Mode = Literal["plain", "record", "online", "repair", "stress"]
@@ -208,9 +209,8 @@ def _workers(text: str) -> int:
         return int(
             number_within("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024)
         )
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     beside = os.environ.get("PYTEST_XDIST_WORKER_COUNT", "")
-    return max(1, cores // (int(beside) if beside.isdecimal() and int(beside) else 1))
+    return max(1, processors.available() // (int(beside) if beside.isdecimal() and int(beside) else 1))
 
 
 def _known(flag: str, name: str, among: Sequence[str]) -> None:

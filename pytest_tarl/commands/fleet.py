@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from datetime import date
 from pathlib import Path
 
+from pytest_tarl import processors
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import advice_on, write_atomically
@@ -174,7 +174,7 @@ def _fleet(arguments: argparse.Namespace) -> int:
         alpha=arguments.alpha,
         tolerance=arguments.tolerance,
         cluster=arguments.cluster,
-        workers=_cores() if arguments.workers is None else arguments.workers,
+        workers=processors.available() if arguments.workers is None else arguments.workers,
     )
     found = answer(question)
     if arguments.html is not None:
@@ -189,10 +189,6 @@ def _fleet(arguments: argparse.Namespace) -> int:
         for line in words.lines(found):
             print(printable_line(line))
     return int(any(found.meets(rule) for rule in arguments.fail_if))
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _day(text: str | None) -> date | None:
