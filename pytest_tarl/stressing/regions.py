@@ -26,7 +26,6 @@ class Region:
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
     """Yield the regions beyond a failure, the widest first; all its directions reach equally far to their ends."""
-    ranges = [name for name in failed.names if isinstance(space.extents[name], Span)]
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []
@@ -40,7 +39,7 @@ def regions(space: Space, failed: Failure) -> Iterator[Region]:
                 words.append(f"{name}={shown(extent, near)}")
         value = Space(spans, {}) if spans else _fixed(space, failed)
         yield Region(failed.point, Drift(value), " and ".join(words))
-        if not spans or not ranges:
+        if not spans:
             return
 
 

@@ -55,9 +55,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
     together = Together(share, curves)
     ended = explore(evaluator, together, combined=combined)
     indices, ended = variances(evaluator, ended) if combined else (None, ended)
-    executed, ended = (
-        _executed(request, evaluator, together, ended) if request.source is not None else (None, ended)
-    )
+    executed, ended = _executed(request, evaluator, together, ended)
     return Stress(
         test=request.fixture.test,
         drift=request.drift,
@@ -132,11 +130,11 @@ def _executed(
     request: Request, evaluator: Evaluator, together: Together, ended: str
 ) -> tuple[Statements | None, str]:
     """Return the statements of failures, and how the run ended; Ctrl-C before leaves them out."""
+    if ended == "interrupted" or request.source is None:
+        return None, ended
     failures = sorted(
         [*confirmed(together.curves), *together.found], key=lambda one: (one.distance, one.names)
     )
-    if ended == "interrupted" or request.source is None:
-        return None, ended
     try:
         return statements(request.source, evaluator, together.curves, failures), ended
     except KeyboardInterrupt:
