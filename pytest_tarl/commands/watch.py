@@ -141,7 +141,7 @@ def _follow(teller: Teller) -> int:
         status = teller.look()
         return not teller.ending(status), teller.watch, status
 
-    node.run(order.ros, look, order.interval)
+    node.run(order.ros, look, order.interval, teller.stopped)
     return teller.close(teller.watch.status())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
+from threading import Event
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
@@ -17,11 +18,15 @@ TOPIC = "/diagnostics"
 NAME = "tarl_watch"
 OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
+NOTICED = 0.5  # maximum seconds between a signal and the end of the watch
+
 Look = Callable[[], tuple[bool, Watch, Status]]  # whether to continue, and the status
 
 
-def run(library: str, look: Look, period: float) -> None:
-    """Read the logs every `period` seconds of ROS time and publish the status, until the node is shut down.
+def run(library: str, look: Look, period: float, stopped: Event) -> None:
+    """Read the logs every `period` seconds of ROS time and publish the status, until `stopped` is set by a signal.
+
+    ROS may also shut the node down. Its own signal handlers stay off: they would do so while a message is published.
 
     Raise SettingsError if the library or the message package is not installed.
     """
@@ -32,7 +37,7 @@ def run(library: str, look: Look, period: float) -> None:
             f"--diagnostics {library} needs {missing.name}, which is not installed: source the setup.bash of your "
             "ROS, and install its package diagnostic_msgs."
         ) from None
-    (_rospy if library == "rospy" else _rclpy)(ros, messages, look, period)
+    (_rospy if library == "rospy" else _rclpy)(ros, messages, look, period, stopped)
 
 
 def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_level: bool) -> Any:
@@ -83,7 +88,7 @@ def _values(name: str, evidence: Evidence | None) -> list[tuple[str, str]]:
     ]
 
 
-def _rospy(rospy: Any, messages: Any, look: Look, period: float) -> None:
+def _rospy(rospy: Any, messages: Any, look: Look, period: float, stopped: Event) -> None:
     rospy.init_node(NAME, anonymous=True, disable_signals=True)
     publisher = rospy.Publisher(TOPIC, messages.DiagnosticArray, queue_size=1, latch=True)
     with suppress(rospy.ROSInterruptException):
@@ -92,11 +97,13 @@ def _rospy(rospy: Any, messages: Any, look: Look, period: float) -> None:
             publisher.publish(array(messages, rospy.Time.now(), watch, status, bytes_level=False))
             if not go_on:
                 return
-            rospy.sleep(period)
+            due = rospy.get_time() + period
+            while not stopped.is_set() and rospy.get_time() < due:
+                rospy.sleep(min(NOTICED, period))
 
 
-def _rclpy(rclpy: Any, messages: Any, look: Look, period: float) -> None:
-    rclpy.init()
+def _rclpy(rclpy: Any, messages: Any, look: Look, period: float, stopped: Event) -> None:
+    rclpy.init(signal_handler_options=import_module("rclpy.signals").SignalHandlerOptions.NO)
     node = rclpy.create_node(NAME)
     publisher = node.create_publisher(messages.DiagnosticArray, TOPIC, 1)
     going = True
@@ -111,8 +118,8 @@ def _rclpy(rclpy: Any, messages: Any, look: Look, period: float) -> None:
     try:
         tick()
         with suppress(import_module("rclpy.executors").ExternalShutdownException):
-            while going and rclpy.ok():
-                rclpy.spin_once(node)
+            while going and not stopped.is_set() and rclpy.ok():
+                rclpy.spin_once(node, timeout_sec=NOTICED)
     finally:
         node.destroy_node()
         if rclpy.ok():
