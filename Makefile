@@ -92,10 +92,10 @@ $(ROS2_VENV)/.installed: pyproject.toml
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
 	@touch $@
 
-# Small faults sown into pytest_tarl, ten in each package: how many do the tests catch? Hours; nightly
+# Small faults sown into a package, ten in each of its packages: how many do the tests catch? Hours; nightly
 .PHONY: mutants
 mutants: setup
-	$(BIN)/python benchmarks/mutants.py --seed $${SEED:-0}
+	$(BIN)/python benchmarks/mutants.py --of $${OF:-pytest_tarl} --seed $${SEED:-0}
 
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py

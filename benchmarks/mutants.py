@@ -1,8 +1,9 @@
 """Mutation testing: insert small faults, chosen by a seed, and run the tests that reach the line.
 
-`make mutants` inserts ten faults in each package of pytest_tarl. Coverage contexts record which tests reach which line,
-including processes that tests start. Each fault goes into a copy of the checkout without the caches of TARL. It is
-caught if a test fails or the tests take far longer than without it. A fault that no test reaches is not caught.
+`make mutants` inserts ten faults in each package of pytest_tarl, `make mutants OF=tarl_lint` in each of tarl_lint.
+Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a
+copy of the checkout without the caches of TARL. It is caught if a test fails or the tests take far longer than without
+it. A fault that no test reaches is not caught.
 The tests run from the fastest to the slowest, until the next one exceeds `--budget`; a fault that survives these could
 still be caught by slower ones, so the share is a lower bound.
 The script prints the share of caught faults with its exact 95 % interval, and the surviving faults.
@@ -16,18 +17,16 @@ import json
 import os
 import random
 import shutil
-import sqlite3
 import subprocess
 import sys
 import tempfile
-from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import accumulate
 from pathlib import Path
 from py_compile import PycInvalidationMode
 from time import monotonic
 
+from reached_lines import Reached, from_coverage, read
 from scipy.stats import beta
 from sown_faults import Fault, faults
 
@@ -44,7 +43,6 @@ patch = subprocess
 context = ${{PYTEST_CURRENT_TEST-}}
 data_file = {data}
 """
-Reached = dict[tuple[str, int], set[str]]  # tests by file and line
 
 
 @dataclass(frozen=True)
@@ -59,13 +57,25 @@ class Outcome:
 def main() -> None:
     """Insert the faults and print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--package", default="pytest_tarl", help="package to test (default pytest_tarl)")
+    parser.add_argument(
+        "--of",
+        "--package",
+        dest="package",
+        default="pytest_tarl",
+        help="package to test (default pytest_tarl)",
+    )
     parser.add_argument("--only", nargs="*", default=[], metavar="PACKAGE", help="only these subpackages")
     parser.add_argument("--each", type=int, default=10, help="faults in each of its packages (default 10)")
+    parser.add_argument("--count", type=int, help="faults anywhere in the package, instead of --each")
     parser.add_argument("--seed", type=int, default=0, help="chooses the faults (default 0)")
     parser.add_argument("--tests", nargs="*", default=["tests"], help="tests to run (default: all)")
     parser.add_argument(
-        "--keep", type=Path, metavar="FILE", help="file to store the coverage in, or to read it from"
+        "--keep",
+        type=Path,
+        nargs="*",
+        default=[],
+        metavar="FILE",
+        help="files to read the coverage from; one that does not exist gets the coverage of --tests",
     )
     parser.add_argument(
         "--budget",
@@ -79,17 +89,17 @@ def main() -> None:
         copy = Path(folder) / "copy"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*LEFT_OUT))
         precompiled(copy)
-        reached, seconds = known(given.keep, copy, given.package, given.tests)
-        chosen = sample(copy, given.package, set(given.only), given.each, given.seed)
+        reached = known(given.keep, copy, given.package, given.tests)
+        collected(copy, given.tests)
+        chosen = sample(copy, given.package, set(given.only), given.each, given.seed, given.count)
         proven: dict[str, str] = json.loads(EQUIVALENT.read_text())
         outcomes = []
         for fault in chosen:
             if fault.name in proven:
                 print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
                 continue
-            outcomes.append(
-                tried(fault, copy, within(given.budget, reaching(fault, reached), seconds), seconds)
-            )
+            tests = reached.within(given.budget, reached.at(fault.path, fault.lines))
+            outcomes.append(tried(fault, copy, tests, reached.seconds))
             print(
                 f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
                 flush=True,
@@ -97,20 +107,19 @@ def main() -> None:
     report(outcomes)
 
 
-def known(
-    keep: Path | None, copy: Path, package: str, tests: Sequence[str]
-) -> tuple[Reached, Mapping[str, float]]:
-    """Return which tests reach which lines and their durations, measured or read from the file."""
-    if keep is not None and keep.exists():
-        lines, seconds = json.loads(keep.read_text())
-        return {(path, line): set(names) for path, line, names in lines}, seconds
-    reached, seconds = measured(copy, package, tests)
-    if keep is not None:
-        keep.write_text(json.dumps([[[*place, sorted(names)] for place, names in reached.items()], seconds]))
-    return reached, seconds
+def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) -> Reached:
+    """Return which tests reach which lines, measured or read from the files."""
+    if not keep:
+        return measured(copy, package, tests)
+    reached = Reached()
+    for file in keep:
+        if not file.exists():
+            measured(copy, package, tests).write(file)
+        reached.add(read(file))
+    return reached
 
 
-def measured(copy: Path, package: str, tests: Sequence[str]) -> tuple[Reached, dict[str, float]]:
+def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
     """Run the tests once under coverage."""
     with tempfile.TemporaryDirectory() as folder:
         settings, data, times = Path(folder) / "rc", Path(folder) / "data", Path(folder) / "times.json"
@@ -139,7 +148,7 @@ def measured(copy: Path, package: str, tests: Sequence[str]) -> tuple[Reached, d
         subprocess.run(
             [*own, "combine", f"--rcfile={settings}", "-q"], cwd=copy, env=surroundings, check=True
         )
-        return contexts(data, copy), json.loads(times.read_text())
+        return from_coverage(data, copy, json.loads(times.read_text()))
 
 
 TIMES = """
@@ -159,55 +168,34 @@ def pytest_runtest_setup(item):
 """
 
 
-def contexts(data: Path, copy: Path) -> Reached:
-    """Read the tests by line from coverage's database, which stores lines as bits of a blob."""
-    reached: Reached = {}
-    query = (
-        "select file.path, context.context, numbits from line_bits "
-        "join file on file.id = file_id join context on context.id = context_id"
-    )
-    with sqlite3.connect(data) as base:
-        for path, context, bits in base.execute(query):
-            test = context.rpartition(" (")[0] if context.endswith(")") and " (" in context else context
-            name = Path(path).relative_to(copy).as_posix()
-            if not test:
-                continue
-            for byte, value in enumerate(bits):
-                for bit in range(8):
-                    if value & (1 << bit):
-                        reached.setdefault((name, byte * 8 + bit), set()).add(test)
-    return reached
-
-
-def sample(copy: Path, package: str, only: set[str], each: int, seed: int) -> list[Fault]:
-    """Choose `each` faults per package, files weighted by their number of possible faults."""
+def sample(
+    copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
+) -> list[Fault]:
+    """Choose `each` faults per package, or `count` in all; files weighted by their number of possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
     homes["."] = sorted((copy / package).glob("*.py"))
+    homes = {name: files for name, files in homes.items() if not only or name in only}
+    if count is not None:
+        homes, each = {"all": [file for files in homes.values() for file in files]}, count
     for name, files in homes.items():
-        if not only or name in only:
-            all_ = [one for file in files for one in faults(file, file.relative_to(copy).as_posix())]
-            chosen += random.Random(f"{seed} {name}").sample(all_, min(each, len(all_)))
+        all_ = [one for file in files for one in faults(file, file.relative_to(copy).as_posix())]
+        chosen += random.Random(f"{seed} {name}").sample(all_, min(each, len(all_)))
     return chosen
-
-
-def reaching(fault: Fault, reached: Reached) -> set[str]:
-    """Return the tests that reach the statement of a fault."""
-    return set[str]().union(*(reached.get((fault.path, line), set()) for line in fault.lines))
-
-
-def within(budget: float, tests: Iterable[str], seconds: Mapping[str, float]) -> list[str]:
-    """Return the fastest of the passing tests that together take at most `budget` seconds, and at least one."""
-    passing = sorted((test for test in tests if test in seconds), key=lambda test: (seconds[test], test))
-    ends = list(accumulate(seconds[test] for test in passing))
-    return passing[: max(1, bisect_right(ends, budget))]
 
 
 def precompiled(copy: Path) -> None:
     """Compile the sources of the copy. Python compares the digest of a source, so a fault is never missed."""
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
+
+
+def collected(copy: Path, tests: Sequence[str]) -> None:
+    """Compile the tests of the copy by a collection, which runs none."""
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", *tests]
+    surroundings = {**environment(copy), "PYTHONDONTWRITEBYTECODE": ""}
+    subprocess.run(command, cwd=copy, env=surroundings, check=False, stdout=subprocess.DEVNULL)
 
 
 def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, float]) -> Outcome:
