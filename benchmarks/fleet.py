@@ -1,6 +1,7 @@
 """Measure `tarl ingest` and `tarl fleet` on a simulated fleet whose changes are known.
 
     python benchmarks/fleet.py [--robots 1000] [--missions 100] [--logs 20] [--seed 0]
+    python benchmarks/fleet.py --robots 10000 --data DIR     # write the data set and its recording, nothing else
 
 Robots drive past ten places, dry or wet, at 40 sites. Three things differ from the recorded world:
 
@@ -186,6 +187,20 @@ def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Orig
                 to.write(f"{table}/{partition(where, version, day)}/{name}.parquet", contents[table])
         spent += process_time() - before
     return size, spent
+
+
+def written_alone(folder: Path, robots: int, missions: int, seed: int) -> None:
+    """Write the data set of a fleet and its recording, `test.npz`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path, to = folder / "test.npz", store(str(folder))
+    recording(path, seed)
+    about = origin(load(path), path.read_bytes())
+    used, spent = stored(to, fleet(robots, missions, seed), missions, seed, about)
+    to.write(f"recordings/{about.recording}.npz", path.read_bytes())
+    count = robots * missions
+    print(
+        f"{count:,} missions: {used / count:.0f} bytes a mission, {count / spent:,.0f} a CPU second to write"
+    )
 
 
 def logs(folder: Path, robots: list[Robot], missions: int, seed: int) -> list[Path]:
@@ -374,7 +389,11 @@ def main() -> None:
     parser.add_argument("--missions", type=int, default=100, help="of each robot")
     parser.add_argument("--logs", type=int, default=20, help="robots whose logs are ingested by the command")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--data", type=Path, metavar="DIR", help="write the data set to this folder and stop")
     order = parser.parse_args()
+    if order.data is not None:
+        written_alone(order.data, order.robots, order.missions, order.seed)
+        return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         path = folder / "test.npz"

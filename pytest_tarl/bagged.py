@@ -41,7 +41,7 @@ class BaggedMissions:
 
 def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
     """Return the bags as episodes. Raise LogError or SettingsError if none can be compared."""
-    _check(designation)
+    check(designation)
     taking_part: list[Path] = []
     notes: list[str] = []
     for path in options.bags:
@@ -82,7 +82,8 @@ def misfit(bag: Bag, fixture: Fixture) -> str:
     return ""
 
 
-def _check(designation: Designation) -> None:
+def check(designation: Designation) -> None:
+    """Raise SettingsError if a test cannot judge bags."""
     judged = designation.monitor is not None or designation.judge is not None
     if not judged and not designation.requirements.rewarding:
         raise SettingsError(NO_REWARDS)

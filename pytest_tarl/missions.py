@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.accounts import Account, Compared
+from pytest_tarl.analysed import analysed, instruments
 from pytest_tarl.boundary_repairs import Job, repair_boundary
 from pytest_tarl.comparing import run_online
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
-from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError
+from pytest_tarl.errors import FixtureError, SettingsError
 from pytest_tarl.files import slug, write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
@@ -34,7 +35,7 @@ from pytest_tarl.stressing.delivering import deliver, deliver_repairs
 from pytest_tarl.stressing.search import Request
 from pytest_tarl.stressing.statements import source
 from pytest_tarl.unrecorded_nodes import silent_files
-from tarl_lint.api import Analysis, analyse
+from tarl_lint.api import Analysis
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 EARLIER = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
@@ -81,7 +82,7 @@ class Mission:
         analysis = self._analysis()
         sites = plan(analysis)
         sensors = self._sensors(rollout_with, fixture)
-        rollout = rollout_with(self._instruments(sites), sensors)
+        rollout = rollout_with(instruments(sites, self.root), sensors)
         self._ignore()
         if fixture is None:
             return replace(self, designation=replace(self.designation, sensors=sensors))._record(
@@ -114,21 +115,7 @@ class Mission:
         return f"Interrupted in episode {done + 1} of {total}: {left}. {kept}".rstrip()
 
     def _analysis(self) -> Analysis:
-        paths = [(self.folder / node).resolve() for node in self.designation.nodes]
-        for path, node in zip(paths, self.designation.nodes, strict=True):
-            if not path.exists():
-                raise AnalysisError(f"The marker names the node {node!r}: no such file in {self.folder}.")
-        with _working_in(self.root):  # the analysis names files relative to the working directory
-            analysis = analyse(paths, root=self.root)
-        if analysis.errors:
-            first = analysis.errors[0]
-            raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
-        if not analysis.flows:
-            raise AnalysisError(
-                f"No flow from a subscription to a publish call was found in {', '.join(self.designation.nodes)}"
-                ", so there is nothing to instrument: run tarl-lint on it and name all files of the node."
-            )
-        return analysis
+        return analysed(self.designation, self.folder, self.root)
 
     def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
         """Return the sensors with bins: those of the recording, or learned from separate episodes."""
@@ -259,8 +246,8 @@ class Mission:
         sensors = self._sensors(rollout_with, fixture)
         analysis = self._analysis() if self.options.stress_repair else None
         sites = plan(analysis) if analysis is not None else None
-        instruments = Instruments() if sites is None else self._instruments(sites)
-        rollout = rollout_with(instruments, sensors)
+        recorded = Instruments() if sites is None else instruments(sites, self.root)
+        rollout = rollout_with(recorded, sensors)
         given = source(
             [(self.folder / node).resolve() for node in self.designation.nodes],
             self.root.resolve(),
@@ -286,9 +273,6 @@ class Mission:
         told = repair_boundary(job, found.found)
         unwritten = deliver_repairs(replace(found.found, repairs=told.attempts), self.root)
         return Account((*found.lines, *told.lines, *unwritten), found.problem, told.patch, told.interrupted)
-
-    def _instruments(self, sites: Plan) -> Instruments:
-        return Instruments({self.root / path: at for path, at in sites.positions.items()}, sites.publishes)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
         """Return a note if a scenario replaces the design instead of changing it."""
@@ -352,16 +336,6 @@ class Mission:
 def _changeable(analysis: Analysis) -> set[str]:
     """Return the ids of the sites with an operand."""
     return {str(step.site) for step in analysis.sites if analysis.operands(step.site)}
-
-
-@contextmanager
-def _working_in(folder: Path) -> Iterator[None]:
-    before = Path.cwd()
-    os.chdir(folder)
-    try:
-        yield
-    finally:
-        os.chdir(before)
 
 
 class NoFixtureError(FixtureError):

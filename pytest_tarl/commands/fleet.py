@@ -6,12 +6,16 @@ import argparse
 import sys
 from datetime import date
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pytest_tarl import processors
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.printable import printable, printable_line
+
+if TYPE_CHECKING:
+    from pytest_tarl.workers.replays import Replays
 
 
 def add_merge(commands: argparse._SubParsersAction[Parser]) -> None:
@@ -45,9 +49,17 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
     """Declare `tarl ingest`."""
-    ingest = commands.add_parser("ingest", help="add the missions of logs to the data set of a fleet")
+    ingest = commands.add_parser(
+        "ingest", help="add the missions of logs and bags to the data set of a fleet"
+    )
     flag = ingest.add_argument
-    flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`")
+    flag(
+        "logs",
+        type=Path,
+        nargs="+",
+        metavar="LOG",
+        help="logs of `tarl observe`, or bags with one mission each (.bag, .mcap, .db3, a ROS 2 bag's folder)",
+    )
     flag("--to", required=True, metavar="DIR", help="data set: a folder, or a URL such as s3://bucket/folder")
     flag("--fixture", type=Path, required=True, metavar="FILE", help="the recording that the robots observed")
     flag(
@@ -67,10 +79,40 @@ def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
     flag(
         "--hash-robots", default="", metavar="SALT", help="store keyed digests in place of the robots' names"
     )
+    flag(
+        "--project",
+        type=Path,
+        metavar="DIR",
+        help="folder of the recorded test, through whose nodes bags are replayed (default: the one whose .tarl holds "
+        "the recording, else the current one)",
+    )
     ingest.set_defaults(run=_ingest)
 
 
 def _ingest(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.fleet.bag_missions import is_bag
+
+    if not any(map(is_bag, arguments.logs)):
+        return _ingested(arguments, None)
+    from pytest_tarl.learning.fixture import load
+    from pytest_tarl.workers.replays import Replays
+
+    replays = Replays(load(arguments.fixture), _project(arguments))
+    try:
+        return _ingested(arguments, replays)
+    finally:
+        replays.close()
+
+
+def _project(arguments: argparse.Namespace) -> Path:
+    """Return the folder of the recorded test."""
+    if arguments.project is not None:
+        return Path(arguments.project).resolve()
+    folder = arguments.fixture.resolve().parent
+    return folder.parent.parent if folder.parts[-2:] == (".tarl", "utility") else Path.cwd()
+
+
+def _ingested(arguments: argparse.Namespace, replays: Replays | None) -> int:
     from pytest_tarl.fleet.ingest import Order, ingest
 
     order = Order(
@@ -82,6 +124,7 @@ def _ingest(arguments: argparse.Namespace) -> int:
         site=arguments.site,
         salt=arguments.hash_robots,
         repair=arguments.repair,
+        replay=replays,
     )
     found, refused = 0, 0
     for one in ingest(order):
@@ -93,6 +136,8 @@ def _ingest(arguments: argparse.Namespace) -> int:
         known = f", {one.known} were there already" if one.known else ""
         unjudged = f", {one.unjudged} not judged by every formula" if one.unjudged else ""
         print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}{unjudged}"))
+        for note in one.notes:
+            print(printable_line(f"    note: {note}"))
     print(printable_line(f"{order.to}: {found} missions added"))
     return 2 if refused else 0
 

@@ -1,4 +1,4 @@
-"""`tarl ingest`: add the missions of logs to a data set, each once, however often it is repeated or interrupted."""
+"""`tarl ingest`: add the missions of logs and bags to a data set, each once, even if it is repeated or interrupted."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from pathlib import Path
 
 from pytest_tarl.errors import LogError, RepairError, SettingsError
 from pytest_tarl.fleet import dataset
+from pytest_tarl.fleet.bag_missions import Replay, identified, is_bag, replayed
 from pytest_tarl.fleet.logged_samples import logged_samples
-from pytest_tarl.fleet.rows import Row, files, formulas_of
+from pytest_tarl.fleet.rows import Row, date, files, formulas_of
 from pytest_tarl.fleet.schema import TABLES, Origin, origin, partition, repair_path
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load
@@ -38,6 +39,7 @@ class Order:
     site: str = "unknown"
     salt: str = ""  # replace names of robots by digests if given
     repair: str = ""  # in the robots' software: a name, or a patch file of .tarl/patches
+    replay: Replay | None = None  # replays bags
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ class Ingested:
     known: int = 0
     problem: str = ""
     unjudged: int = 0  # missions without a verdict on each formula of the recording
+    notes: tuple[str, ...] = ()  # on the replay of a bag
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
@@ -61,20 +64,40 @@ def ingest(order: Order) -> Iterator[Ingested]:
     fixture = load(order.fixture)
     recording = order.fixture.read_bytes()
     into = _Writer(store(order.to), order.version, origin(fixture, recording), fixture, recording)
-    formulas = fixture.sample.judgements.formulas if fixture.sample.judgements else ()
     repair = repair_of(order.repair)
     keep_origin(into.store, order.repair, repair)
     for log in order.logs:
         robot = named(order, log)
         try:
+            if is_bag(log):
+                yield _bag(order, log, robot, repair, into)
+                continue
             rows = list(_rows(log, fixture, robot, order.site, repair))
             added = into.add(rows)
         except LogError as problem:
             yield Ingested(log, robot, problem=str(problem))
             continue
-        unjudged = sum(len(formulas_of(row.sample)) < len(formulas) for row in rows)
-        yield Ingested(log, robot, added, len(rows) - added, unjudged=unjudged)
+        yield Ingested(log, robot, added, len(rows) - added, unjudged=_unjudged(rows, fixture))
     into.write()
+
+
+def _bag(order: Order, log: Path, robot: str, repair: str, into: _Writer) -> Ingested:
+    """Add the mission of a bag; replay it only if the data set lacks it. Raise LogError if it cannot be ingested."""
+    found = identified(log, into.fixture)
+    time = valid_time(found.time)
+    if into.holds(date(time), found.mission, robot):
+        return Ingested(log, robot, known=1)
+    if order.replay is None:
+        raise SettingsError(f"{log} is a bag, and nothing replays it.")
+    sample, notes = replayed(log, found.mission, into.fixture, order.replay)
+    row = Row(robot, order.site, time, sample, repair)
+    into.add([row])
+    return Ingested(log, robot, 1, unjudged=_unjudged([row], into.fixture), notes=notes)
+
+
+def _unjudged(rows: Sequence[Row], fixture: Fixture) -> int:
+    formulas = fixture.sample.judgements.formulas if fixture.sample.judgements else ()
+    return sum(len(formulas_of(row.sample)) < len(formulas) for row in rows)
 
 
 def repair_of(name: str) -> str:
@@ -130,12 +153,7 @@ class _Writer:
         Raise LogError if the data set has one of them as a mission of another robot.
         """
         for row in rows:
-            robot = self._held(row.date).get(row.mission, row.robot)
-            if robot != row.robot:
-                raise LogError(
-                    f"A mission of {row.robot} is in {self.store.shown('')} already, as one of {robot}: correct "
-                    f"--robot, or delete the files of {robot} and ingest its logs again."
-                )
+            self.holds(row.date, row.mission, row.robot)
         before = self.waiting
         for row in rows:
             held = self._held(row.date)
@@ -147,6 +165,16 @@ class _Writer:
         if self.waiting >= TOGETHER:
             self.write()
         return added
+
+    def holds(self, day: str, mission: int, robot: str) -> bool:
+        """Return whether a robot's mission is in the data set or waits. Raise LogError if it is another robot's."""
+        other = self._held(day).get(mission)
+        if other is not None and other != robot:
+            raise LogError(
+                f"A mission of {robot} is in {self.store.shown('')} already, as one of {other}: correct "
+                f"--robot, or delete the files of {other} and ingest its logs again."
+            )
+        return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
         """Return the robot of each mission of a day that is in the data set or waits."""

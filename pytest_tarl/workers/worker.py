@@ -19,8 +19,10 @@ from _pytest.config import Config
 from pytest_tarl.errors import TarlError
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
 from pytest_tarl.rollout import Rollout
+from pytest_tarl.scenarios import without_drift
 from pytest_tarl.sensors import with_edges
 from pytest_tarl.workers import protocol
+from pytest_tarl.workers.replaying import replaying
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
 BEAT = 1.0  # s between two heartbeats
@@ -76,7 +78,9 @@ class Server:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Run an episode for each request."""
-        wanted = [item for item in session.items if item.nodeid == self.post["nodeid"]]
+        replays = self.post["instruments"] is None
+        named = without_drift if replays else _nodeid
+        wanted = [item for item in session.items if named(item) == self.post["nodeid"]]
         if not wanted or not isinstance(wanted[0], pytest.Function):
             self.refuse(f"{self.post['nodeid']} was not collected")
             return True
@@ -85,10 +89,17 @@ class Server:
         if marked is None:
             self.refuse(f"{item.nodeid} has no tarl marker")
             return True
-        self.serving = True
         edges = {name: tuple(ends) for name, ends in self.post["edges"].items()}
         told = replace(marked, sensors=with_edges(marked.sensors, edges))
-        rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
+        if replays:
+            try:
+                rollout: Rollout = replaying(item, told, self.post["sensors"], self.post["sites"])
+            except TarlError as problem:
+                self.refused(problem)
+                return True
+        else:
+            rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
+        self.serving = True
         self._say(protocol.READY)
         _thread.start_new_thread(self._beat, ())
         while request := protocol.read(self.requests):  # an empty request ends the session
@@ -109,11 +120,17 @@ class Server:
 
     def refuse(self, problem: str) -> None:
         """Answer the first message with the reason why the test cannot be prepared."""
+        self.refused(TarlError("\n".join([problem, *self.problems])))
+
+    def refused(self, problem: TarlError) -> None:
+        """Answer the first message with an error."""
         if not self.serving:
-            protocol.write(
-                self.answers, protocol.error_message(TarlError("\n".join([problem, *self.problems])))
-            )
+            protocol.write(self.answers, protocol.error_message(problem))
             self.serving = True
+
+
+def _nodeid(item: pytest.Item) -> str:
+    return item.nodeid
 
 
 def answer(rollout: Rollout, request: bytes) -> bytes:

@@ -14,12 +14,16 @@ def main() -> None:
     pipes = _pipes()
     start = json.loads(sys.argv[1])
     sys.path[:] = start["path"]
-    from _pytest.config import Config
+    from _pytest.config import Config, _prepareconfig
 
     problem = ""
     config = None
     try:
-        config = Config.fromdictargs(start["options"], [start["target"]])
+        if "arguments" in start:  # of a command line, which no run of pytest has read yet
+            config = _prepareconfig(start["arguments"])
+            vars(config.option).update(start["options"])
+        else:
+            config = Config.fromdictargs(start["options"], [start["target"]])
     except (Exception, SystemExit) as refused:
         problem = f"{type(refused).__name__}: {refused}"
     from pytest_tarl.workers.worker import serve

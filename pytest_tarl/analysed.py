@@ -1,0 +1,51 @@
+"""The analysis of a test's nodes, and what it says to instrument."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pytest_tarl.designation import Designation
+from pytest_tarl.errors import AnalysisError
+from pytest_tarl.instrumentation.sites import Plan
+from pytest_tarl.repeating import Instruments
+from tarl_lint.api import Analysis, analyse
+
+
+def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
+    """Analyse the nodes of a test in a folder; files are named relative to `root`.
+
+    Raise AnalysisError if a node cannot be analysed, or if nothing flows through the nodes.
+    """
+    paths = [(folder / node).resolve() for node in designation.nodes]
+    for path, node in zip(paths, designation.nodes, strict=True):
+        if not path.exists():
+            raise AnalysisError(f"The marker names the node {node!r}: no such file in {folder}.")
+    with _working_in(root):  # the analysis names files relative to the working directory
+        analysis = analyse(paths, root=root)
+    if analysis.errors:
+        first = analysis.errors[0]
+        raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
+    if not analysis.flows:
+        raise AnalysisError(
+            f"No flow from a subscription to a publish call was found in {', '.join(designation.nodes)}"
+            ", so there is nothing to instrument: run tarl-lint on it and name all files of the node."
+        )
+    return analysis
+
+
+def instruments(sites: Plan, root: Path) -> Instruments:
+    """Return what to instrument."""
+    return Instruments({root / path: at for path, at in sites.positions.items()}, sites.publishes)
+
+
+@contextmanager
+def _working_in(folder: Path) -> Iterator[None]:
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        yield
+    finally:
+        os.chdir(before)

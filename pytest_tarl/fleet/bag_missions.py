@@ -1,0 +1,66 @@
+"""The mission of a bag: identified by its messages, replayed through the nodes of the recorded test."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pytest_tarl.bagged import misfit
+from pytest_tarl.bags.reading import ENDINGS, opened
+from pytest_tarl.errors import LogError
+from pytest_tarl.fleet.logged_samples import BYTES, plan_of
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.judgements import judgements
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.rollout import EpisodeRun
+
+Replay = Callable[[Path, int], EpisodeRun]
+
+
+@dataclass(frozen=True)
+class Bagged:
+    """The identity of a bag's mission, which only copies of the bag share, and its start in seconds since 1970."""
+
+    mission: int
+    time: float
+
+
+def is_bag(path: Path) -> bool:
+    """Return whether a file or folder is a bag by its name."""
+    return path.is_dir() or path.name.endswith(ENDINGS)
+
+
+def identified(path: Path, fixture: Fixture) -> Bagged:
+    """Return the mission of a bag, without replaying it.
+
+    The identity is a digest of times, topics and contents of the messages: a bag keeps it whatever file format or
+    compression it is converted to, and whatever nodes it is replayed through. Raise LogError if the bag cannot be
+    read to its end, or does not fit the recording.
+    """
+    bag = opened(path)
+    if why := misfit(bag, fixture):
+        raise LogError(f"{why}: bag left out.")
+    digest = hashlib.sha256()
+    for one in bag.messages():
+        digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
+        digest.update(one.data)
+    if bag.notes:  # cut off: when it is whole, it would be another mission
+        raise LogError(
+            f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
+            "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."
+        )
+    return Bagged(int.from_bytes(digest.digest()[:BYTES], "big"), bag.start / 1e9)
+
+
+def replayed(path: Path, mission: int, fixture: Fixture, replay: Replay) -> tuple[Sample, tuple[str, ...]]:
+    """Return the statistics of a bag's mission, and notes on its replay. Raise LogError if it has no rewards."""
+    run = replay(path, mission)
+    if not run.trace.steps:
+        raise LogError(
+            f"{path} holds no step with rewards: at no moment, all sensors had a value and the monitor a reward."
+        )
+    found = sample(replace(run.trace, parts={}), mission, run.passed, plan_of(fixture).members)
+    return replace(found, judgements=judgements(run.judged)), run.notes
