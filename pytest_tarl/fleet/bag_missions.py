@@ -36,7 +36,7 @@ def is_bag(path: Path) -> bool:
 def identified(path: Path, fixture: Fixture) -> Bagged:
     """Return the mission of a bag, without replaying it.
 
-    The identity is a digest of times, topics and contents of the messages: a bag keeps it whatever file format or
+    The identity is a digest of times, topics and contents of the messages: a bag keeps it whatever container or
     compression it is converted to, and whatever nodes it is replayed through. Raise LogError if the bag cannot be
     read to its end, or does not fit the recording.
     """

@@ -64,7 +64,7 @@ def test_bags_of_every_format_are_replayed_once_and_judged_beside_the_recording(
     )
     assert statements.fetchall()[0][0] > 0
     monkeypatch.setattr(pool, "Worker", None)  # nothing is replayed again
-    converted = write_bag(project.path / "again" / "r0.mcap", mission(1.0, 0))
+    converted = write_bag(project.path / "again" / "r1.db3", mission(1.0, 1))
     assert ingested(project, *bags, converted) == 0
     assert missions(project) == found
     assert "1 were there already" in capsys.readouterr().out
