@@ -34,7 +34,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Generator[None]:
-    """Suggest a flag for a misspelt one, once all plugins and conftest files have declared their flags."""
+    """Suggest a flag for a misspelt one, once all plugins and conftest files have declared their flags.
+
+    Raise pytest.UsageError with the suggestion.
+    """
     yield
     if any(word.startswith(PREFIX) for word in args):
         sentence = misspelt(parser.parse_known_and_unknown_args(args)[1])
@@ -43,7 +46,10 @@ def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Gen
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker, and the session object if a mode is selected."""
+    """Register the marker, and the session object if a mode is selected.
+
+    Raise pytest.UsageError if a mode is selected and the extra `pytest` is not installed.
+    """
     config.addinivalue_line("markers", MARKER)
     held_interpreter.prepare()
     if _asked(config):

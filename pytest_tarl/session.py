@@ -134,7 +134,10 @@ class TarlSession:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a designated test in the selected mode, as one test with one report per phase."""
+        """Run a designated test in the selected mode, as one test with one report per phase.
+
+        Raise KeyboardInterrupt after the reports of a test that Ctrl-C ended.
+        """
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
         if not self.options.holm:

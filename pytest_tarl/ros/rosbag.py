@@ -104,7 +104,10 @@ class Bag:
         raw: bool = False,
         return_connection_header: bool = False,
     ) -> Iterator[BagMessage]:
-        """Yield topic, message and time in order of time; optionally of some topics, within inclusive limits."""
+        """Yield topic, message and time in order of time; optionally of some topics, within inclusive limits.
+
+        Raise for filters of connections and for connection headers, which are not supported.
+        """
         if connection_filter is not None or return_connection_header:
             raise unsupported("read_messages(connection_filter=…, return_connection_header=True)")
         wanted = [topics] if isinstance(topics, str) else topics

@@ -198,7 +198,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         raw: bool = False,
         content_filter_options: Any = None,
     ) -> Subscription:
-        """Create a subscription."""
+        """Create a subscription; raise for raw messages and for filters of content, which the bus does not have."""
         if raw:
             raise unsupported("Node.create_subscription(raw=True)")
         if content_filter_options is not None:
