@@ -111,7 +111,7 @@ def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, f
         cycle(value)
         observer.step(float(number))
         clock.now += 1 / RATE
-        while len(observer._times) > BEHIND or observer._outlet._put - observer._outlet._sent > 1 << 20:
+        while len(observer._times) > BEHIND or observer._outlet.unsent > 1 << 19:
             sleep(0.0005)  # wait for the thread and the disk, as the simulated clock is faster
     observer.end(passed=True)
     observer.close()

@@ -1,7 +1,12 @@
-"""Observe a node: latch sensors at their messages, track rewards and missions, and pass them on from a thread."""
+"""Observe a node: latch sensors at their messages, track rewards and missions, and pass them to the writer process.
+
+A control cycle only appends numbers to lists, which garbage collection does not visit. A thread moves them to memory
+that the writer process shares, every `PERIOD`.
+"""
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -13,12 +18,12 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.formulas.signals import Signal, signal_value
 from pytest_tarl.observing.frames import FORMAT
 from pytest_tarl.observing.outlet import Outlet
+from pytest_tarl.observing.readers import binner, reader
 from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
-from pytest_tarl.sensors import Cell, Sensor, reading
+from pytest_tarl.sensors import Cell, Sensor
 
-PERIOD = 0.02  # minimum seconds between two cuts; longer intervals would make each cut take longer
-PATIENCE = 0.1  # seconds after which to cut even if no step was closed
+PERIOD = 0.02  # seconds between two cuts; the thread holds the interpreter for about 0.1 ms each time
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
@@ -44,41 +49,45 @@ class Observer:
     ) -> None:
         self.stream = Stream()
         self.sensors = tuple(sensors)
-        self._names = tuple(sensor.name for sensor in self.sensors)
+        self._how = {
+            one.name: (at, reader(one.field), binner(one), following and not one.categories)
+            for at, one in enumerate(self.sensors)
+        }
         self.signals = tuple(signals)  # signals of formulas that are read from messages
+        self._signal_readers = {one.name: reader(one.field) for one in self.signals}
         self._following = following  # whether to record every change, as formulas need it
         self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
         self._times: list[float] = []  # when steps were closed
         self._begun = monotonic()
         self._outlet = Outlet(log, {"format": FORMAT, **about}, rotation)
         self._idle = idle
-        self._bins: dict[str, int | None] = {}
-        self._values: dict[str, Any] = {}
+        self._bins: list[int | None] = [None] * len(self.sensors)
+        self._values: list[Any] = [None] * len(self.sensors)
         self._numbers: dict[str, float] = {}  # values of signals received in this mission
         self._before: dict[str, float] = {}  # values before the mission, for signals without a message in it
-        self._readings: list[list[Any]] = []
+        self._readings: list[Any] = []  # the values of all sensors at each step, one step after the other
         self._active = monotonic()
         self.running = False  # whether a mission runs
         self.problem = ""  # the first error in here: errors must not reach the node
         self._lock = threading.RLock()  # order of records
-        self._over = False
-        self._wake = threading.Lock()  # held while the thread sleeps; closing a step releases it
-        self._wake.acquire()
-        self._cut_at = self._begun
-        self._thread = threading.Thread(target=self._write, name="tarl-observer", daemon=True)
+        self._over = (
+            threading.Lock()
+        )  # held until the end; an Event would cost the node's thread more each period
+        self._over.acquire()
+        self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)
         self._outlet.put("start", time())
         self._thread.start()
 
     def told(self, sensor: Sensor, message: Any) -> None:
         """Latch a sensor whose message is about to reach the node."""
         try:
-            value = reading(message, sensor.field or "")
-            self._values[sensor.name] = value
-            if self._following and not sensor.categories:
+            at, read, bin_of, followed = self._how[sensor.name]
+            self._values[at] = value = read(message)
+            if followed:
                 self._note(sensor.name, value)
-            bin_ = sensor.bin(value)
-            if self._bins.get(sensor.name, self) != bin_:
-                self._bins[sensor.name] = bin_
+            bin_ = bin_of(value)
+            if self._bins[at] != bin_:
+                self._bins[at] = bin_
                 self.stream.latch(self._cell())
         except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
             self.problem = self.problem or f"Sensor {sensor.name!r}: {problem}"
@@ -87,7 +96,7 @@ class Observer:
         """Record the value of a signal."""
         try:
             if self._following:
-                self._note(signal.name, reading(message, signal.field or ""))
+                self._note(signal.name, self._signal_readers[signal.name](message))
         except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
             self.problem = self.problem or f"Signal {signal.name!r}: {problem}"
 
@@ -101,13 +110,9 @@ class Observer:
     def step(self, reward: float) -> None:
         """Close a step with its reward; NaN if the test's `judge` computes it later."""
         with self._lock:
-            now = monotonic()
-            self._times.append(now - self._begun)
-            self._readings.append([*map(self._values.get, self._names)])
+            self._times.append(monotonic() - self._begun)
+            self._readings += self._values
             self.stream.reward(reward)
-            if now - self._cut_at > PERIOD and self._wake.locked():
-                self._cut_at = now
-                self._wake.release()  # at the end of a cycle, to write before the next one begins
 
     def begin(self) -> None:
         """Begin a mission; a running one ends as succeeded."""
@@ -150,24 +155,21 @@ class Observer:
 
     def close(self) -> None:
         """Write the remaining records."""
-        self._over = True
-        with self._lock:
-            if self._wake.locked():
-                self._wake.release()
+        self._over.release()
         self._thread.join()
         with self._lock:
             self._flush()
             self._outlet.close()
-            self.problem = self.problem or self._outlet.problem
+            self.problem = "; ".join(filter(None, (self.problem, self._outlet.problem)))
 
     def _cell(self) -> Cell | None:
-        bins = [self._bins.get(sensor.name) for sensor in self.sensors]
-        known = [one for one in bins if one is not None]
-        return tuple(known) if len(known) == len(bins) else None
+        known = [one for one in self._bins if one is not None]
+        return tuple(known) if len(known) == len(self._bins) else None
 
-    def _write(self) -> None:
-        while not self._over:
-            self._wake.acquire(timeout=PATIENCE)
+    def _look(self) -> None:
+        """Hand over what was recorded, end idle missions and report a writer that ended."""
+        reported = False
+        while not self._over.acquire(timeout=PERIOD):
             with self._lock:
                 if self._idle is not None and self.running and monotonic() - self._active > self._idle:
                     self.end(passed=True)
@@ -175,17 +177,20 @@ class Observer:
                     self.stream.relieve()
                 else:
                     self._flush()
-            self._outlet.pump()
+                self._outlet.pump()
+            if self._outlet.problem and not reported:
+                reported = True
+                print(f"observe: {self._outlet.problem}", file=sys.stderr, flush=True)
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
         steps = len(cut.rewards)  # dropped between missions
-        readings, self._readings = self._readings[:steps], self._readings[steps:]
+        values = steps * len(self.sensors)
+        readings, self._readings = self._readings[:values], self._readings[values:]
         times, self._times = self._times[:steps], self._times[steps:]
         if self.running and not cut.empty:
             followed = (times, self._taken()) if self._following else None
-            readings = [[*map(_plain, one)] for one in readings]
-            self._outlet.put("steps", tuple(cut), readings, self.stream.dropped, followed)
+            self._outlet.put("steps", tuple(cut), [*map(_plain, readings)], self.stream.dropped, followed)
         elif cut.cells:
             self._outlet.put("cells", cut.cells)
 

@@ -1,9 +1,7 @@
-"""Send an observer's messages from the node's process through a pipe to a writer process."""
+"""Send an observer's messages from the node's process through shared memory to a writer process."""
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import json
 import marshal
 import os
@@ -12,76 +10,104 @@ import sys
 from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 from pytest_tarl.errors import LogError
+from pytest_tarl.observing.ring import SIZE, Ring, shared_memory
 from pytest_tarl.observing.writer import Rotation
-from pytest_tarl.observing.writer_main import LENGTH, READY
+from pytest_tarl.observing.writer_main import LENGTH, PERIOD, READY
 
 MOST_WAITING = 1 << 26  # maximum size in bytes of waiting messages; while more wait, events are dropped
-_PIPE = 1 << 20  # size of the pipe's buffer in bytes, if the system allows it
+ENDED = (
+    f"The process that writes the log was ended: the last {PERIOD:g} s before that may be missing from the log, and "
+    "all later records are lost."
+)
+_PIECE = SIZE // 4  # bytes; larger messages are sent in pieces of this size
 _PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
+_LOOKS = 10  # calls of `pump` between two looks whether the writer still runs
+_PAUSE = 0.005  # seconds between two tries while closing
 
 
 class Outlet:
-    """Messages to the writer. `put` and `pump` never wait; `pump` belongs to one thread."""
+    """Messages to the writer. `put` and `pump` never wait; callers hold a lock to keep messages in order.
+
+    A forked child of the node's process sends nothing.
+    """
 
     def __init__(self, log: Path, about: Mapping[str, Any], rotation: Rotation) -> None:
         self.problem = ""  # why writing stopped
-        self._waiting: deque[bytes | memoryview] = deque()
-        self._put = self._sent = 0  # bytes
-        order = {"log": str(log), "about": dict(about), "rotation": [rotation.size, rotation.keep]}
+        self._waiting: deque[bytes] = deque()  # pieces that did not fit into the ring yet
+        self._held = 0  # their bytes
+        self._pumped = 0  # calls of `pump`
+        self._owner = os.getpid()
+        memory = shared_memory()
+        order = {
+            "log": str(log),
+            "about": dict(about),
+            "rotation": [rotation.size, rotation.keep],
+            "ring": memory,
+        }
         command = [sys.executable, "-m", "pytest_tarl.observing.writer_main", json.dumps(order)]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+        try:
+            self._ring = Ring(memory, writes=True)
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0, pass_fds=(memory,)
+            )
+        finally:
+            os.close(memory)
         said = self._said()
         if said != READY:
             self._process.communicate()
             raise LogError(said or f"{log} cannot be written: the writer's process did not start.")
-        with contextlib.suppress(OSError, AttributeError):
-            fcntl.fcntl(self._pipe(), fcntl.F_SETPIPE_SZ, _PIPE)
-        os.set_blocking(self._pipe(), False)
 
     @property
     def full(self) -> bool:
         """Return whether more than MOST_WAITING bytes are unsent; callers then put nothing more."""
-        return self._put - self._sent > MOST_WAITING
+        return self._held > MOST_WAITING
+
+    @property
+    def unsent(self) -> int:
+        """Return the number of bytes that wait in this process or in the shared memory."""
+        return self._held + self._ring.unread
 
     def put(self, *message: Any) -> None:
-        """Queue a message. Callers hold a lock to keep messages in order."""
-        if not self.problem:
-            text = marshal.dumps(message, _PLAIN)
-            self._waiting.append(LENGTH.pack(len(text)) + text)
-            self._put += LENGTH.size + len(text)
+        """Send a message, or queue it if the shared memory is full."""
+        if self.problem or os.getpid() != self._owner:
+            return
+        text = marshal.dumps(message, _PLAIN)
+        data = LENGTH.pack(len(text)) + text
+        if self._waiting or len(data) > _PIECE or not self._ring.write(data):
+            self._queue(data)
 
     def pump(self) -> None:
-        """Send as many queued bytes as the pipe accepts now."""
-        try:
-            while self._waiting and not self.problem:
-                piece = self._waiting.popleft()
-                rest = memoryview(piece)[os.write(self._pipe(), piece) :]
-                self._sent += len(piece) - len(rest)
-                if rest:
-                    self._waiting.appendleft(rest)
-        except BlockingIOError:
-            self._waiting.appendleft(piece)
-        except OSError:
-            self.problem = (
-                self._said() or "The process that writes the log was ended: later records are lost."
-            )
+        """Send as many queued pieces as fit into the shared memory now; notice a writer that ended."""
+        if os.getpid() != self._owner:
+            return
+        self._pumped += 1
+        if not self.problem and self._pumped % _LOOKS == 0 and self._process.poll() is not None:
+            self.problem = self._said() or ENDED
             self._waiting.clear()
+            self._held = 0
+        while self._waiting and self._ring.write(self._waiting[0]):
+            self._held -= len(self._waiting.popleft())
 
     def close(self) -> None:
         """Send the rest and wait until it is written."""
-        os.set_blocking(self._pipe(), True)
-        self._waiting.append(LENGTH.pack(0))
+        if os.getpid() != self._owner:
+            return
+        self._queue(LENGTH.pack(0))
         self.pump()
+        while self._waiting and not self.problem:
+            sleep(_PAUSE)
+            self.pump()
         last = self._said()
         self._process.communicate()
-        self.problem = self.problem or last
+        self.problem = self.problem or last or (ENDED if self._process.returncode else "")
 
-    def _pipe(self) -> int:
-        assert self._process.stdin is not None  # noqa: S101 - for the type checker
-        return self._process.stdin.fileno()
+    def _queue(self, data: bytes) -> None:
+        self._waiting += [data[at : at + _PIECE] for at in range(0, len(data), _PIECE)]
+        self._held += len(data)
 
     def _said(self) -> str:
         stream = self._process.stdout

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any, NamedTuple
@@ -65,6 +65,14 @@ class Stream(Recorder):
         self.dropped = 0
         self._told = 0  # number of cells in earlier cuts
 
+    def reward(self, total: float, parts: Mapping[str, float] | None = None) -> None:  # noqa: ARG002 - as the base
+        """Close a step with its reward; a log holds no parts."""
+        with self._lock:
+            latched = self._latched
+            self._rewards.append(len(latched))
+            self._mark(latched[-1] if latched else -1)
+            self._totals.append(float(total))
+
     def cut(self, drop: bool = False) -> Cut:
         """Return and drop the events recorded since the last call. Callable from any thread; it only slices lists.
 
@@ -74,7 +82,7 @@ class Stream(Recorder):
             self.relieve(0)
         with self._lock:
             latched, rewards, totals = self._latched, self._rewards, self._totals
-            self._latched, self._rewards, self._totals, self._parts = latched[-1:], [], [], []
+            self._latched, self._rewards, self._totals = latched[-1:], [], []
             threads = []
             for buffer in self._buffers:
                 entries = _cut(buffer.entries)
@@ -107,17 +115,23 @@ def chunk(cut: Cut, known: list[Cell]) -> Chunk:
     return _in_order(Chunk(tuple(known), site, flow, cell, step, thread, step_cell, rewards))
 
 
-def joined(chunks: Sequence[Chunk]) -> Chunk:
-    """Concatenate consecutive chunks, at least one."""
-    if len(chunks) == 1:
-        return chunks[0]
-    before = np.cumsum([0, *(one.reward.size for one in chunks[:-1])])
-    steps = [one.step + first for one, first in zip(chunks, before.tolist(), strict=True)]
-    columns = {
-        name: np.concatenate([getattr(one, name) for one in chunks])
-        for name in ("site", "flow", "cell", "thread", "step_cell", "reward")
-    }
-    return _in_order(Chunk(cells=chunks[-1].cells, step=np.concatenate(steps), **columns))
+def merged(cuts: Sequence[Cut]) -> Cut:
+    """Return consecutive cuts, at least one, as one."""
+    if len(cuts) == 1:
+        return cuts[0]
+    cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
+    threads: list[tuple[list[Any], list[int]]] = []
+    for cut in cuts:
+        carried = 1 if latched else 0  # a cut begins with the cell of the previous one
+        rewards += [mark + len(latched) - carried for mark in cut.rewards]
+        threads += [([], [0] * len(latched)) for _ in cut.threads[len(threads) :]]
+        for (entries, lengths), (new, marks) in zip(threads, cut.threads, strict=True):
+            lengths += [len(entries) + mark for mark in marks[carried:]]
+            entries += new
+        cells += cut.cells
+        latched += cut.latched[carried:]
+        totals += cut.totals
+    return Cut(cells, latched, rewards, totals, threads)
 
 
 def _in_order(one: Chunk) -> Chunk:

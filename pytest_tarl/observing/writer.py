@@ -14,10 +14,10 @@ import numpy as np
 
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.observing.frames import LogFile, Record
-from pytest_tarl.observing.stream import Chunk, Cut, chunk, joined
+from pytest_tarl.observing.stream import Chunk, Cut, chunk, merged
 from pytest_tarl.sensors import Cell
 
-MOST_HELD = 100_000  # approximate events per record, which bounds memory
+MOST_HELD = 200_000  # approximate entries (two per event) per record, which bounds memory
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ class Writer:
         self._about = about
         self._rotation = rotation
         self._cells: list[Cell] = []
-        self._chunks: list[Chunk] = []  # chunks of the running mission that are not written yet
+        self._cuts: list[Cut] = []  # cuts of the running mission that are not written yet
         self._readings: list[list[Any]] = []
         self._times: list[float] = []
         self._changes: list[list[Any]] = []
         self._following = False
         self._dropped = 0
-        self._held = 0  # events of the chunks
+        self._held = 0  # entries of the cuts
 
     def take(self, message: tuple[Any, ...]) -> None:
         """Take one message; `sync` writes pending events of the running mission."""
@@ -69,13 +69,15 @@ class Writer:
     def _take_steps(
         self,
         cut: tuple[Any, ...],
-        readings: list[list[Any]],
+        readings: list[Any],
         dropped: int,
         followed: tuple[list[float], list[list[Any]]] | None,
     ) -> None:
-        self._chunks.append(chunk(Cut(*cut), self._cells))
-        self._held += self._chunks[-1].site.size
-        self._readings += readings
+        self._cuts.append(Cut(*cut))
+        self._held += sum(len(entries) for entries, _ in self._cuts[-1].threads)
+        steps = len(self._cuts[-1].rewards)
+        sensors = len(readings) // max(1, steps)
+        self._readings += [readings[step * sensors : (step + 1) * sensors] for step in range(steps)]
         self._dropped = dropped
         if followed is not None:
             self._following = True
@@ -96,13 +98,13 @@ class Writer:
         self._log.append({"kind": "end", **record})
 
     def _write_steps(self) -> None:
-        if not self._chunks:
+        if not self._cuts:
             return
-        record = steps_record(joined(self._chunks), self._readings, self._dropped)
+        record = steps_record(chunk(merged(self._cuts), self._cells), self._readings, self._dropped)
         if self._following:
             record |= {"times": self._times, "changes": self._changes}
         self._log.append(record)
-        self._chunks, self._readings, self._times, self._changes = [], [], [], []
+        self._cuts, self._readings, self._times, self._changes = [], [], [], []
         self._held = 0
 
 

@@ -1,6 +1,7 @@
-"""The writer process: copy messages of an observer from standard input to its log.
+"""The writer process: copy messages of an observer from shared memory to its log.
 
-It ends on request, or when the node's process is gone, and writes all messages that were sent.
+It ends on request, or when standard input ends because the node's process is gone, and writes all messages that were
+sent.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ from typing import Any
 
 from pytest_tarl.errors import LogError
 from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
 PERIOD = 0.25  # seconds between two syncs; a power cut loses little more than this
 LENGTH = struct.Struct("<I")  # length of a message in bytes; 0 marks the end
 READY = "ready"
 NICER = 5  # nice value, so that the node's threads have priority
-_PIECE = 1 << 20
+_POLL = 0.02  # seconds between two looks into the shared memory
 
 
 def main() -> int:
@@ -39,8 +41,9 @@ def main() -> int:
     order: dict[str, Any] = json.loads(sys.argv[1])
     try:
         writer = Writer(LogFile(Path(order["log"])), order["about"], Rotation(*order["rotation"]))
+        ring = Ring(order["ring"])
         print(READY, flush=True)
-        _serve(writer)
+        _serve(writer, ring)
     except LogError as problem:
         print(problem, flush=True)
         return 1
@@ -54,17 +57,24 @@ def main() -> int:
     return 0
 
 
-def _serve(writer: Writer) -> None:
-    source, waiting, due, over = sys.stdin.fileno(), bytearray(), monotonic() + PERIOD, False
+def _serve(writer: Writer, ring: Ring) -> None:
+    waiting, due, over = bytearray(), monotonic() + PERIOD, False
     while not over:
-        if select.select([source], [], [], max(0.0, due - monotonic()))[0]:
-            piece = os.read(source, _PIECE)
+        over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])  # before the last look
+        while (piece := ring.read()) is not None:
             waiting += piece
-            over = not piece or _take(writer, waiting)
-        if monotonic() >= due:
-            writer.sync()
-            due = monotonic() + PERIOD
+            over = _take(writer, waiting) or over
+            due = _synced(writer, due)
+        due = _synced(writer, due)
     writer.close()
+
+
+def _synced(writer: Writer, due: float) -> float:
+    """Sync if it is due; return when it is due next."""
+    if monotonic() < due:
+        return due
+    writer.sync()
+    return monotonic() + PERIOD
 
 
 def _take(writer: Writer, waiting: bytearray) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.observing import stream
-from pytest_tarl.observing.stream import Chunk, Cut, Stream, chunk, joined
+from pytest_tarl.observing.stream import Chunk, Cut, Stream, chunk, merged
 from pytest_tarl.sensors import Cell
 
 
@@ -53,17 +53,37 @@ def test_draining_in_pieces_records_the_same_as_draining_once() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
-def test_consecutive_chunks_are_merged() -> None:
+def test_consecutive_cuts_are_merged_as_if_they_were_one() -> None:
     whole, pieces = Emptied(), Emptied()
-    chunks, done = [], 0
+    cuts, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):
         drive(pieces, done, end)
-        chunks.append(pieces.drain())
+        if end > 20:  # a second thread begins later
+            thread = threading.Thread(target=drive, args=(pieces, done, end))
+            thread.start()
+            thread.join()
+        cuts.append(pieces.cut())
         done = end
-    drive(whole, 0, 60)
-    one, other = joined(chunks), whole.drain()
+    done = 0
+    for end in (1, 2, 17, 30, 31, 59, 60):
+        drive(whole, done, end)
+        if end > 20:
+            thread = threading.Thread(target=drive, args=(whole, done, end))
+            thread.start()
+            thread.join()
+        done = end
+    for first in (0, 3):  # the first cut of a record may continue an earlier one
+        parts = [chunk(cut, []) for cut in cuts[first:]]
+        one = chunk(merged(cuts[first:]), [])
+        for name in ("site", "flow", "cell", "step_cell", "reward"):
+            found = sorted(getattr(one, name).tolist())
+            assert found == sorted(np.concatenate([getattr(part, name) for part in parts]).tolist())
+    one, other = chunk(merged(cuts), []), whole.drain()
     assert one.cells == other.cells
-    for name in ("site", "flow", "cell", "step", "thread", "step_cell", "reward"):
+    order, others = (np.lexsort((each.flow, each.site, each.step)) for each in (one, other))
+    for name in ("site", "flow", "cell", "step"):
+        np.testing.assert_array_equal(getattr(one, name)[order], getattr(other, name)[others])
+    for name in ("step_cell", "reward"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 

@@ -126,7 +126,9 @@ def test_records_sent_before_the_node_is_killed_are_written(tmp_path: Path, how:
     assert len(found) > last - 200
 
 
-def test_a_killed_writer_is_reported_and_the_node_continues(tmp_path: Path) -> None:
+def test_a_killed_writer_is_reported_at_once_and_the_node_continues(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
     mission(observer, 10)
     observer._outlet._process.kill()
@@ -135,7 +137,69 @@ def test_a_killed_writer_is_reported_and_the_node_continues(tmp_path: Path) -> N
     until(lambda: observer._outlet.problem)
     mission(observer, 100)
     observer.close()
-    assert observer.problem == "The process that writes the log was ended: later records are lost."
+    assert observer.problem == outlet.ENDED
+    assert capsys.readouterr().err == f"observe: {outlet.ENDED}\n"
+
+
+def test_a_writer_killed_before_the_end_is_reported_too(tmp_path: Path) -> None:
+    observer = Observer([SENSOR], tmp_path / "log", ABOUT)
+    mission(observer, 10)
+    observer._thread.join(0.05)
+    observer._outlet._process.kill()
+    observer.told(SENSOR, Message("far"))  # type: ignore[arg-type]
+    observer.close()
+    sensor, _, writer = observer.problem.partition("; ")
+    assert sensor.startswith("Sensor 'x'")
+    assert writer == outlet.ENDED
+
+
+def test_messages_larger_than_the_shared_memory_arrive_whole(tmp_path: Path) -> None:
+    observer = Observer([], tmp_path / "log", ABOUT)
+    observer.begin()
+    with observer._lock:  # one cut of 4 MB
+        for number in range(200_000):
+            observer.stream.hook(0, float(number))
+        observer.step(1.0)
+        observer._flush()
+        assert observer._outlet.unsent > outlet.SIZE
+        observer.step(2.0)
+    observer.end(passed=True)
+    observer.close()
+    assert not observer.problem
+    steps = [one for one in records(tmp_path / "log") if one["kind"] == "steps"]
+    assert column(steps, "flow", "float64") == [*map(float, range(200_000))]
+    assert rewards(tmp_path / "log") == [1.0, 2.0]
+
+
+def test_a_forked_child_of_the_node_writes_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "log"
+    program = FORKING.replace("PATH", repr(str(path)))
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "''\n"
+    assert rewards(path) == [1.0, 2.0]
+    assert [one["kind"] for one in records(path)].count("end") == 1
+
+
+FORKING = """
+import os
+from pathlib import Path
+from pytest_tarl.observing.observer import Observer
+observer = Observer([], Path(PATH), {"node": "n", "sites": [], "sensors": []})
+observer.begin()
+observer.step(1.0)
+child = os.fork()
+if not child:
+    observer.step(100.0)
+    observer.end(passed=False)
+    observer._outlet.pump()
+    observer._outlet.close()
+    os._exit(0)
+os.waitpid(child, 0)
+observer.step(2.0)
+observer.end(passed=True)
+observer.close()
+print(repr(observer.problem))
+"""
 
 
 def test_a_blocked_disk_costs_events_but_no_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -176,7 +240,7 @@ def long_log(path: Path, missions: int, rotation: Rotation) -> None:
     for number in range(missions):
         writer.take(("mission", float(number)))
         cut: tuple[Any, ...] = ([(number,)], [number], [0], [float(number)], [([], [0])])
-        writer.take(("steps", cut, [[number]], 0, None))
+        writer.take(("steps", cut, [number], 0, None))
         writer.take(("end", {"passed": True, "failure": "", "time": float(number)}))
     writer.close()
 

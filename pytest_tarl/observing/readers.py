@@ -1,0 +1,84 @@
+"""Functions that read and bin a sensor's values at little cost, as the control cycle of a node pays it.
+
+They return what `reading` and `Sensor.bin` return. Messages whose fields are attributes, and values of the usual types,
+take a short way; everything else takes the general one.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable
+from math import isfinite
+from operator import attrgetter
+from typing import Any
+
+from pytest_tarl.sensors import Sensor, field_value
+
+Read = Callable[[Any], Any]
+Bin = Callable[[Any], int | None]
+_EXACT = 2**53  # smaller integers convert to float exactly
+_MOST = 64  # message classes kept per field
+
+
+def reader(field: str | Read | None) -> Read:
+    """Return the function that reads a field, dotted or a function, from a message. It raises as `reading` does."""
+    if callable(field):
+        return field
+    path = field or ""
+    parts = path.split(".")
+    if not all(part.isidentifier() and not hasattr(dict, part) for part in parts):
+        return lambda message: field_value(message, path)  # an index, or a name that a mapping also has
+    fast = attrgetter(path)
+    known: set[type] = set()  # classes of messages that have been read by their attributes
+
+    def read(message: Any) -> Any:
+        try:
+            if type(message) in known:
+                return fast(message)
+            value = field_value(message, path)
+            if len(known) < _MOST and fast(message) is value:
+                known.add(type(message))
+            return value
+        except AttributeError:
+            return field_value(message, path)  # with a mapping inside, or without the field
+
+    return read
+
+
+def binner(sensor: Sensor) -> Bin:
+    """Return the function that bins a sensor's values. It raises as `Sensor.bin` does."""
+    general = sensor.bin
+    if sensor.bins is None or sensor.low is None or sensor.high is None:
+        return general if sensor.categories or sensor.bins is not None else _whole(general)
+    low, high, bins = sensor.low, sensor.high, sensor.bins
+    width, edges = high - low, sensor.edges
+
+    def uniform(value: Any) -> int | None:
+        if type(value) is float and low <= value < high:
+            at = int((value - low) / width * bins)
+            return at if at < bins else bins - 1
+        return general(value)
+
+    def uneven(value: Any) -> int | None:
+        if type(value) is float and low <= value < high:
+            return bisect_right(edges, value) - 1
+        return general(value)
+
+    def turning(value: Any) -> int | None:
+        if type(value) is not float or not isfinite(value):
+            return general(value)
+        number = low + (value - low) % width
+        if number > high:
+            return general(value)
+        return min(bisect_right(edges, number) - 1 if edges else int((number - low) / width * bins), bins - 1)
+
+    return turning if sensor.angle else uneven if edges else uniform
+
+
+def _whole(general: Bin) -> Bin:
+    def whole(value: Any) -> int | None:
+        if value is True or value is False or (type(value) is int and -_EXACT < value < _EXACT):
+            return int(value)
+        return general(value)
+
+    return whole
