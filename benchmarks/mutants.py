@@ -39,7 +39,7 @@ PATIENCE = 60.0  # seconds allowed beyond three times the duration of the tests 
 SETTINGS = """[run]
 source = {source}
 parallel = true
-patch = subprocess
+patch = _exit
 context = ${{PYTEST_CURRENT_TEST-}}
 data_file = {data}
 """
