@@ -1,0 +1,410 @@
+"""Each function of the standard library and of ROS that has a model of its own has an exact test here."""
+
+from __future__ import annotations
+
+import pytest
+
+from tarl_lint.models.library import BUILTIN
+from tests.lint.models.marked import differing, in_callback
+
+QUEUES = [
+    f"{module}.{name}"
+    for module in ("queue", "Queue", "asyncio", "multiprocessing")
+    for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
+]
+WHERE = {
+    "deque": "collections.deque",
+    "OrderedDict": "collections.OrderedDict",
+    "defaultdict": "collections.defaultdict",
+    "Counter": "collections.Counter",
+    "namedtuple": "collections.namedtuple",
+    "operator.attrgetter.<made>": "operator.attrgetter",
+    "operator.itemgetter.<made>": "operator.itemgetter",
+}  # how a program names a function whose entry is shorter, or that it can only get from another one
+AWAITABLE = [f"asyncio.{name}" for name in ("run", "create_task", "ensure_future", "wait_for", "shield")]
+NAMES = ("rospy.resolve_name", "rospy.remap_name", "rospy.names.resolve_name")
+PATHS = ("rospy.names.ns_join", "roslib.names.ns_join", "os.path.join", "posixpath.join")
+MACHINES = ("StateMachine", "Sequence", "Concurrence", "Container")
+
+# function(s) → the body of a callback, in which NAME is the function
+CASES: dict[tuple[str, ...], str] = {
+    ("list", "tuple", "deque"): """
+        kept = NAME([0.0, msg.data])
+        out.publish(kept[1])  # data
+        out.publish(kept[0])  # clean
+        out.publish(len(kept))  # clean
+        out.publish(len(NAME(msg.items)))  # data
+    """,
+    ("iter",): """
+        out.publish(next(NAME([msg.data])))  # data
+        out.publish(next(NAME([1.0])))  # clean
+    """,
+    ("reversed",): """
+        kept = NAME([0.0, msg.data])
+        out.publish(kept[0])  # data
+        out.publish(kept[1])  # clean
+    """,
+    ("set", "frozenset"): """
+        kept = NAME([0.0, msg.data])
+        out.publish(kept.pop())  # data
+        out.publish(len(kept))  # clean
+        out.publish(NAME([0.0, 1.0]).pop())  # clean
+    """,
+    ("sorted",): """
+        out.publish(NAME([0.0, msg.data])[0])  # data
+        out.publish(NAME([0.0, 1.0])[0])  # clean
+        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data)[0])  # data
+    """,
+    tuple(QUEUES): """
+        full, other = NAME(), NAME()
+        full.put(msg.data)
+        other.put(0.0)
+        out.publish(full.get())  # data
+        out.publish(other.get())  # clean
+        out.publish(full.qsize())  # clean
+    """,
+    ("eval",): """
+        near, far = msg.data, 1.0
+        out.publish(NAME("near * 2"))  # data
+        out.publish(NAME("far * 2"))  # clean
+        out.publish(NAME(msg.text))  # data
+    """,
+    ("dict", "OrderedDict"): """
+        kept = NAME({"a": msg.data}, b=0.0)
+        out.publish(kept["a"])  # data
+        out.publish(kept["b"])  # clean
+        out.publish(NAME([("a", msg.data), ("b", 0.0)])["b"])  # clean
+        out.publish(NAME([("a", 0.0), ("b", msg.data)])["b"])  # data
+    """,
+    ("defaultdict",): """
+        kept = NAME(list, {"a": [0.0]})
+        kept["b"].append(msg.data)
+        out.publish(kept["b"][0])  # data
+        out.publish(kept["a"][0])  # clean
+        out.publish(kept["c"])  # clean
+        out.publish(NAME(lambda: msg.data)["d"])  # data
+    """,
+    ("Counter",): """
+        out.publish(NAME(msg.text)["a"])  # data
+        out.publish(max(NAME(msg.text)))  # data
+        out.publish(NAME("text")["a"])  # clean
+    """,
+    ("dict.fromkeys",): """
+        out.publish(NAME(["a"], msg.data)["a"])  # data
+        out.publish(NAME(["a"], 0.0)["a"])  # clean
+        out.publish(max(NAME(msg.names, 0.0)))  # data
+        out.publish(NAME(msg.names, 0.0)["a"])  # clean
+    """,
+    ("namedtuple",): """
+        Pair = NAME("Pair", "near far")
+        pair = Pair(msg.data, far=0.0)
+        out.publish(pair.near)  # data
+        out.publish(pair[0])  # data
+        out.publish(pair.far)  # clean
+        out.publish(pair[1])  # clean
+        Listed = NAME("Listed", ["far", "near"])
+        out.publish(Listed(0.0, msg.data).near)  # data
+        out.publish(Listed(0.0, msg.data).far)  # clean
+    """,
+    ("dataclasses.field",): """
+        @dataclasses.dataclass
+        class Pair:
+            near: float
+            far: float = NAME(default=0.0)
+            all: list = NAME(default_factory=lambda: [msg.data])
+            skipped: float = NAME(init=False, default=0.0)
+            named: float = NAME(kw_only=True, default=0.0)
+            last: float = 0.0
+        pair = Pair(0.0, msg.data)
+        out.publish(pair.near)  # clean
+        out.publish(pair.far)  # data
+        out.publish(Pair(msg.data).far)  # clean
+        out.publish(pair.all[0])  # data
+        out.publish(Pair(0.0, 0.0, [0.0], msg.data).last)  # data
+        out.publish(Pair(0.0, 0.0, [0.0], msg.data).skipped)  # clean
+        out.publish(Pair(0.0, 0.0, [0.0], msg.data).named)  # clean
+        out.publish(Pair(0.0, named=msg.data).named)  # data
+    """,
+    ("dataclasses.replace", "copy.replace", "attr.evolve", "attrs.evolve"): """
+        @dataclasses.dataclass
+        class Pair:
+            near: float
+            far: float = 0.0
+        old = Pair(0.0)
+        new = NAME(old, near=msg.data)
+        out.publish(new.near)  # data
+        out.publish(new.far)  # clean
+        out.publish(old.near)  # clean
+        out.publish(NAME(Pair(0.0, msg.data), near=1.0).far)  # data
+    """,
+    ("dataclasses.asdict", "attr.asdict", "attrs.asdict"): """
+        @dataclasses.dataclass
+        class Pair:
+            near: float
+            far: float = 0.0
+        out.publish(NAME(Pair(msg.data))["near"])  # data
+        out.publish(NAME(Pair(msg.data))["far"])  # clean
+    """,
+    ("dataclasses.astuple", "attr.astuple", "attrs.astuple"): """
+        @dataclasses.dataclass
+        class Pair:
+            near: float
+            far: float = 0.0
+        out.publish(NAME(Pair(msg.data))[0])  # data
+        out.publish(NAME(Pair(msg.data))[1])  # clean
+    """,
+    ("object.__new__",): """
+        class Pair:
+            far = 0.0
+        made, other = NAME(Pair), NAME(Pair)
+        made.near = msg.data
+        other.near = 0.0
+        out.publish(made.near)  # data
+        out.publish(made.far)  # clean
+        out.publish(other.near)  # clean
+    """,
+    ("weakref.ref",): """
+        class Pair: pass
+        kept, other = Pair(), Pair()
+        kept.near, other.near = msg.data, 0.0
+        out.publish(NAME(kept)().near)  # data
+        out.publish(NAME(other)().near)  # clean
+    """,
+    ("weakref.WeakMethod",): """
+        class Pair:
+            def near(self): return msg.data
+            def far(self): return 0.0
+        kept = Pair()
+        out.publish(NAME(kept.near)()())  # data
+        out.publish(NAME(kept.far)()())  # clean
+    """,
+    ("weakref.proxy",): """
+        class Pair: pass
+        kept = Pair()
+        kept.near, kept.far = msg.data, 0.0
+        out.publish(NAME(kept).near)  # data
+        out.publish(NAME(kept).far)  # clean
+    """,
+    ("vars",): """
+        class Pair: pass
+        kept = Pair()
+        NAME(kept)["near"] = msg.data
+        kept.far = 0.0
+        out.publish(kept.near)  # data
+        out.publish(NAME(kept)["far"])  # clean
+    """,
+    ("typing.cast",): """
+        kept = [msg.data, 0.0]
+        out.publish(NAME(list, kept))  # clean
+        out.publish(NAME(kept, None)[0])  # data
+    """,
+    ("type",): """
+        class Pair:
+            near, far = 0.0, 0.0
+        Pair.near = msg.data
+        kept = Pair()
+        kept.far = msg.data
+        out.publish(NAME(kept).near)  # data
+        out.publish(NAME(kept).far)  # clean
+        out.publish(NAME(msg.data))  # clean
+    """,
+    ("isinstance", "issubclass", "hasattr", "callable"): """
+        if NAME(msg.data, "x"):
+            out.publish(1.0)  # clean
+        out.publish(NAME(msg.data, "x"))  # clean
+    """,
+    ("rospy.myargv", "rclpy.utilities.remove_ros_args"): """
+        out.publish(NAME([0.0, msg.data])[1])  # data
+        out.publish(NAME([0.0])[0])  # clean
+    """,
+    ("range", "xrange"): """
+        for n in NAME(msg.count):
+            out.publish(n)  # data
+        for n in NAME(3):
+            out.publish(n)  # clean
+    """,
+    ("len",): """
+        kept = [msg.data]
+        out.publish(NAME(kept))  # clean
+        out.publish(NAME(msg.text))  # data
+        other = [1.0]
+        if msg.data > 0.0:
+            kept.append(1.0)
+            other.append(1.0)
+        out.publish(NAME(kept))  # data
+        out.publish(NAME(other))  # control
+    """,
+    ("bool",): """
+        out.publish(NAME(msg.data))  # data
+        out.publish(NAME(0.0))  # clean
+        out.publish(NAME([msg.data]))  # clean
+    """,
+    ("any", "all"): """
+        out.publish(NAME([0.0, msg.data]))  # data
+        out.publish(NAME([0.0, 1.0]))  # clean
+        out.publish(NAME(msg.items))  # data
+    """,
+    ("str",): """
+        out.publish(NAME(msg.data))  # data
+        out.publish(NAME(1.0))  # clean
+    """,
+    NAMES: """
+        kept = {"near": msg.data, "far": 0.0}
+        out.publish(kept[NAME("near")])  # data
+        out.publish(kept[NAME("far")])  # clean
+    """,
+    PATHS: """
+        kept = {"near/x": msg.data, "far/x": 0.0}
+        out.publish(kept[NAME("near", "x")])  # data
+        out.publish(kept[NAME("far", "x")])  # clean
+        out.publish(NAME("far", msg.text))  # data
+    """,
+    ("enumerate",): """
+        for number, value in NAME([0.0, msg.data]):
+            out.publish(number)  # clean
+            out.publish(value)  # data
+        pairs = list(NAME([0.0, msg.data]))
+        out.publish(pairs[1][1])  # data
+        out.publish(pairs[0][1])  # clean
+    """,
+    ("zip",): """
+        pairs = list(NAME([0.0, msg.data], [0.0, 1.0]))
+        out.publish(pairs[1][0])  # data
+        out.publish(pairs[0][0])  # clean
+        out.publish(pairs[1][1])  # clean
+        near, far = NAME(*[(msg.data, 0.0), (msg.data, 1.0)])
+        out.publish(near[0])  # data
+        out.publish(far[0])  # clean
+    """,
+    ("map",): """
+        kept = list(NAME(lambda v: v + 1.0, [0.0, msg.data]))
+        out.publish(kept[1])  # data
+        out.publish(kept[0])  # clean
+        out.publish(list(NAME(lambda v: 1.0, msg.items))[0])  # clean
+        out.publish(len(list(NAME(lambda v: 1.0, msg.items))))  # data
+    """,
+    ("filter",): """
+        for value in NAME(lambda v: v > msg.data, [0.0, 1.0]):
+            out.publish(value)  # control
+        for value in NAME(None, [0.0, 1.0]):
+            out.publish(value)  # clean
+        for value in NAME(None, msg.items):
+            out.publish(value)  # data
+    """,
+    ("min", "max"): """
+        out.publish(NAME([0.0, msg.data]))  # data
+        out.publish(NAME(0.0, msg.data))  # data
+        out.publish(NAME(0.0, 1.0))  # clean
+        out.publish(NAME([0.0, 1.0], key=lambda v: v * msg.data))  # data
+    """,
+    ("next",): """
+        out.publish(NAME(iter([msg.data])))  # data
+        out.publish(NAME(iter([1.0])))  # clean
+        out.publish(NAME(iter([1.0]), msg.data))  # data
+    """,
+    ("asyncio.gather",): """
+        async def near(): return msg.data
+        async def far(): return 0.0
+        kept = asyncio.run(NAME(near(), far()))
+        out.publish(kept[0])  # data
+        out.publish(kept[1])  # clean
+        rest = [near(), far()]
+        out.publish(asyncio.run(NAME(*rest))[0])  # data
+    """,
+    (*AWAITABLE, "asyncio.run_coroutine_threadsafe"): """
+        async def near(): return [msg.data, 0.0]
+        out.publish(NAME(near())[0])  # data
+        out.publish(NAME(near())[1])  # clean
+    """,
+    ("getattr",): """
+        class Pair:
+            near, far = 0.0, 0.0
+            def do_it(self): return self.near
+        kept = Pair()
+        kept.near = msg.data
+        out.publish(NAME(kept, "near"))  # data
+        out.publish(NAME(kept, "far"))  # clean
+        out.publish(NAME(kept, "far", msg.data))  # data
+        out.publish(NAME(kept, "do_" + rospy.get_name())())  # data
+    """,
+    ("operator.attrgetter", "operator.attrgetter.<made>"): """
+        class Pair: pass
+        kept = Pair()
+        kept.near, kept.far, kept.inner = msg.data, 0.0, Pair()
+        kept.inner.near = msg.data
+        out.publish(NAME("near")(kept))  # data
+        out.publish(NAME("far")(kept))  # clean
+        out.publish(NAME("inner.near")(kept))  # data
+        out.publish(NAME("near", "far")(kept)[0])  # data
+        out.publish(NAME("near", "far")(kept)[1])  # clean
+    """,
+    ("operator.itemgetter", "operator.itemgetter.<made>"): """
+        out.publish(NAME(0)([msg.data, 0.0]))  # data
+        out.publish(NAME(1)([msg.data, 0.0]))  # clean
+        out.publish(NAME(1, 0)([msg.data, 0.0])[1])  # data
+        out.publish(NAME(1, 0)([msg.data, 0.0])[0])  # clean
+    """,
+    ("setattr",): """
+        class Pair:
+            near, far = 0.0, 0.0
+        kept, other = Pair(), Pair()
+        NAME(kept, "near", msg.data)
+        NAME(other, msg.text, msg.data)
+        out.publish(kept.near)  # data
+        out.publish(kept.far)  # clean
+        out.publish(other.unset)  # data
+    """,
+    ("super",): """
+        class Base:
+            def near(self): return msg.data
+            def far(self): return 0.0
+        class Pair(Base):
+            def near(self): return 0.0
+            def far(self): return msg.data
+            def both(self): return [NAME().near(), NAME().far()]
+        out.publish(Pair().both()[0])  # data
+        out.publish(Pair().both()[1])  # clean
+    """,
+    tuple(f"smach.{name}.add" for name in MACHINES): """
+        class Near(smach.State):
+            def execute(self, userdata):
+                userdata.seen = msg.data
+                userdata.other = 0.0
+        class Far(smach.State):
+            def execute(self, userdata):
+                out.publish(userdata.kept)  # data
+                out.publish(userdata.other)  # clean
+        NAME("NEAR", Near(), remapping={"seen": "kept"})
+        NAME("FAR", Far())
+    """,
+    ("smach.CBState", "smach.state.CBState"): """
+        def near(userdata):
+            userdata.seen = msg.data
+        def far(userdata):
+            out.publish(userdata.seen)  # data
+            out.publish(userdata.other)  # clean
+        NAME(near), NAME(cb=far)
+    """,
+    ("smach_ros.SimpleActionState", "smach_ros.ServiceState"): """
+        def near(userdata, result):
+            userdata.seen = msg.data
+        def far(userdata, goal):
+            out.publish(userdata.seen)  # data
+            out.publish(userdata.other)  # clean
+        NAME("/a", A, result_cb=near), NAME("/b", B, goal_cb=far)
+    """,
+}
+COVERED = [(name, body) for names, body in CASES.items() for name in names]
+
+
+def test_each_function_with_a_model_has_a_test():
+    names = [name for name, _ in COVERED]
+    assert sorted(names) == sorted(BUILTIN)
+
+
+@pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
+def test_the_result_has_the_data_of_the_arguments_and_no_other(name, body):
+    path = WHERE.get(name, name)
+    modules = {path.rpartition(".")[0]} - {"", "dict", "object", *(f"smach.{name}" for name in MACHINES)}
+    head = "\n".join(f"import {module}" for module in sorted({*modules, "asyncio", "dataclasses", "smach"}))
+    assert differing(in_callback(body.replace("NAME", path), head)) == {}
