@@ -1,0 +1,171 @@
+"""Nodes and edges of the value-flow graph: data, decisions, liveness, and content passed on by carriers."""
+
+from __future__ import annotations
+
+import pytest
+
+from tarl_lint.memory import value_flow_graph
+from tarl_lint.memory.carry_nodes import settle
+from tarl_lint.memory.value_flow_graph import MANY, MANY_CARRIERS, MERGED, Place
+
+AT = (0, 0, 0, 0)
+
+
+@pytest.fixture
+def node(graph, frame):
+    """Return a function that makes a node under branches."""
+
+    def made(key, *branches):
+        return graph.node(key, Place(frame, None, "assign", AT), frozenset(branches))
+
+    return made
+
+
+def test_a_node_is_made_once_per_key(graph, node):
+    assert node("a") == node("a") != node("b")
+    assert graph.made == len(graph.places) == 2
+
+
+def test_data_flows_along_edges_once(graph, node):
+    a, b = node("a"), node("b")
+    graph.flow([a, a], b)
+    graph.flow([a], b)
+    assert graph.data[b] == {a}
+    assert graph.edges == 1
+    assert graph.control[b] == set()
+
+
+def test_a_value_that_depends_on_itself_depends_on_its_own_conditions(graph, node):
+    decision = node("loop")
+    a = node("a", (decision, "body"))
+    graph.flow([a], a)
+    assert graph.data[a] == set()
+    assert graph.control[a] == {decision}
+
+
+def test_beyond_a_number_of_edges_only_few_are_added(graph, node, monkeypatch):
+    monkeypatch.setattr(value_flow_graph, "MAX_EDGES", 1)
+    graph.flow([node("a"), node("b")], node("c"))
+    assert len(graph.data[node("c")]) == 2
+    many = [node(n) for n in range(value_flow_graph.FEW + 5)]
+    graph.flow(many, node("d"))
+    assert graph.data[node("d")] == set(many[: value_flow_graph.FEW])
+
+
+def test_a_value_chosen_by_a_branch_depends_on_its_decision_through_a_gate(graph, node):
+    decision = node("if")
+    chosen, same, after = node("a", (decision, "then")), node("b", (decision, "then")), node("c")
+    graph.flow([chosen], same)
+    assert graph.control[same] == set()
+    graph.flow([chosen], after)
+    (gate,) = graph.control[after]
+    assert graph.gates[gate] == (chosen, frozenset([(decision, "then")]))
+    assert graph.control[gate] == {decision}
+    only = node("d")
+    graph.choice([chosen], only)
+    assert graph.data[only] == set()
+    assert only in graph.control or graph.control[only]
+    graph.choice([chosen], same)
+    assert graph.control[same] == set()
+
+
+def test_a_copy_without_choice_has_the_data_but_not_the_decision(graph, node):
+    decision = node("if")
+    chosen, after = node("a", (decision, "then")), node("b")
+    copy = graph.unchosen(chosen)
+    assert graph.data[copy] == {chosen}
+    assert graph.stands_for[copy] == chosen
+    assert copy in graph.copies
+    assert graph.unchosen(copy) == copy == graph.unchosen(chosen)
+    graph.flow([copy], after)
+    assert graph.control[after] == set()
+
+
+def test_many_values_of_a_field_meet_in_one_node(graph, node, frame):
+    deps = frozenset(node(n) for n in range(MANY + 1))
+    assert graph.meets("field", deps, carriers=False)
+    assert not graph.meets("field", frozenset(list(deps)[1:]), carriers=False)
+    assert not graph.meets("field", deps, carriers=True)
+    assert graph.meets("field", frozenset(range(MANY_CARRIERS + 1)), carriers=True)
+    merged = graph.merged("field", deps, frame)
+    (place,) = merged
+    assert graph.data[place] == deps
+    assert graph.places[place].role == MERGED
+    assert graph.meets("field", merged, carriers=False)
+    assert not graph.meets("other", merged, carriers=False)
+    assert graph.merged("field", merged | {node("new")}, frame) == merged
+    assert graph.data[place] == deps | {node("new")}
+
+
+def test_what_depends_on_a_live_node_is_live_now_and_later(graph, node):
+    source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
+    graph.flow([source], data)
+    graph.depend(decided, [data])
+    assert graph.live == set()
+    assert graph.free(data)
+    assert not graph.free(decided)
+    graph.begin(source)
+    assert graph.live == {source, data, decided}
+    graph.flow([decided], late)
+    assert late in graph.live
+
+
+def test_a_copy_of_a_live_node_is_live(graph, node):
+    graph.begin(a := node("a"))
+    assert graph.unchosen(a) in graph.live
+
+
+def test_a_carrier_counts_what_it_passed_on(graph, node):
+    carrier, item = node("carrier"), node("item")
+    assert graph.passed_by(carrier) == 0
+    graph.hold(carrier, frozenset())
+    assert graph.held == {}
+    graph.hold(carrier, frozenset([item]))
+    graph.hold(carrier, frozenset([item]))
+    assert graph.passed_by(carrier) == graph.grown == 1
+    assert graph.as_passed({carrier: 1, item: 0})
+    assert not graph.as_passed({carrier: 0})
+
+
+def test_content_passes_through_each_carrier_that_held_it(graph, node):
+    item, other, first, second = (node(key) for key in ("item", "other", "first", "second"))
+    graph.hold(first, frozenset([item]))
+    (arrived,) = graph.through(frozenset([item]), frozenset([first]))
+    assert graph.carried[arrived] == (first, item)
+    assert graph.through(frozenset([other]), frozenset([first])) == {other}
+    assert graph.through(frozenset([item, other]), frozenset([first])) == {arrived, other}
+    assert graph.through(frozenset([item]), frozenset([first, second])) == {arrived}
+    graph.hold(second, frozenset([item]))
+    assert len(graph.through(frozenset([item]), frozenset([first, second]))) == 2
+    assert graph.through(frozenset([item]), frozenset()) == {item}
+
+
+def test_much_content_and_large_programs_arrive_without_carriers(graph, node, monkeypatch):
+    item, carrier = node("item"), node("carrier")
+    graph.hold(carrier, frozenset([item]))
+    assert not graph.large()
+    monkeypatch.setattr(value_flow_graph, "MAX_CARRIED", 0)
+    assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
+    monkeypatch.undo()
+    monkeypatch.setattr(value_flow_graph, "MAX_NODES", 1)
+    assert graph.large()
+    assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
+
+
+def test_settled_carry_nodes_depend_on_their_item(graph, node):
+    item, carrier = node("item"), node("carrier")
+    graph.hold(carrier, frozenset([item]))
+    (arrived,) = graph.through(frozenset([item]), frozenset([carrier]))
+    assert graph.data[arrived] == set()
+    settle(graph)
+    assert graph.data[arrived] == {item}
+    assert graph.made == 0
+
+
+def test_a_circle_of_carry_nodes_is_fed_by_its_origin(graph, node):
+    item, one, two = node("item"), node("one"), node("two")
+    for carry, other in ((one, two), (two, one)):
+        graph.carried[carry] = (carry, item)
+        graph.data[carry].add(other)
+    settle(graph)
+    assert item in graph.data[one] | graph.data[two]

@@ -1,0 +1,537 @@
+"""Reads and stores of fields and elements, joins, copies, and what stays reachable."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import (
+    abstract_gc,
+    heap,
+    joins,
+    parameter_names,
+    reachable_data,
+    recency,
+    updates,
+    userdata,
+)
+from tarl_lint.memory.heap import ANY, KEYS, item_field
+from tarl_lint.memory.recency import MAX_NESTING
+from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.values import (
+    ABSENT,
+    BOTTOM,
+    BY_CLASS,
+    UNKNOWN,
+    ClassInfo,
+    Obj,
+    Symbolic,
+    Value,
+    const,
+    pointer,
+)
+from tarl_lint.parameter_names import MARK, ParameterName
+
+ONE, TWO = Value(frozenset([1])), Value(frozenset([2]))
+BOTH = Value(frozenset([1, 2]))
+AT = (0, 0, 0, 0)
+
+
+def made(ctx, kind: str, key: object, name: str = "") -> Obj:
+    obj = recency.intern(ctx, kind, key, name)
+    ctx.store.put((obj, BORN), BOTTOM)
+    return obj
+
+
+def a_class(ctx, name: str, *bases: Obj, external: tuple[str, ...] = ()) -> Obj:
+    cls = recency.intern(ctx, "class", name, name)
+    cls.info = ClassInfo(name, name, list(bases), list(external))
+    return cls
+
+
+def an_instance(ctx, cls: Obj, key: object = "self") -> Obj:
+    obj = made(ctx, "instance", key)
+    obj.info = cls
+    return obj
+
+
+def a_function(ctx, name: str, *decorators: str) -> Obj:
+    (program,) = ctx.programs.values()
+    names = tuple(ir.Name(one, "global", 0, AT) for one in decorators)
+    function = replace(program.function, decorators=names)
+    closure = recency.intern(ctx, "closure", name, name)
+    closure.info = (function, None, program, None)
+    return closure
+
+
+# --- reads --------------------------------------------------------------------------------------------
+
+
+def test_the_content_of_a_part_is_the_data_of_the_whole(ctx):
+    whole = made(ctx, "lib", "a")
+    part = whole.sub("x")
+    assert heap.content(ctx, part) is BOTTOM
+    ctx.store.put((whole, ANY), Value(frozenset([1]), frozenset([whole])))
+    assert heap.content(ctx, part) == ONE
+    message = made(ctx, "message", "m")
+    message.info = 7
+    assert heap.content(ctx, message.sub("x")) == Value(frozenset([7]))
+    assert heap.content(ctx, made(ctx, "ext", "library")) is UNKNOWN
+
+
+def test_a_field_of_a_message_is_what_was_stored_or_what_each_message_has(ctx):
+    message = made(ctx, "message", "m")
+    ctx.shared.leave(ctx.shared.ends, ctx.store.root, (message, "x"), ONE)
+    assert heap.read_field(ctx, message, "x") == Value(frozenset([1]), frozenset([message.sub("x")]))
+    assert not heap.written_here(ctx, message, "x")
+    ctx.store.put((message, "x"), TWO)
+    assert heap.read_field(ctx, message, "x") is TWO
+    assert heap.written_here(ctx, message, "x")
+
+
+def test_an_attribute_of_a_function_is_stored_apart_from_its_defaults(ctx):
+    closure = a_function(ctx, "f")
+    assert heap.renamed(ctx, closure, "x") == (closure, "<x>")
+    updates.write_field(ctx, pointer(closure), "x", ONE)
+    assert heap.read_field(ctx, closure, "x") is ONE
+    assert ctx.store.get((closure, "<x>")) is ONE
+    assert ctx.store.get((closure, "x")) is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        ("publisher", "publish"),
+        ("sequence", "append"),
+        ("mapping", "update"),
+        ("lib", "put"),
+        ("goal", "publish_feedback"),
+    ],
+)
+def test_an_unset_method_of_a_library_object_is_bound_to_it(ctx, kind, name):
+    obj = made(ctx, kind, "a")
+    (method,) = heap.default(ctx, obj, name).pts
+    assert (method.kind, method.info) == ("method", (obj, name))
+    assert heap.held_method(ctx, obj, name) == pointer(method)
+
+
+def test_defaults_of_unset_fields(ctx):
+    listed, ext = made(ctx, "sequence", "a"), recency.intern(ctx, "ext", "numpy", "numpy")
+    instance = an_instance(ctx, cls := a_class(ctx, "A"))
+    ctx.store.put((listed, ANY), ONE)
+    assert heap.default(ctx, listed, "[0]") is ONE
+    assert heap.default(ctx, listed, "x") is BOTTOM
+    assert heap.default(ctx, instance, "__class__") == pointer(cls)
+    assert heap.default(ctx, instance, "__dict__") == pointer(instance)
+    assert [o.name for o in heap.default(ctx, ext, "linalg").pts] == ["numpy.linalg"]
+    assert heap.default(ctx, recency.intern(ctx, "closure", "f"), "x") is BOTTOM
+
+
+def test_the_shape_of_a_library_object_has_its_data_but_that_of_a_message_is_a_field(ctx):
+    matrix, message = made(ctx, "lib", "a"), made(ctx, "lib", "b")
+    message.info = BY_CLASS
+    for obj in (matrix, message):
+        ctx.store.put((obj, ANY), ONE)
+    assert heap.default(ctx, matrix, "shape") == ONE
+    assert heap.default(ctx, message, "shape") == pointer(message.sub("shape"))
+
+
+def test_an_element_of_a_library_object_may_be_the_unknown_one(ctx):
+    obj = made(ctx, "lib", "a")
+    assert heap.default(ctx, obj, "[0]") == pointer(obj.sub("[0]"))
+    any_of_them = obj.sub("[]")
+    assert heap.default(ctx, obj, "[1]").pts == {obj.sub("[1]"), any_of_them}
+    assert heap.default(ctx, obj, "x") == pointer(obj.sub("x"))
+
+
+def test_a_class_attribute_is_inherited_by_instances_and_subclasses(ctx):
+    base = a_class(ctx, "Base")
+    cls = a_class(ctx, "A", base)
+    obj = an_instance(ctx, cls)
+    ctx.store.put((base, "limit"), ONE)
+    assert heap.read_field(ctx, obj, "limit") is ONE
+    assert heap.read_field(ctx, cls, "limit") is ONE
+    ctx.store.put((cls, "limit"), TWO)
+    assert heap.read_field(ctx, obj, "limit") is TWO
+    ctx.store.put((obj, "limit"), BOTH)
+    assert heap.read_field(ctx, obj, "limit") is BOTH
+    assert heap.read_field(ctx, cls, "unset") is BOTTOM
+    assert heap.read_field(ctx, obj, "unset") is BOTTOM
+
+
+def test_an_unset_attribute_of_an_opaque_class_is_a_library_object(ctx):
+    obj = an_instance(ctx, a_class(ctx, "A", external=("base.Node",)))
+    (held,) = heap.read_field(ctx, obj, "thing").pts
+    assert (held.kind, held.key) == ("lib", ("inherited", "self", "thing"))
+    (method,) = heap.read_field(ctx, obj, "create_publisher").pts
+    assert method.info == (obj, "create_publisher")
+    assert heap.read_field(ctx, obj, "[0]") is BOTTOM
+
+
+def test_attributes_of_a_replaced_dictionary_are_read_and_stored_there(ctx):
+    obj, table = an_instance(ctx, a_class(ctx, "A")), made(ctx, "mapping", "table")
+    assert heap.replaced_attributes(ctx, obj) == frozenset()
+    ctx.store.put((obj, "__dict__"), pointer(table))
+    assert heap.replaced_attributes(ctx, obj) == {table}
+    ctx.store.put((table, "['x']"), ONE)
+    assert heap.read_field(ctx, obj, "x") == ONE
+    updates.write_field(ctx, pointer(obj), "x", TWO)
+    assert ctx.store.get((table, "['x']")) == BOTH
+
+
+def test_functions_are_bound_as_their_decorator_says(ctx):
+    cls = a_class(ctx, "A")
+    obj = an_instance(ctx, cls)
+    plain, static, of_class = (
+        a_function(ctx, "plain"),
+        a_function(ctx, "static", "staticmethod"),
+        a_function(ctx, "of_class", "classmethod"),
+    )
+    (bound,) = heap.bind(ctx, pointer(plain), obj, cls).pts
+    assert bound.info == (plain, obj, cls)
+    assert bound is heap.method(ctx, plain, obj, cls)
+    assert heap.bind(ctx, pointer(static), obj, cls) == pointer(static)
+    (bound,) = heap.bind(ctx, pointer(of_class), obj, cls).pts
+    assert bound.info == (of_class, cls, cls)
+    (bound,) = heap.bind_class(ctx, pointer(of_class), cls).pts
+    assert bound.info == (of_class, cls, cls)
+    assert heap.bind_class(ctx, value := pointer(plain), cls) is value
+    assert heap.bind(ctx, ONE, obj, cls) is ONE
+    both = Value(frozenset([1]), frozenset([plain, made(ctx, "lib", "a")]))
+    assert heap.bind(ctx, both, obj, cls).deps == {1}
+
+
+def test_names_of_an_opened_module_are_found_directly_and_indirectly(ctx):
+    (program,) = ctx.programs.values()
+    module = ctx.module_objects[program.name]
+    inner, outer = (recency.intern(ctx, "module", name, name) for name in ("inner", "outer"))
+    ctx.module_objects.update(inner=inner, outer=outer)
+    ctx.store.put((inner, "x"), ONE)
+    ctx.store.put((outer, "x"), TWO)
+    assert heap.opened_by(ctx, module) == []
+    assert heap.opened(ctx, module, "x") is BOTTOM
+    program.stars.append("inner")
+    assert heap.opened_by(ctx, module) == ["inner"]
+    assert heap.opened(ctx, module, "x") == ONE
+    assert heap.opened(ctx, module, "y") is BOTTOM
+
+
+def test_any_element_of_a_container_is_one_of_the_known_or_unknown_ones(ctx):
+    obj = made(ctx, "sequence", "a")
+    ctx.store.put((obj, "[0]"), ONE)
+    ctx.store.put((obj, "x"), Value(frozenset([9])))
+    assert heap.read_any(ctx, obj) == ONE
+    ctx.store.put((obj, ANY), TWO)
+    assert heap.read_any(ctx, obj) == BOTH
+
+
+def test_any_element_of_a_library_object_is_a_part_of_it(ctx):
+    obj = made(ctx, "lib", "a")
+    first = obj.sub("[0]")
+    assert heap.read_any(ctx, obj).pts == {first, obj.sub("[]")}
+    ctx.store.put((obj, ANY), ONE)
+    assert heap.read_any(ctx, obj).deps == frozenset()  # the parts have the data of the whole
+    assert reachable_data.deep(ctx, heap.read_any(ctx, obj).pts) == {1}
+
+
+def test_a_read_through_a_pointer_has_the_data_of_the_pointer(ctx):
+    one, two = made(ctx, "sequence", "a"), made(ctx, "sequence", "b")
+    ctx.store.put((one, "x"), ONE)
+    ctx.store.put((two, "x"), TWO)
+    assert heap.read(ctx, pointer(one), "x") is ONE
+    assert heap.read(ctx, pointer(one, frozenset([5])), "x").deps == {1, 5}
+    assert heap.read(ctx, Value(pts=frozenset([one, two])), "x").deps == {1, 2}
+    assert heap.read(ctx, Value(frozenset([5])), "x") == Value(frozenset([5]))
+    assert heap.arrive(ctx, ONE, frozenset()) is ONE
+    assert heap.arrive(ctx, ONE, frozenset([5])).deps == {1, 5}
+
+
+def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
+    listed, mapping = made(ctx, "sequence", "a"), made(ctx, "mapping", "b")
+    ctx.store.put((listed, "[0]"), ONE)
+    ctx.store.put((mapping, "['k']"), TWO)
+    assert heap.elements(ctx, pointer(listed)).deps == {1}
+    assert heap.elements(ctx, pointer(mapping)).deps == frozenset()
+    assert heap.keys(ctx, mapping, frozenset()) is UNKNOWN
+    ctx.store.put((mapping, KEYS), ONE)
+    assert heap.elements(ctx, pointer(mapping)).deps == {1}
+    assert heap.keys(ctx, mapping, frozenset([5])).deps == {1, 5}
+    assert heap.elements(ctx, ONE) == ONE
+    obj = an_instance(ctx, a_class(ctx, "A"))
+    ctx.store.put((obj, "inside"), TWO)
+    assert heap.elements(ctx, pointer(obj)).deps == {2}
+
+
+@pytest.mark.parametrize(
+    ("external", "field"), [((), "x"), (("builtins.dict",), "['x']"), (("Unknown",), "x")]
+)
+def test_an_item_of_the_attributes_is_an_attribute_unless_the_object_is_a_dictionary(ctx, external, field):
+    obj = an_instance(ctx, a_class(ctx, "A", external=external))
+    assert heap.attribute_of_item(obj, "x") == field
+    assert heap.attribute_of_item(obj, 0) == item_field(0) == "[0]"
+    assert heap.attribute_of_item(made(ctx, "mapping", "m"), "x") == "['x']"
+
+
+# --- stores -------------------------------------------------------------------------------------------
+
+
+def test_a_weak_update_keeps_what_was_there_also_if_unset(ctx):
+    obj = an_instance(ctx, cls := a_class(ctx, "A"))
+    ctx.store.put((cls, "x"), ONE)
+    updates.weaken(ctx, obj, "x", TWO)
+    assert ctx.store.get((obj, "x")) == BOTH
+
+
+@pytest.mark.parametrize("kind", ["bound", "ext", "method"])
+def test_a_store_into_a_function_of_a_library_is_dropped(ctx, kind):
+    obj = recency.intern(ctx, kind, "a", "a")
+    updates.write_field(ctx, pointer(obj), "x", ONE)
+    assert not obj.fields
+
+
+def test_nothing_is_added_to_an_object_without_elements(ctx):
+    module, listed = recency.intern(ctx, "module", "a"), made(ctx, "sequence", "b")
+    updates.add_element(ctx, Value(pts=frozenset([module, listed])), ONE)
+    assert not module.fields
+    assert heap.read_any(ctx, listed).deps == {1}
+
+
+def test_a_negative_index_counts_from_a_known_end(ctx):
+    obj = made(ctx, "sequence", "a")
+    base = pointer(obj)
+    ctx.store.put((obj, "[0]"), ONE)
+    ctx.store.put((obj, "[1]"), ONE)
+    assert [updates.from_end(ctx, base, key) for key in (-1, -2, -3)] == [1, 0, -3]
+    assert updates.from_end(ctx, Value(frozenset([1])), -1) == -1
+    updates.write_item(ctx, base, const(-1), TWO)
+    assert (ctx.store.get((obj, "[0]")), ctx.store.get((obj, "[1]"))) == (ONE, TWO)
+    updates.write_item(ctx, base, const(-3), Value(frozenset([3])))
+    assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
+
+
+def test_a_store_under_a_key_from_data_makes_the_keys_depend_on_it(ctx):
+    mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
+    key = Value(frozenset([5]))
+    updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), key, ONE)
+    assert heap.keys(ctx, mapping, frozenset()).deps == {5}
+    assert heap.content(ctx, mapping) == heap.content(ctx, listed) == ONE
+    assert KEYS not in listed.fields
+    updates.write_item(ctx, pointer(other := made(ctx, "mapping", "c")), const("k"), ONE)
+    assert KEYS not in other.fields
+    assert ctx.store.get((other, "['k']")) is ONE
+
+
+def test_a_store_under_one_of_several_keys_hits_only_those(ctx):
+    mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
+    for key in "kmn":
+        ctx.store.put((mapping, item_field(key)), BOTTOM)
+    keys = Value(consts=frozenset(["k", "m"]))
+    updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), keys, ONE)
+    assert [heap.read_field(ctx, mapping, item_field(key)).deps for key in "kmn"] == [{1}, {1}, set()]
+    assert heap.content(ctx, listed) == ONE
+    many = Value(consts=frozenset(f"k{n}" for n in range(updates.MAX_KEYS + 1)))
+    updates.write_item(ctx, pointer(mapping), many, TWO)
+    assert heap.read_field(ctx, mapping, item_field("n")).deps == {2}
+
+
+# --- joins --------------------------------------------------------------------------------------------
+
+
+def test_one_continuation_becomes_the_state_as_it_is(ctx):
+    obj = made(ctx, "sequence", "a")
+    delta = {(obj, "x"): ONE}
+    assert joins.joined(ctx, [delta]) is delta
+    joins.merge(ctx, [delta])
+    assert ctx.store.get((obj, "x")) is ONE
+
+
+def test_a_variable_set_on_one_path_only_has_that_value_but_a_field_also_its_default(ctx, frame):
+    obj = an_instance(ctx, cls := a_class(ctx, "A"))
+    ctx.store.put((cls, "x"), ONE)
+    both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
+    assert both == {(frame, "v"): TWO, (obj, "x"): BOTH}
+
+
+def test_an_object_made_on_one_path_only_has_no_value_on_the_other(ctx):
+    obj = recency.intern(ctx, "sequence", "new")
+    ctx.store.push()
+    ctx.store.put((obj, BORN), BOTTOM)
+    ctx.store.put((obj, "[0]"), ONE)
+    assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
+
+
+def test_several_paths_without_a_store_have_the_value_from_before_once(ctx):
+    obj = made(ctx, "sequence", "a")
+    ctx.store.put((obj, "x"), ONE)
+    assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
+    assert joins.joined(ctx, [{(obj, "x"): TWO}, {(obj, "x"): TWO}])[obj, "x"] == TWO
+
+
+@pytest.mark.parametrize(
+    ("stored", "blank"), [(0.0, False), (False, False), ("", False), (1.0, True), (None, True)]
+)
+def test_a_zero_stored_on_one_path_equals_the_unset_field_of_a_new_message(ctx, stored, blank):
+    message = made(ctx, "lib", "m")
+    message.info = BY_CLASS
+    both = joins.joined(ctx, [{(message, "x"): const(stored)}, {}])[message, "x"]
+    assert bool(both.pts) is blank
+    assert joins.joined(ctx, [{(message, "x"): ABSENT}, {}])[message, "x"].pts == {message.sub("x")}
+
+
+# --- creation, copies ---------------------------------------------------------------------------------
+
+
+def test_an_object_is_interned_by_kind_and_key(ctx):
+    obj = recency.intern(ctx, "lib", "a", "name")
+    assert recency.intern(ctx, "lib", "a") is obj
+    assert obj.name == "name"
+    assert recency.intern(ctx, "ext", "a") is not obj
+
+
+def test_each_turn_and_slot_has_its_own_object(ctx, frame):
+    obj = recency.allocate(ctx, "sequence", frame, "slot")
+    assert ctx.store.get((obj, BORN)) is BOTTOM
+    ctx.store.put((obj, "[0]"), ONE)
+    assert recency.allocate(ctx, "sequence", frame, "slot") is obj
+    assert heap.read_any(ctx, obj) is BOTTOM  # a new list is empty
+    assert recency.allocate(ctx, "sequence", frame, "other") is not obj
+    frame.turn = (1,)
+    assert recency.allocate(ctx, "sequence", frame, "slot") is not obj
+
+
+def test_fields_are_copied_with_parts_and_joined(ctx):
+    one, two = made(ctx, "lib", "a"), made(ctx, "lib", "b")
+    ctx.store.put((one, "x"), ONE)
+    ctx.store.put((one.sub("pose"), "y"), ONE)
+    ctx.store.put((two, "x"), TWO)
+    recency.copy_fields(ctx, one, two)
+    assert ctx.store.get((two, "x")) == BOTH
+    assert ctx.store.get((two.sub("pose"), "y")) is ONE
+    assert ctx.store.get((one, "x")) is ONE
+
+
+def test_fields_are_cleared_with_parts(ctx):
+    obj = made(ctx, "lib", "a")
+    folded = obj
+    for _ in range(MAX_NESTING):
+        folded = folded.sub("x")
+    ctx.store.put((obj, "y"), ONE)
+    ctx.store.put((folded, "y"), ONE)
+    folded.subs["x"] = folded  # deep nesting folds into one
+    recency.clear_fields(ctx, obj)
+    assert ctx.store.get((obj, "y")) is None
+    assert ctx.store.get((folded, "y")) is None
+
+
+# --- reachable ----------------------------------------------------------------------------------------
+
+
+def test_temporary_objects_stay_only_if_something_that_stays_leads_to_them(ctx, frame):
+    names = ("returned", "inside", "held", "bound", "given", "gone")
+    objects = {name: recency.allocate(ctx, "lib", frame, name) for name in names}
+    bound = recency.intern(ctx, "bound", "method")
+    bound.info = ("function", objects["bound"], [{"k": pointer(objects["gone"])}][:0])
+    for obj in objects.values():
+        ctx.store.put((obj, "x"), ONE)
+    ctx.store.put((objects["returned"], "inner"), pointer(objects["inside"]))
+    ctx.store.put(
+        (module := recency.intern(ctx, "module", "m"), "held"), Value(pts=frozenset([objects["held"], bound]))
+    )
+    ctx.store.put((frame, "local"), pointer(objects["gone"]))
+    given = frozenset([objects["given"]])
+    kept = abstract_gc.lasting(ctx.store.since(0), frame, [objects["returned"]], given, ctx.store.reads)
+    assert {name for name, obj in objects.items() if (obj, "x") in kept} == set(names) - {"gone"}
+    assert (module, "held") in kept
+    assert (frame, "local") not in kept
+    assert list(ctx.store.reads.facts) == [(given.isdisjoint, frozenset([objects["gone"]]))]
+    frame.captured = True
+    kept = abstract_gc.lasting(ctx.store.since(0), frame, [], frozenset(), ctx.store.reads)
+    assert (objects["gone"], "x") in kept  # a closure may read the variable
+
+
+def test_without_new_objects_only_variables_are_dropped(ctx, frame):
+    delta = {(frame, "x"): ONE, (recency.intern(ctx, "module", "m"), "y"): TWO}
+    kept = abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads)
+    assert [name for _, name in kept] == ["y"]
+    frame.captured = True
+    assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) is delta
+
+
+def test_objects_come_together_with_their_whole_and_their_definition():
+    whole, receiver, named, default = (Obj("lib", key) for key in ("a", "b", "c", "d"))
+    bound = Obj("bound", "m")
+    bound.info = (receiver, [pointer(default)], {"k": named.sub("x")})
+    assert abstract_gc.together([whole.sub("x"), bound]) == {whole, bound, receiver, named, default}
+
+
+def test_a_message_definition_is_known_for_its_parts(ctx):
+    message = made(ctx, "message", "m")
+    assert reachable_data.defined(ctx, message.sub("linear")) == ""
+    message.defined = "Twist"
+    assert reachable_data.defined(ctx, message) == "Twist"
+    assert reachable_data.defined(ctx, message.sub("linear")) == "Vector3"
+    assert reachable_data.defined(ctx, message.sub("unknown")) == ""
+
+
+def test_a_message_is_replaced_when_each_field_is(ctx):
+    message = made(ctx, "message", "m")
+    message.defined, message.info = "Vector3", 7
+    for name in "xy":
+        ctx.store.put((message, name), ONE)
+    assert not reachable_data.replaced(ctx, message, "Vector3")
+    assert reachable_data.deep(ctx, frozenset([message])) == {1, 7}
+    ctx.store.put((message, "z"), ONE)
+    assert reachable_data.replaced(ctx, message, "Vector3")
+    assert reachable_data.deep(ctx, frozenset([message])) == {1}
+    assert not reachable_data.replaced(ctx, message, "Unknown")
+    twist = made(ctx, "message", "t")
+    twist.defined = "Twist"
+    ctx.store.put((twist, "linear"), ONE)
+    for name in "xyz":
+        ctx.store.put((twist.sub("angular"), name), TWO)
+    assert reachable_data.replaced(ctx, twist, "Twist")
+
+
+# --- names --------------------------------------------------------------------------------------------
+
+
+def test_states_share_userdata_under_the_names_of_their_remapping(ctx):
+    state, other = made(ctx, "lib", "state"), made(ctx, "lib", "other")
+    (view,) = userdata.userdata(ctx, state).pts
+    userdata.rename(ctx, state, [("mine", "shared")])
+    stamp = view.stamp
+    userdata.rename(ctx, state, [("mine", "shared")])
+    assert view.stamp == stamp == 1
+    (shared,) = userdata.userdata(ctx).pts
+    assert userdata.seen_through(ctx, view, "mine") == (shared, "shared")
+    assert userdata.seen_through(ctx, view, "same") == (shared, "same")
+    updates.write_field(ctx, userdata.userdata(ctx, state), "mine", ONE)
+    assert heap.read(ctx, userdata.userdata(ctx, other), "shared") is ONE
+    assert heap.read(ctx, userdata.userdata(ctx, state), "mine") is ONE
+
+
+def test_a_parameter_in_a_name_has_a_marked_text():
+    known: list[ParameterName] = []
+    (text,) = parameter_names.text_of_parameter(known, "~scan", const("scan")) or ()
+    assert isinstance(text, Symbolic)
+    assert known == [ParameterName("~scan", "scan")]
+    assert text == f"{MARK}0{MARK}"
+    assert parameter_names.marked(known, ParameterName("other", None)) == f"{MARK}1{MARK}"
+    assert parameter_names.marked(known, ParameterName("~scan", "scan")) == text
+    (unset,) = parameter_names.text_of_parameter(known, "~scan", UNKNOWN) or ()
+    assert known[int(unset.strip(MARK))] == ParameterName("~scan", None)
+
+
+@pytest.mark.parametrize(
+    ("known", "name", "default"),
+    [
+        (None, "~scan", const("scan")),
+        ([], "~", const("scan")),
+        ([], "~scan", const(1)),
+        ([], "~scan", pointer(Obj("lib", 1))),
+    ],
+)
+def test_no_other_value_of_a_parameter_is_part_of_a_name(known, name, default):
+    assert parameter_names.text_of_parameter(known, name, default) is None
