@@ -134,7 +134,18 @@ ACTION_SENDERS: Final = frozenset(
 FILTER_WITH_NODE: Final = Fact("filter", "message_filters.Subscriber", (2, "topic"), (1, "msg_type"))
 
 PARAMETER_VALUES: Final = frozenset(
-    ["value", "double_value", "integer_value", "bool_value", "string_value", "get_parameter_value"]
+    [
+        "value",
+        "double_value",
+        "integer_value",
+        "bool_value",
+        "string_value",
+        "get_parameter_value",
+        "string_array_value",
+        "integer_array_value",
+        "double_array_value",
+        "bool_array_value",
+    ]
 )
 
 SOURCE_WORDS: Final = (

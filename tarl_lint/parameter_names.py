@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Final, Literal
+from functools import cached_property
+from typing import Any, Final, Literal
 
 MARK: Final = "\0"
 DEFAULT: Final = "\0default"  # the value of a parameter that is not set
 ARGUMENTS: Final = "\0argv"  # among the values of parameters: the program's command line, a tuple of texts
+LAUNCHED: Final = "\0launched"  # among the values of parameters: the `Launched` node itself
+ELSEWHERE: Final = "\0elsewhere"  # the value of a parameter that is known only on the robot
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 
@@ -17,12 +20,61 @@ _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 class ParameterName:
     """A parameter by its name in the code, and its default: None if that is not one known text.
 
-    Other kinds are the node's name, its namespace, and a name after resolving and remapping.
+    Other kinds are the node's name, its last part ("own"), its namespace, and a name after resolving and remapping.
     """
 
     name: str
     default: str | None = None
-    kind: Literal["parameter", "node", "namespace", "resolved"] = "parameter"
+    kind: Literal["parameter", "node", "own", "namespace", "resolved"] = "parameter"
+
+
+@dataclass(frozen=True)
+class Launched:
+    """A launched node: its absolute name, and by absolute name the parameters that it can see, sorted.
+
+    A value is a text, number, truth value, list, mapping or None, or ELSEWHERE.
+    """
+
+    name: str
+    parameters: tuple[tuple[str, Any], ...]
+
+    @property
+    def namespace(self) -> str:
+        """Return the namespace of the node, without a slash at its end."""
+        return self.name.rpartition("/")[0]
+
+    @cached_property
+    def _values(self) -> Mapping[str, Any]:
+        return dict(self.parameters)
+
+    def value(self, name: str) -> Any:
+        """Return the value of a parameter by its name in the code; a mapping of those below it, or DEFAULT for none."""
+        for place in places(name, self.name):
+            if place in self._values:
+                return self._values[place]
+            below: dict[str, Any] = {}
+            for one, value in self.parameters:
+                if one.startswith(f"{place}/"):
+                    _put(below, one[len(place) + 1 :].split("/"), value)
+            if below:
+                return below
+        return DEFAULT
+
+
+def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
+    for part in path[:-1]:
+        inner = table.get(part)
+        table[part] = table = inner if isinstance(inner, dict) else {}
+    table[path[-1]] = value
+
+
+def places(name: str, node: str) -> tuple[str, ...]:
+    """Return the absolute names that a parameter in the code of a node may have: in ROS 1, and in ROS 2."""
+    namespace = node.rpartition("/")[0]
+    start = {"~": f"{node}/", "/": "/"}.get(name[:1], f"{namespace}/")
+    whole = start + name.lstrip("~/")
+    in_ros1 = "/" + "/".join(part for part in whole.split("/") if part)
+    return (in_ros1,) if name[:1] in ("~", "/") else (in_ros1, f"{node}/{name}")
 
 
 def substituted(text: str, value: Callable[[int], str | None]) -> str | None:

@@ -16,6 +16,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
+MAX_EXACT_TURNS = 8  # the same in a run for one launched node
 SHORT = 3  # plain statements in a loop that is unrolled over up to MAX_KNOWN elements
 MAX_PASSES = 12  # over a loop's body; a safety limit, since the value domain is finite
 
@@ -97,9 +98,10 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     """Return the elements for an unrolled loop: few and known, with data or from the command line; else none."""
     elements = sizes.unpacked(ctx, source) or []
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
-    if not 1 < len(elements) <= (sizes.MAX_KNOWN if plain else MAX_TURNS):
+    limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
+    if not 1 < len(elements) <= limit:
         return []
-    if ctx.command_line:
+    if ctx.exact:
         return elements  # groups of its arguments
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)

@@ -21,7 +21,7 @@ from tarl_lint.memory.store import Store
 from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
-from tarl_lint.parameter_names import ARGUMENTS, ParameterName
+from tarl_lint.parameter_names import ARGUMENTS, LAUNCHED, Launched, ParameterName
 from tarl_lint.read.module_names import Index
 from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
@@ -97,7 +97,18 @@ class Interpreter:
         given = self.fixed.get(ARGUMENTS)
         return given if isinstance(given, tuple) else ()
 
-    def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> Hashable:
+    @property
+    def launched(self) -> Launched | None:
+        """Return the launched node with its parameters; None if the run is for all nodes of the program."""
+        given = self.fixed.get(LAUNCHED)
+        return given if isinstance(given, Launched) else None
+
+    @property
+    def exact(self) -> bool:
+        """Return whether the run is for one launched node, so that constants are worth following one by one."""
+        return self.launched is not None or bool(self.command_line)
+
+    def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> tuple[Hashable, ...]:
         """Return the key of an end of flows; for a launch, objects and turns of unrolled loops have their own ends."""
         return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
 

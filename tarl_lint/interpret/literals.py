@@ -75,13 +75,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
         and len(known) <= (MAX_ENTRIES if ctx.thorough else MAX_EACH)
     ):
         return _one_by_one_of(ctx, expr, known, frame)
-    if (
-        single
-        and expr.key is None
-        and ctx.command_line
-        and known
-        and (chosen := _selected(ctx, expr, known, frame))
-    ):
+    if single and expr.key is None and ctx.exact and known and (chosen := _selected(ctx, expr, known, frame)):
         return _one_by_one_of(ctx, expr, chosen, frame)
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     deps, lengths = NONE, NONE

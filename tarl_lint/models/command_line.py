@@ -30,7 +30,7 @@ def own_arguments(ctx: Interpreter, it: Invocation) -> Value:
 
 def counted(ctx: Interpreter, it: Invocation) -> Value:
     """Return `range(...)`: its numbers one by one if they are few and the command line is known."""
-    found = [value.constant()[1] for value in it.arguments[0] if ctx.command_line]
+    found = [value.constant()[1] for value in it.arguments[0] if ctx.exact]
     given = [one for one in found if isinstance(one, int)]
     exact = len(given) == len(found) and 0 < len(given) <= 3 and 0 not in given[2:]
     numbers = range(*given) if exact else range(0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,7 +26,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, sizes
+from tarl_lint.models import iterators, launched, sizes
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -196,6 +196,8 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
     if not plain:
         return elements_of_any(ctx, it.base)
     result = expressions.read_item(ctx, it.base, plain[0])
+    if ctx.launched is not None and (told := launched.entry(ctx, it.base, plain[0])) is not None:
+        return told
     return join(result, plain[1]) if len(plain) > 1 else result
 
 
@@ -233,14 +235,31 @@ def elements_of_any(ctx: Interpreter, base: Value) -> Value:
 
 
 def _read_values(ctx: Interpreter, it: Invocation) -> Value:
+    told = launched.entries(ctx, it.base)
+    if told is not None:
+        return _in_turn(ctx, [value for _, value in told], it)
     return iterators.listed(ctx, elements_of_any(ctx, it.base), sizes.length(ctx, it.base), it)
 
 
 def _read_keys(ctx: Interpreter, it: Invocation) -> Value:
+    told = launched.entries(ctx, it.base)
+    if told is not None:
+        return _in_turn(ctx, [key for key, _ in told], it)
     return iterators.listed(ctx, heap.elements(ctx, it.base), sizes.length(ctx, it.base), it)
 
 
+def _in_turn(ctx: Interpreter, elements: Sequence[Value], it: Invocation) -> Value:
+    """Return a new sequence with separate elements."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
+    for number, value in enumerate(elements):
+        ctx.store.put((obj, item_field(number)), value)
+    return pointer(obj)
+
+
 def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
+    told = launched.entries(ctx, it.base)
+    if told is not None:
+        return iterators.rows_of(ctx, told, it)
     keys = join_all(heap.elements(ctx, Value(it.base.deps, frozenset([o]))) for o in it.base.pts)
     return iterators.pairs(
         ctx, [keys, elements_of_any(ctx, it.base)], it.frame, it.call, sizes.length(ctx, it.base)
@@ -272,7 +291,7 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
     if ctx.graph.control[node]:
         ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
-    known = [sizes.constants(ctx, value) for value in it.arguments[0] if ctx.command_line]
+    known = [sizes.constants(ctx, value) for value in it.arguments[0] if ctx.exact]
     numbers = [len(texts) for texts in known if texts is not None]
     return Value(deps | ctx.kept(node), consts=frozenset(numbers) if numbers and len(numbers) == 1 else None)
 

@@ -47,7 +47,7 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
         known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
     rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
     if rows and len(rows) <= sizes.MAX_KNOWN:
-        return _rows(ctx, rows, it)
+        return rows_of(ctx, rows, it)
     parts = [heap.elements(ctx, v) for v in it.arguments[0]]
     length = lengths(ctx, it.arguments[0])
     return pairs(ctx, [UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
@@ -72,7 +72,7 @@ def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
     return pointer(obj)
 
 
-def _rows(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
+def rows_of(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
     """Return a sequence of tuples with separate elements."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, row in enumerate(rows):

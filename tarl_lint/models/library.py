@@ -187,6 +187,8 @@ def call_method(
         client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
         if client is not None:
             return client
+    if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):
+        return parts
     return _call_method(ctx, base, target, name, arguments, frame, call)
 
 

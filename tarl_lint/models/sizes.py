@@ -108,7 +108,7 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
 
 def _between(ctx: Interpreter, base: Value, index: ir.Slice, frame: Frame) -> list[Value] | None:
     """Return the elements that a slice selects from constants of a known command line; None if they are not known."""
-    elements = constants(ctx, base) if ctx.command_line and index.bounds else None
+    elements = constants(ctx, base) if ctx.exact and index.bounds else None
     found = [part and ctx.ops.evaluate(ctx, part, frame).constant()[1] for part in index.bounds]
     ends = [one if isinstance(one, int) else None for one in found]
     if elements is None or ends != found or 0 in ends[2:]:

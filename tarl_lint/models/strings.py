@@ -11,8 +11,10 @@ from tarl_lint.interpret import call_contexts, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments, Invocation
 from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Symbolic, Value
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Symbolic, Value, const, pointer
 from tarl_lint.models import sizes
 
 TEXT_METHODS: Final = frozenset(
@@ -43,6 +45,22 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
         ),
         [base, *plain, *named.values()],
     )
+
+
+def pieces(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value | None:
+    """Return the list that `split` makes of a known text; None if the text or an argument is not known."""
+    known, text = base.constant()
+    given = [value.constant() for value in arguments[0]]
+    if not known or not isinstance(text, str) or arguments[1] or not all(found for found, _ in given):
+        return None
+    try:
+        parts = text.split(*(one for _, one in given))  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    obj = recency.allocate(ctx, "sequence", frame, ("pieces", call.slot))
+    for number, part in enumerate(parts):
+        ctx.store.put((obj, item_field(number)), const(part))
+    return pointer(obj, base.deps)
 
 
 def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> Arguments:

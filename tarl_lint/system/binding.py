@@ -8,13 +8,22 @@ from dataclasses import replace
 from typing import Any
 
 from tarl_lint.model import Finding
-from tarl_lint.parameter_names import ARGUMENTS, DEFAULT, MARK, ParameterName, substituted
+from tarl_lint.parameter_names import (
+    ARGUMENTS,
+    DEFAULT,
+    ELSEWHERE,
+    LAUNCHED,
+    MARK,
+    Launched,
+    ParameterName,
+    places,
+    substituted,
+)
 from tarl_lint.system.model import Endpoint, Interface
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import leaves, stated
 from tarl_lint.workspace.parameter_yaml import NoYamlError
-from tarl_lint.workspace.ros_names import resolved
 
 DEEPEST = 8  # levels of parameters whose defaults contain parameters
 
@@ -36,9 +45,9 @@ def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Ma
     """
     found: dict[str, object] = {}
     for name in (one for one in names if one != ARGUMENTS):
-        places = _places(name, full_name)
-        below = any(one.startswith(f"{place}/") for place in places for one in values)
-        value = next((values[place] for place in places if place in values), None if below else DEFAULT)
+        found_at = places(name, full_name)
+        below = any(one.startswith(f"{place}/") for place in found_at for one in values)
+        value = next((values[place] for place in found_at if place in values), None if below else DEFAULT)
         if isinstance(value, list) and all(isinstance(one, str | bool | int | float) for one in value):
             found[name] = tuple(value)
         elif isinstance(value, str | bool | int | float):
@@ -64,10 +73,28 @@ def command_line(node: LaunchedNode, launch: Launch, full_name: str) -> Mapping[
     return {ARGUMENTS: (node.executable, *given, *for_ros)}
 
 
-def _places(name: str, full_name: str) -> tuple[str, str]:
-    """Return the absolute names that a parameter in a node's code may have: in ROS 1, and in ROS 2."""
-    namespace, _, own = full_name.rpartition("/")
-    return resolved(name, namespace or "/", own), f"{full_name}/{name}"
+def whole(values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
+    """Return a launched node with all its parameters under LAUNCHED."""
+    plain = ((name, value if _plain(value) else ELSEWHERE) for name, value in sorted(values.items()))
+    return {LAUNCHED: Launched(full_name, tuple(plain))}
+
+
+def _plain(value: object) -> bool:
+    """Return whether a value consists of texts, numbers, lists and mappings that the launch determines."""
+    if isinstance(value, list):
+        return all(map(_plain, value))
+    if isinstance(value, dict):
+        return all(isinstance(name, str) and _plain(one) for name, one in value.items())
+    return value is None or isinstance(value, str | bool | int | float)
+
+
+def undetermined(interface: Interface) -> bool:
+    """Return whether an end has no known name, or one of several, so that all parameters may tell more."""
+    ends = [one.names for one in interface.endpoints]
+    for one in interface.flows:
+        if one.flow is not None:
+            ends += [one.flow.source.topics, one.flow.sink.topics]
+    return any(len(names) != 1 for names in ends)
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
@@ -75,6 +102,13 @@ def with_prints(decided: Interface, every: Interface) -> Interface:
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))
+
+
+def with_names_in_code(decided: Interface, every: Interface) -> Interface:
+    """Return an interface whose names are known with the names in the code of the one for any parameters."""
+    written = {(one.role, one.span): one.written for one in every.endpoints if one.written}
+    ends = (replace(one, written=written.get((one.role, one.span), one.written)) for one in decided.endpoints)
+    return replace(decided, endpoints=tuple(ends))
 
 
 def _ends(finding: Finding) -> object:
@@ -159,13 +193,15 @@ class _Namer:
         one = self._parameters[number]
         if one.kind == "node":
             return self._full_name
+        if one.kind == "own":
+            return self._full_name.rpartition("/")[2]
         if one.kind == "namespace":
             return f"{self._full_name.rpartition('/')[0]}/"
         if one.kind == "resolved":
             name = self._deeper(one.name)
             return None if name is None else self._resolve(name)
-        places = _places(one.name, self._full_name)
-        given = next((self._values[place] for place in places if place in self._values), None)
+        found_at = places(one.name, self._full_name)
+        given = next((self._values[place] for place in found_at if place in self._values), None)
         if given is not None:
             return str(given) if isinstance(given, str | int | float) else None
         return None if one.default is None else self._deeper(one.default)

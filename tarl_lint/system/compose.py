@@ -7,7 +7,16 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint.model import Finding, Kind
-from tarl_lint.system.binding import bound, command_line, fixed, parameter_values, with_prints
+from tarl_lint.system.binding import (
+    bound,
+    command_line,
+    fixed,
+    parameter_values,
+    undetermined,
+    whole,
+    with_names_in_code,
+    with_prints,
+)
 from tarl_lint.system.calls import PARTS, part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
@@ -66,22 +75,40 @@ def _instance(
     interface = read(found, {}) if isinstance(found, Program) else found
     own = interface.name if isinstance(interface, Interface) else ""
     name = full_name(node, own)
-    if isinstance(interface, Interface):
-        values = parameter_values(launch, node, name)
-        if interface.deciding and isinstance(found, Program):
-            known = {**fixed(interface.deciding, values, name), **command_line(node, launch, name)}
-            decided = read(found, known)
-            interface = with_prints(decided, interface) if isinstance(decided, Interface) else interface
-        resolve = Instance(node, name).resolve
-        return Instance(node, name, bound(interface, values, name, resolve))
+    if isinstance(interface, Interface) and isinstance(found, Program):
+        return Instance(node, name, _decided(node, launch, name, interface, lambda given: read(found, given)))
     package = workspace.package(node.package) if node.kind == "node" else None
     seen = (
         named_topics(package, node.executable)
         if package is not None and not isinstance(found, Program)
         else ()
     )
-    reason = f"a C++ program of {node.package}" if seen else interface
+    reason = f"a C++ program of {node.package}" if seen else str(interface)
     return Instance(node, name, None, reason, seen, node.executable in _SILENT)
+
+
+def _decided(
+    node: LaunchedNode,
+    launch: Launch,
+    name: str,
+    every: Interface,
+    read: Callable[[Mapping[str, object]], Interface | str],
+) -> Interface:
+    """Return the interface of a launched node; with all its parameters at hand if names are unknown without."""
+    values = parameter_values(launch, node, name)
+    resolve = Instance(node, name).resolve
+
+    def named(known: Mapping[str, object]) -> Interface:
+        decided = read(known) if known else every
+        return bound(
+            with_prints(decided, every) if isinstance(decided, Interface) else every, values, name, resolve
+        )
+
+    known = {**fixed(every.deciding, values, name), **command_line(node, launch, name)}
+    first = named(known if every.deciding else {})
+    if not undetermined(first):
+        return first
+    return with_names_in_code(named({**known, **whole(values, name)}), named({}))
 
 
 def hops(instances: Sequence[Instance]) -> list[Hop]:

@@ -20,7 +20,10 @@ OPEN: Final = re.compile(
     r"get_param_names|dynamic_reconfigure|rosparam|param_server|generate_parameter_library"
 )
 
-COMMAND_LINE: Final = re.compile(r"\bsys\.argv\b|\bmyargv\b")
+COMMAND_LINE: Final = re.compile(r"\b(?:sys\.argv|myargv|argparse|optparse)\b")
+COPYING: Final = frozenset(
+    ["bool", "int", "float", "str", "list", "tuple"]
+)  # functions that keep what they get
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
@@ -45,24 +48,64 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 
 
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
-    """Return the parameters, by their names in the code, whose variables stand in a condition, sorted.
+    """Return the parameters, by their names in the code, that stand in a condition, sorted, also by way of variables.
 
-    Those over which loops run count, too, since a launch may give them lists of names. ARGUMENTS stands for the
-    command line, of which names may be made, too.
+    Variables are followed by their last names through plain copies, and as arguments of functions of the program.
+    Parameters over which loops run, or by which tables are read, count, too, since a launch may give them lists of
+    names. ARGUMENTS stands for the command line, of which names may be made, too.
     """
     found = {ARGUMENTS for module in modules if COMMAND_LINE.search(module.text)}
-    for module in modules:
-        nodes = list(ast.walk(module.tree))
-        conditions = [node.test for node in nodes if isinstance(node, ast.If | ast.IfExp | ast.While)]
-        loops = [node.iter for node in nodes if isinstance(node, ast.For | ast.comprehension)]
-        tests = {one for condition in (*conditions, *loops) for one in _variables(condition)}
-        found |= {name for condition in (*conditions, *loops) for name in _read_in(condition)}
-        for node in nodes:
-            if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                if any(one in tests for target in targets for one in _variables(target)):
-                    found |= set(_read_in(node.value))
+    nodes = [node for module in modules for node in ast.walk(module.tree)]
+    asked = [
+        *(node.test for node in nodes if isinstance(node, ast.If | ast.IfExp | ast.While)),
+        *(node.iter for node in nodes if isinstance(node, ast.For | ast.comprehension)),
+        *(node.slice for node in nodes if isinstance(node, ast.Subscript)),
+    ]
+    stored = [*_assigned(nodes), *_passed(nodes)]
+    tests: set[str] = set()
+    fresh = {one for condition in asked for one in _variables(condition)}
+    while fresh:
+        tests |= fresh
+        copied = (value for name, value in stored if name in fresh and _copies(value))
+        fresh = {one for value in copied for one in _variables(value)} - tests
+    for expr in (*asked, *(value for name, value in stored if name in tests)):
+        found |= set(_read_in(expr))
     return tuple(sorted(found))
+
+
+def _assigned(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
+    """Yield the last names of assigned variables with their values."""
+    for node in nodes:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                yield from ((one, node.value) for one in _variables(target))
+
+
+def _passed(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
+    """Yield the parameters of functions of the program with the arguments that they get, found by name."""
+    made: dict[str, list[str]] = {}
+    for node in nodes:
+        if isinstance(node, ast.FunctionDef):
+            made.setdefault(node.name, [one.arg for one in node.args.args])
+        elif isinstance(node, ast.ClassDef):
+            built = (one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__")
+            made.update((node.name, [arg.arg for arg in one.args.args]) for one in built)
+    for node in nodes:
+        names = made.get(last_name(node.func)) if isinstance(node, ast.Call) else None
+        if names is None or not isinstance(node, ast.Call):
+            continue
+        plain = names[1:] if names[:1] == ["self"] else names
+        yield from zip(plain, node.args, strict=False)
+        yield from ((one.arg, one.value) for one in node.keywords if one.arg in plain)
+
+
+def _copies(value: ast.expr) -> bool:
+    """Return whether an expression is a variable, its negation, or a conversion of one."""
+    if isinstance(value, ast.UnaryOp):
+        return _copies(value.operand)
+    if isinstance(value, ast.Call):
+        return last_name(value.func) in COPYING and len(value.args) == 1 and _copies(value.args[0])
+    return isinstance(value, ast.Name | ast.Attribute)
 
 
 def _variables(expr: ast.AST) -> Iterator[str]:

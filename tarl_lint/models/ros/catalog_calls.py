@@ -13,10 +13,10 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.parameter_names import text_of_parameter
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, const, join, pointer
-from tarl_lint.models import containers, records, sizes
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
+from tarl_lint.models import containers, launched, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions
-from tarl_lint.parameter_names import DEFAULT
+from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
 
 def ros_call(ctx: Interpreter, it: Invocation) -> Value:
@@ -91,10 +91,10 @@ def _copied(ctx: Interpreter, it: Invocation) -> Value:
 
 def parameter(ctx: Interpreter, it: Invocation) -> Value:
     """Return a parameter's value: its default, if known."""
-    listed = _listed(ctx, it)
+    default = it.argument(it.fact.extra)
+    listed = _listed(ctx, it, it.argument(it.fact.topic), default)
     if listed is not None:
         return listed
-    default = it.argument(it.fact.extra)
     if default is BOTTOM:
         node = ctx.node(it.frame, ("parameter", it.call.slot), "assign")
         ctx.graph.parameters.add(node)
@@ -106,16 +106,17 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
     )
 
 
-def _listed(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Return the list that a launch gives a parameter; None if it gives none."""
-    names = it.argument(it.fact.topic).texts()
-    given = ctx.fixed.get(names[0]) if len(names) == 1 else None
-    if not isinstance(given, tuple):
-        return None
-    obj = recency.allocate(ctx, "sequence", it.frame, ("listed", it.call.slot))
-    for number, value in enumerate(given):
-        ctx.store.put((obj, item_field(number)), const(value))
-    return pointer(obj)
+def _listed(
+    ctx: Interpreter, it: Invocation, name: Value, default: Value, slot: Hashable = ()
+) -> Value | None:
+    """Return the list or mapping that a launch, or the code in its place, gives a parameter; None if there is none."""
+    names = name.texts()
+    given = launched.value_of(ctx, names[0]) if len(names) == 1 else None
+    if given is DEFAULT and default.pts and ctx.launched is not None:
+        return default
+    return (
+        launched.made(ctx, given, it.frame, (it.call.slot, slot)) if isinstance(given, list | dict) else None
+    )
 
 
 def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
@@ -126,11 +127,11 @@ def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
 
 def _value_of(ctx: Interpreter, name: str, default: Value) -> Consts:
     """Return the known value of a parameter, else the text that stands for it in names of topics."""
-    if name not in ctx.fixed:
+    value = launched.value_of(ctx, name)
+    if value is ELSEWHERE:
         return text_of_parameter(ctx.parameter_names, name, default)
-    value = ctx.fixed[name]
     if value is not DEFAULT:
-        return frozenset([value])
+        return None if isinstance(value, list | dict) else frozenset([value])
     return default.consts if default.fixed() else None
 
 
@@ -158,11 +159,13 @@ def declare(ctx: Interpreter, it: Invocation) -> Value:
     default = it.argument(it.fact.extra)
     expr = _default(it)
     name = _named(ctx, it, default)
-    value = (
-        Value(consts=name)
-        if default is BOTTOM
-        else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=name)
-    )
+    value = _listed(ctx, it, it.argument(it.fact.topic), default)
+    if value is None:
+        value = (
+            Value(consts=name)
+            if default is BOTTOM
+            else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot), consts=name)
+        )
     found = _parameters(ctx, it.base, it.argument(it.fact.topic))
     for obj in found.objects:
         ctx.store.put((obj, "value"), value)
@@ -181,7 +184,7 @@ def declare_all(ctx: Interpreter, it: Invocation) -> Value:
         ctx.store.put((declared, item_field(number)), found)
         if len(parts) < 2:
             continue
-        value = _default_of(
+        value = _listed(ctx, it, Value(consts=frozenset(names)), parts[1], number) or _default_of(
             ctx,
             parts[1],
             written.get(number),

@@ -14,6 +14,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import Obj, Value, pointer
+from tarl_lint.models import launched, options
 from tarl_lint.models.ros import publications, services
 from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.node_names import node_name
@@ -46,9 +47,10 @@ def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value
     Return None if the call is none of these.
     """
     table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
-    named = node_name(ctx, it)
-    if named is not None:
-        return named
+    for told in (node_name, launched.asked, options.asked):
+        found = told(ctx, it)
+        if found is not None:
+            return found
     if name in table:
         return _made(ctx, Invocation(name, it.base, it.arguments, it.frame, it.call, table[name]))
     return _used(ctx, target, it) if target is not None else None
@@ -88,7 +90,8 @@ def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
     record = ctx.sources.get(key)
     if record is None and frame.statement is not None:
         module = ctx.modules[place[0]].name
-        record = SourceRecord(*place, info.api, module, publications.qualname(frame), frame.statement, frame)
+        qualname = publications.qualname(frame)
+        record = SourceRecord(*place, key, info.api, module, qualname, frame.statement, frame)
         record.kind = info.kind
         ctx.sources[key] = record
     if record is None:

@@ -15,10 +15,14 @@ Kind = Literal["topic", "service", "action", "transform"]
 
 @dataclass(slots=True, eq=False)
 class SourceRecord:
-    """A subscription: its place, its topics, and the nodes at which its messages arrive."""
+    """A subscription: its place, its topics, and the nodes at which its messages arrive.
+
+    `key` tells the subscriptions of one place apart where a launch file gives them names of their own.
+    """
 
     path: str
     pos: ir.Pos
+    key: tuple[Hashable, ...]
     api: str
     module: str
     qualname: str

@@ -10,15 +10,16 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.parameter_names import marked
-from tarl_lint.memory.values import UNKNOWN, Value, pointer
-from tarl_lint.parameter_names import ParameterName
+from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
+from tarl_lint.parameter_names import Launched, ParameterName
 
-NAMES: Final[Mapping[str, Literal["node", "namespace"]]] = {
+NAMES: Final[Mapping[str, Literal["node", "own", "namespace"]]] = {
     "rospy.get_name": "node",
     "rospy.get_caller_id": "node",
     "rospy.get_namespace": "namespace",
     "get_fully_qualified_name": "node",
     "get_namespace": "namespace",
+    "get_name": "own",
 }
 RESOLVING: Final = frozenset(["rospy.resolve_name", "rospy.remap_name", "resolve_topic_name"])
 TYPES: Final = frozenset(
@@ -32,7 +33,9 @@ def node_name(ctx: Interpreter, it: Invocation) -> Value | None:
     if known is None:
         return None
     given = it.arguments[0]
-    if it.name in NAMES and not given:
+    if it.name in NAMES and not given and not it.base.deps:
+        if ctx.launched is not None:
+            return const(_own(ctx.launched, NAMES[it.name]))
         return Value(it.base.deps, consts=frozenset([marked(known, ParameterName("", None, NAMES[it.name]))]))
     if it.name in RESOLVING and len(given) == 1 and (texts := given[0].names()):
         return Value(
@@ -45,3 +48,9 @@ def node_name(ctx: Interpreter, it: Invocation) -> Value | None:
             ctx.store.put((found, item_field(number)), value)
         return pointer(found)
     return None
+
+
+def _own(node: Launched, kind: Literal["node", "own", "namespace"]) -> str:
+    if kind == "node":
+        return node.name
+    return node.name.rpartition("/")[2] if kind == "own" else f"{node.namespace}/"

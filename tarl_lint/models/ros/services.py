@@ -37,10 +37,10 @@ def service(ctx: Interpreter, it: Invocation) -> Value:
         if target.kind not in RUN:
             continue
         values = [pointer(subscriptions.message(ctx, record, target))]
-        response = recency.intern(ctx, "lib", ("response", record.path, record.pos, target.key))
+        response = recency.intern(ctx, "lib", ("response", *record.key, target.key))
         if it.fact.api in catalog.FILLS_RESPONSE:
             values.append(pointer(response))
-        key = ("service", record.path, record.pos)
+        key = ("service", *record.key)
         subscriptions.call_when(ctx, key, target, values, "callback", [(response, "<new>", BOTTOM)], answer)
     return subscriptions.handle(ctx, it.frame, it.call)
 
@@ -66,7 +66,7 @@ def action(ctx: Interpreter, it: Invocation) -> Value:
         for target in callback.objects:
             if target.kind in RUN:
                 _goal_callback(ctx, server, way, target)
-    obj = recency.intern(ctx, "server", (record.path, record.pos))
+    obj = recency.intern(ctx, "server", record.key)
     obj.info = server
     return pointer(obj)
 
@@ -74,11 +74,11 @@ def action(ctx: Interpreter, it: Invocation) -> Value:
 def _goal_callback(ctx: Interpreter, server: Server, way: str, target: Obj) -> None:
     record = server.record
     message = pointer(subscriptions.message(ctx, record, target))
-    key = ("action", way, record.path, record.pos)
+    key = ("action", way, *record.key)
     if way == "goal":
         subscriptions.call_when(ctx, key, target, [message], "callback")
         return
-    handle = recency.intern(ctx, "goal", (record.path, record.pos, target.key))
+    handle = recency.intern(ctx, "goal", (*record.key, target.key))
     handle.info = Server(record, server.sends, handle=True)
     answer = server.sends if way == "execute" else None
     subscriptions.call_when(
@@ -103,7 +103,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
         for callback in (*it.arguments[0], *it.arguments[1].values()):
             for function in callback.objects:
                 if function.kind in RUN:
-                    key = (it.name, server.record.path, it.call.pos)
+                    key = (it.name, *server.record.key, it.call.pos)
                     subscriptions.call_when(ctx, key, function, [], "callback")
     return UNKNOWN
 
@@ -113,7 +113,7 @@ def arrived(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
     key = (it.frame.id, it.call.slot)
     obj = record.messages.get(key)
     if obj is None:
-        obj = record.messages[key] = Obj("message", (record.path, record.pos, key))
+        obj = record.messages[key] = Obj("message", (*record.key, key))
         obj.info = ctx.node(it.frame, ("receive", it.call.slot), "receive")
         record.nodes.add(obj.info)
         ctx.graph.begin(obj.info)

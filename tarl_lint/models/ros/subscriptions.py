@@ -44,7 +44,8 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
     if record is None:
         assert statement is not None  # noqa: S101 - a call stands in a statement
         module = ctx.modules[path].name
-        record = SourceRecord(path, pos, it.fact.api, module, publications.qualname(place), statement, place)
+        qualname = publications.qualname(place)
+        record = SourceRecord(path, pos, key, it.fact.api, module, qualname, statement, place)
         record.kind = KINDS.get(it.fact.kind, "topic")
         ctx.sources[key] = record
     record.via.update(via)
@@ -82,7 +83,7 @@ def _received(ctx: Interpreter, record: SourceRecord, frame: Frame, slot: Hashab
     """Return the message object that arrives at a frame's current statement."""
     obj = record.messages.get((frame.id, slot))
     if obj is None:
-        obj = record.messages[frame.id, slot] = Obj("message", (record.path, record.pos, frame.id, slot))
+        obj = record.messages[frame.id, slot] = Obj("message", (*record.key, frame.id, slot))
         obj.info = ctx.node(frame, ("receive", slot), "receive")
         record.nodes.add(obj.info)
         ctx.graph.begin(obj.info)
@@ -109,16 +110,14 @@ def connect(ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequ
     for target in callback.objects:
         if (target.kind in CALLABLE and target.kind != "method") or target.kind == "instance":
             arriving = message(ctx, record, target)
-            call_when(
-                ctx, ("callback", record.path, record.pos), target, [pointer(arriving), *extra], "callback"
-            )
+            call_when(ctx, ("callback", *record.key), target, [pointer(arriving), *extra], "callback")
 
 
 def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
     """Return the message object that a source passes to a callback."""
     obj = record.messages.get(target.key)
     if obj is None:
-        obj = record.messages[target.key] = Obj("message", (record.path, record.pos, target.key))
+        obj = record.messages[target.key] = Obj("message", (*record.key, target.key))
         obj.defined = next(iter(record.types)) if len(record.types) == 1 else ""
         frame = described(ctx, target)
         place = Place(frame or record.frame, None, "receive", (frame or record.frame).function.pos)
@@ -163,7 +162,7 @@ def message_filter(ctx: Interpreter, it: Invocation) -> Value:
     if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
         it.fact = catalog.FILTER_WITH_NODE
     record = source(ctx, it, BOTTOM)
-    obj = recency.intern(ctx, "filter", (record.path, record.pos))
+    obj = recency.intern(ctx, "filter", record.key)
     obj.describe(record)
     return pointer(obj)
 
@@ -197,7 +196,7 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
     for function in callback.objects:
         if function.kind in CALLABLE:
             messages = [_filtered(ctx, part, function, places) for part in parts]
-            key = ("filter", it.frame.program.path, it.call.pos)
+            key = ("filter", *ctx.end_key(it.frame.program.path, it.call.pos, it.frame))
             named = {"*": join_all([*messages, *extra])} if several else {}
             values = [] if several else [*messages, *extra]
             call_when(ctx, key, function, values, "callback", named=named)
