@@ -57,6 +57,7 @@ PROBES = 4  # episodes at a drift that a peer proposes
 OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
 RECORDED = 100
 RISK = 0.05  # of the test on fresh seeds
+SIZES = (16, 32, 64)  # fresh episodes after which it ends if it succeeds
 SIZE = "size"
 SCENARIO = "stress"
 LARGEST = 2.0  # no drift of four directions is farther
@@ -238,7 +239,7 @@ def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
     """Return the distance of the nearest point that fails on fresh seeds; None if none does."""
     judge = one.evaluator(10_000 + seed, 10**9)
     for k, point in enumerate(points[:OFFERS], 1):
-        if judge.confirm(point, "judge", RISK / (k * (k + 1))):
+        if judge.confirm(point, "judge", RISK / (k * (k + 1)), SIZES):
             return distance(one.space, point)
     return None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import isclose
+from math import inf, isclose
 
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.boundary import COARSE, bisect
@@ -85,11 +85,11 @@ class Combined:
         self._confirm()
 
     def end(self) -> None:
-        """Test pairs, look for nearer drifts, and confirm what was found. Raise BudgetSpentError."""
+        """Look for nearer drifts, test pairs, and confirm what was found. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
-            pairs(self.evaluator, self.together, proposed)
             self.nearest.improve()
+            pairs(self.evaluator, self.together, proposed)
         self._confirm()
         for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
             self.together.confirm([point], self.evaluator)
@@ -105,13 +105,19 @@ class Combined:
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:
-    """Test each pair of directions just inside its boundaries, and bisect towards nominal where a pair fails."""
+    """Test pairs of directions just inside their boundaries, and bisect towards nominal where a pair fails.
+
+    Pairs farther than a confirmed combination are left out.
+    """
     inside = list(_inside(together.curves))
+    nearest = min((one.distance for one in together.found), default=inf)
     for one, other in combinations(inside, 2):
         if one[0].names == other[0].names:
             continue
-        together.tried += 1
         curve = Curve(joined((one, other)))
+        if curve.ray.length >= nearest:
+            continue
+        together.tried += 1
         curve.evidence[1.0] = evaluator.examine(curve.ray.point(1.0), COARSE)
         if curve.failing:
             bisect(curve, evaluator)

@@ -7,8 +7,9 @@ on common seeds; `combinations` confirms the result on fresh ones.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 from math import sqrt
 
 import numpy as np
@@ -24,6 +25,7 @@ from pytest_tarl.stressing.mapping import margin_map
 from pytest_tarl.stressing.prediction import Prediction, Sample
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
+from pytest_tarl.stressing.spreading import spread
 
 NEARER = 0.98  # a drift is looked for up to this share of the best distance
 LARGEST = 2.0  # distance beyond which no failing drift is looked for
@@ -32,6 +34,7 @@ GAIN = 0.01  # expected gain, in units of the best distance, below which predict
 SURE = 0.1  # a tried drift fails for the search if its predicted margin is this far below 0
 CLEAR = 4.0  # or if its margin is this many standard deviations below 0
 GENERATED = 24  # drifts of Hypothesis
+ROUNDS, EXPLORED = 3, 8  # rounds of drifts nearer than the best one, and drifts of a round
 TRIES = 24  # consecutive drifts of CMA-ES without a nearer failure after which it ends
 SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the best distance
 DEPTHS = (
@@ -51,6 +54,7 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
+    _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # the episodes that it has seen, and the model
 
     def approach(self) -> None:
@@ -58,6 +62,9 @@ class Nearest:
         self._predict()
         if self.best is None:
             self._generate()
+            self._predict()
+        for _ in range(ROUNDS):
+            self._explore()
             self._predict()
 
     def improve(self) -> None:
@@ -185,6 +192,18 @@ class Nearest:
             if gain < GAIN * limit:
                 break
             self._probe(coordinates.point(vector))
+
+    def _explore(self) -> None:
+        """Try drifts nearer than the best one in all directions, since another failing region may be nearer."""
+        evaluator, coordinates = self.evaluator, self._nominal()
+        if len(coordinates.spans) < 2:
+            return
+        if self._spread is None:
+            draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} exploration")
+            self._spread = spread(coordinates, draws)
+        for vector in islice(self._spread, EXPLORED):
+            limit = min(self._limit(), LARGEST)
+            self._probe(coordinates.point(vector * limit))
 
     def _generate(self) -> None:
         """Let Hypothesis look for a first failing drift."""

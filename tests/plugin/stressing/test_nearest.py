@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from math import sqrt
 
 import numpy as np
@@ -18,6 +19,7 @@ from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.nearest import Nearest
 from pytest_tarl.stressing.prediction import Prediction, Sample
 from pytest_tarl.stressing.rays import distance, rays
+from pytest_tarl.stressing.spreading import CLOSEST, spread
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
 
 SPACE = space_of(
@@ -138,3 +140,31 @@ def test_clearly_failing_drifts_are_candidates_where_the_model_misled_nearby() -
     assert nearest._farther(0.1) == [points[4], points[5], points[6]]
     assert nearest._farther(distance(space, points[7])) == [points[8]]
     assert nearest._farther(2.0) == []
+
+
+def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:
+    coordinates = Coordinates(SPACE, SPACE.nominal)  # a goes both ways, b only down
+    vectors = np.array(list(islice(spread(coordinates, np.random.default_rng(0)), 200)))
+    lengths = np.linalg.norm(vectors, axis=1)
+    assert lengths.min() >= CLOSEST
+    assert lengths.max() <= 1.0
+    assert (vectors[:, 1] <= 0.0).all()
+    both = vectors[(vectors != 0.0).all(axis=1)]
+    angles = np.sort(np.arctan2(both[:, 0], -both[:, 1]))  # from -π/2 to π/2
+    assert np.diff(angles, prepend=-np.pi / 2, append=np.pi / 2).max() < 0.3
+
+
+def test_a_narrow_failing_region_near_nominal_is_found_beside_a_wide_one() -> None:
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        x = np.array(list(point.values()))
+        wide = 1.2 * float(np.linalg.norm(x - [0.9, 0.9, 0.0]) < 0.5)
+        narrow = 1.8 * float(np.exp(-((np.linalg.norm(x - [0.3, -0.25, 0.25]) / 0.25) ** 2)))
+        return True, 10.0 - 0.5 * max(wide, narrow) + float(draws.normal(0.0, 0.05))
+
+    space = space_of(
+        a=Drift.range(0.0, 1.0, nominal=0.0),
+        b=Drift.range(-0.5, 0.5, nominal=0.0),
+        c=Drift.range(0.0, 1.0, nominal=0.0),
+    )
+    nearest = stressed(world, space, budget=600).failures[0]
+    assert nearest.distance < 0.4  # the narrow region begins at 0.27, the wide one at about 0.77

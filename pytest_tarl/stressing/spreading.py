@@ -1,0 +1,52 @@
+"""Spread drifts evenly over the directions and distances around nominal, by a Halton sequence (Halton 1960)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import count
+from statistics import NormalDist
+
+import numpy as np
+
+from pytest_tarl.stressing.coordinates import Coordinates, Vector
+
+CLOSEST = 0.4  # distance of the nearest drifts, in units of the limit
+PART = 0.8  # share of the drifts in which a direction takes part
+
+
+def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
+    """Yield vectors without end: evenly over all directions, as far as the ends of the ranges, in random signs.
+
+    Lengths are shares of 1 between CLOSEST and 1; a caller multiplies them by the distance that it looks up to.
+    """
+    size = len(coordinates.spans)
+    bases, shift = _primes(2 * size + 1), draws.random(2 * size + 1)
+    for number in count(1):
+        drawn = (np.array([_inverse(number, base) for base in bases]) + shift) % 1.0
+        vector = np.array([NormalDist().inv_cdf(min(max(one, 1e-9), 1.0 - 1e-9)) for one in drawn[:size]])
+        vector[drawn[size:-1] > PART] = 0.0
+        vector = np.where(coordinates.low == 0.0, np.abs(vector), vector)
+        vector = np.where(coordinates.high == 0.0, -np.abs(vector), vector)
+        length = float(np.linalg.norm(vector))
+        if length > 0.0:
+            yield vector / length * (CLOSEST + (1.0 - CLOSEST) * drawn[-1])
+
+
+def _inverse(number: int, base: int) -> float:
+    """Return the radical inverse: the digits of a number, mirrored at the point."""
+    found, unit = 0.0, 1.0 / base
+    while number:
+        number, digit = divmod(number, base)
+        found += digit * unit
+        unit /= base
+    return found
+
+
+def _primes(number: int) -> list[int]:
+    found: list[int] = []
+    for one in count(2):
+        if len(found) == number:
+            return found
+        if all(one % prime for prime in found):
+            found.append(one)
+    raise AssertionError
