@@ -16,6 +16,7 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
+DEPTH = 1000  # messages of a topic that wait while the node is busy; rclpy drops the oldest of more
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,8 @@ def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[
 def _watch_rclpy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
     """Subscribe with the first node that the program creates."""
     node_class = import_module("rclpy.node").Node
-    profile = import_module("rclpy.qos").qos_profile_sensor_data  # compatible with every publisher
+    qos = import_module("rclpy.qos")  # best effort and volatile are compatible with every publisher
+    profile = qos.QoSProfile(depth=DEPTH, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
     make, pending = node_class.__init__, list(listeners)
 
     def init(self: Any, *args: Any, **kwargs: Any) -> None:

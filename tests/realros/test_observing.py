@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from time import monotonic, sleep
 
 import pytest
 
@@ -20,7 +19,27 @@ from tests.plugin.tank import NODE, RECORD, TEST
 from tests.realros.probes.running import installed
 
 MISSIONS, STEPS = 3, 20
-BETWEEN = 0.3  # s between messages on different topics, whose order of arrival ROS does not determine
+# ROS does not determine in which order messages on different topics arrive: the world waits for what the log holds
+LOGGED = """
+import sys
+import time
+from pathlib import Path
+from pytest_tarl.observing.frames import records
+from pytest_tarl.observing.writer import unpacked
+
+LOG = Path(".tarl/missions.log")
+
+def logged(kind):
+    kept = [one for one in records(LOG) if one["kind"] == kind]
+    return sum(unpacked(one["reward"], "float64").size for one in kept) if kind == "steps" else len(kept)
+
+def until(kind, count):
+    end = time.monotonic() + 300.0
+    while logged(kind) < count:
+        if time.monotonic() > end:
+            sys.exit(f"{kind}: {logged(kind)} of {count} were logged")
+        time.sleep(0.02)
+"""
 ROS1_WORLD = """
 import rospy
 from std_msgs.msg import Float64, String
@@ -52,16 +71,15 @@ while not heard or not all(one.get_subscription_count() for one in publishers):
 MISSIONS_OF_IT = f"""
 for number in range({MISSIONS}):
     mission.publish(String(data="begin"))
-    pause({BETWEEN})
+    until("mission", number + 1)
     for step in range({STEPS}):
         level.publish(Float64(data=step / {STEPS}))
-        pause(0.02)
+        pause(0.02 if number else 0.0)  # the first time faster than the node takes them
         monitor.publish(Float64(data=-step / {STEPS}))
-    pause({BETWEEN})
+    until("steps", {STEPS} * (number + 1))
     mission.publish(String(data="succeeded"))
-    pause({BETWEEN})
+    until("end", number + 1)
 print("over", flush=True)
-pause(1.0)
 """
 ROS2_NODE = """
 import rclpy
@@ -129,7 +147,7 @@ def written(folder: Path) -> list[Mission]:
     """Return the missions in the log so far."""
     (fixture,) = folder.glob(".tarl/utility/*.npz")
     log = folder / ".tarl/missions.log"
-    return missions(log, load(fixture)) if log.exists() else []
+    return missions(log, load(fixture))
 
 
 def observed(folder: Path, world: str, ending: signal.Signals) -> None:
@@ -139,14 +157,15 @@ def observed(folder: Path, world: str, ending: signal.Signals) -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen(command, cwd=folder, env=environment) as node:
         try:
-            text = world + MISSIONS_OF_IT
             played = subprocess.run(
-                [sys.executable, "-W", "ignore", "-c", text], capture_output=True, text=True, timeout=600
+                [sys.executable, "-W", "ignore", "-c", world + LOGGED + MISSIONS_OF_IT],
+                cwd=folder,
+                env=environment,
+                capture_output=True,
+                text=True,
+                timeout=1000,
             )
             assert "over" in played.stdout, played.stderr
-            deadline = monotonic() + 60
-            while sum(one.ended for one in written(folder)) < MISSIONS and monotonic() < deadline:
-                sleep(0.1)
         finally:
             node.send_signal(ending)
             node.wait(300)

@@ -15,6 +15,8 @@ from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.observing import command, outlet
 from pytest_tarl.observing.frames import Record, records
 from pytest_tarl.observing.observer import Observer
+from pytest_tarl.ros.rclpy.executors import ExternalShutdownException
+from pytest_tarl.ros.rospy.exceptions import ROSInterruptException
 
 ABOUT = {"sites": [], "sensors": []}
 NO_SITES: Any = SimpleNamespace(positions={}, publishes=frozenset())
@@ -53,6 +55,8 @@ ENDINGS = [
     (SystemExit(0), True, None, True),
     (SystemExit(3), False, "exit status 3", True),
     (KeyboardInterrupt(), True, "", False),
+    (ExternalShutdownException(), True, "", False),
+    (ROSInterruptException("rospy shutdown"), True, "", False),
     (ValueError("off the road"), False, "ValueError: off the road", True),
     (GeneratorExit(), False, "GeneratorExit: ", True),
 ]

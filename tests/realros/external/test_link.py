@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from importlib.machinery import PathFinder
 from time import monotonic
 from typing import Any
@@ -15,21 +14,24 @@ pytestmark = [
     ),
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # by a library of rclpy
 ]
-LIMIT = 30.0  # s
+LIMIT = 300.0  # s: only what never happens fails a test, however busy the machine is
 
 
-def test_an_answer_does_not_overtake_the_messages_sent_before_it() -> None:
+def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
     from diagnostic_msgs.srv import SelfTest
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.node import Node
     from std_msgs.msg import Float64
 
+    from pytest_tarl.external.domain import Domain
     from pytest_tarl.external.link import Link
 
-    domain = 150 + os.getpid() % 50
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a killed process leaves nothing in /dev/shm
+    domain = Domain()  # no other test on this machine has it
     context = Context()
-    context.init(args=[], domain_id=domain, initialize_logging=False)
+    context.init(args=[], domain_id=domain.number, initialize_logging=False)
     node = Node("sim", context=context, use_global_arguments=False, start_parameter_services=False)
     level = node.create_publisher(Float64, "/level", 100)
 
@@ -42,7 +44,7 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it() -> None:
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     events: list[dict[str, Any]] = []
-    link = Link(domain, "/clock", events.append)
+    link = Link(domain.number, "/clock", events.append)
     link.subscribe(["/level"])
     try:
         _until(
@@ -61,6 +63,7 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it() -> None:
         executor.shutdown()
         node.destroy_node()
         context.try_shutdown()
+        domain.release()
     kinds = [one["kind"] for one in events if one["kind"] in ("message", "answer")]
     assert kinds == ["message"] * 20 + ["answer"]
     assert all(one["sent"] >= events[-1]["asked"] for one in events if one["kind"] == "message")

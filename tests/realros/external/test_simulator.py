@@ -43,8 +43,8 @@ class Run:
             "step": None,
             "reset": None,
             "every_step": (),
-            "timeout": 60.0,
-            "patience": 20.0,
+            "timeout": 600.0,  # only what never happens fails a test, however busy the machine is
+            "patience": 300.0,
             **more,
         }
         command = given.pop("command", [sys.executable, str(PROGRAM)])
@@ -111,7 +111,7 @@ def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
     assert found[0] == found[1]
     assert held(lock)
     KEPT.close()
-    assert not held(lock)
+    assert comes_free(lock)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("fault", "patience", "said"),
-    [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 20.0, "went back from")],
+    [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 300.0, "went back from")],
 )
 def test_a_followed_simulator_that_stops_or_jumps_is_described(
     tmp_path: Path, fault: str, patience: float, said: str
