@@ -7,11 +7,13 @@ exactly the marked lines are steps: a's data passes through the line, and for b 
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from tarl_lint.api import analyse
+from tarl_lint.model import Flow
 
 CASES = Path(__file__).parent.parent / "cases"
 MARK = re.compile(r"# (source|sink|clean)((?: ~?\w+)*)")
@@ -53,15 +55,21 @@ def marks(
     return sources, flows, clean
 
 
+@cache
+def flows_of(unit: Path) -> tuple[Flow, ...]:
+    """Return the flows of a unit, which has no errors; two tests look at most of them."""
+    analysis = analyse([unit])
+    assert not analysis.errors
+    return analysis.flows
+
+
 @pytest.mark.parametrize("unit", UNITS, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
 def test_the_marked_flows_are_found_and_no_others(unit):
     sources, wanted, clean = marks(unit)
     assert wanted
     assert clean or unit.name in PLAIN
-    analysis = analyse([unit])
-    assert not analysis.errors
     found = set()
-    for flow in analysis.flows:
+    for flow in flows_of(unit):
         place = (Path(flow.source.span.path).name, flow.source.span.line)
         source = sources.get(place, f"unmarked line {place[1]}")
         found.add((source, Path(flow.sink.span.path).name, flow.sink.span.line, flow.kind))
@@ -79,7 +87,7 @@ def test_the_marked_steps_are_found_and_no_other_data_steps(unit):
         for name in names.split()
     }
     found: dict[str, set[tuple[str, int]]] = {"data": set(), "control": set(), "context": set()}
-    for flow in analyse([unit]).flows:
+    for flow in flows_of(unit):
         source = sources[unit.name, flow.source.span.line]
         inner = (s for s in flow.steps if s.role not in ("publish", "receive"))
         for step in inner:

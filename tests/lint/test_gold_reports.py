@@ -1,0 +1,71 @@
+"""Each format of a report and of a system prints exactly what is recorded under tests/lint/gold."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tarl_lint import __version__
+from tarl_lint.cli import main
+from tarl_lint.report import FORMATS
+from tests.lint.gold_files import expected
+from tests.lint.test_cases import CASES
+
+WORKSPACE = Path(__file__).parents[2] / "examples" / "workspace"
+FILES = (
+    "state/combined.py",
+    "state/module_message.py",
+    "combined/pid_with_windup.py",
+    "calls/helpers_in_modules",
+)
+OPTIONS = {
+    "all": ("--all-steps", "--select", "TARL101,TARL2"),
+    "few": ("--max-paths", "2", "--show-paths"),
+    "none": ("--max-paths", "0", "--statistics"),
+    "paths": ("--show-paths", "--ignore", "TARL102"),
+}
+SYSTEMS = {"svg": ("--format", "svg"), "mermaid": ("--format", "mermaid"), "text": ()}
+
+
+def output(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """Return what a run prints, without what depends on the release and the machine."""
+    main([*arguments, "--no-cache", "--jobs", "1"])
+    out, err = capsys.readouterr()
+    text = re.sub(r"\d+\.\d+ s\b", "TIME", out + err)
+    return text.replace(__version__, "VERSION").replace(CASES.as_uri(), "CASES").replace(str(CASES), "CASES")
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_each_format_is_as_recorded(name, monkeypatch, capsys):
+    monkeypatch.chdir(CASES)
+    text = output(capsys, *FILES, "--format", name)
+    if name == "sarif":  # without the texts of the rules; one result a line
+        (run,) = json.loads(text)["runs"]
+        text = "".join(f"{json.dumps(result)}\n" for result in run["results"])
+    assert text.splitlines() == expected(f"reports/{name}.txt", text)
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_each_selection_of_steps_is_as_recorded(name, monkeypatch, capsys):
+    monkeypatch.chdir(CASES)
+    text = output(capsys, *FILES, *OPTIONS[name])
+    assert text.splitlines() == expected(f"reports/text_{name}.txt", text)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_each_picture_of_a_system_is_as_recorded(name, monkeypatch, capsys):
+    monkeypatch.chdir(WORKSPACE)
+    text = output(capsys, ".", "--launch", "all", *SYSTEMS[name])
+    assert text.splitlines() == expected(f"systems/{name}.txt", text)
+
+
+@pytest.mark.parametrize(
+    ("option", "topic"), [("--from", "/scout/rear/scan"), ("--to", "/scout/cmd_vel"), ("--to", "/unknown")]
+)
+def test_each_query_about_a_topic_is_as_recorded(option, topic, monkeypatch, capsys):
+    monkeypatch.chdir(WORKSPACE)
+    text = output(capsys, ".", "--launch", "all", option, topic)
+    assert text.splitlines() == expected(f"systems/{option[2:]}{topic.replace('/', '_')}.txt", text)
