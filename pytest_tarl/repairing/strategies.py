@@ -7,6 +7,7 @@ from pathlib import Path
 
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
+from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
@@ -67,7 +68,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     found = dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site))
-    return tuple(sorted(found, key=writing))
+    return tuple(sorted(quantities(order.analysis, found), key=writing))
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:
@@ -78,7 +79,8 @@ def aside_operands(order: Order) -> tuple[Operand, ...]:
     analysis = order.analysis
     known = set(operands(order))
     found = (o for step in (*analysis.timing, *analysis.deciding) for o in analysis.operands(step.site))
-    return tuple(sorted(dict.fromkeys(one for one in found if one not in known), key=writing))
+    new = dict.fromkeys(one for one in found if one not in known)
+    return tuple(sorted(quantities(analysis, new), key=writing))
 
 
 def evidence(order: Order) -> candidates.Evidence:

@@ -15,6 +15,7 @@ from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
@@ -187,7 +188,7 @@ def _spots(order: Order) -> Iterator[_Spot]:
             continue
         for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site):
             key = (source.path, source.start(node))
-            if key not in seen:
+            if key not in seen and not is_member(source, node, order.analysis.sources.values()):
                 seen.add(key)
                 usual = threshold(node) if kind == "comparison" else sizes.of(step.site, node)
                 yield _Spot(step.site, source, node, kind, usual)

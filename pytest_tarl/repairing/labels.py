@@ -1,0 +1,84 @@
+"""Constants that are no quantities: members of an enumeration, and values of which only the truth is asked.
+
+A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
+nothing. No search moves these. Booleans and zeros stay, since their truth can change.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable
+from functools import cache
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.document import Document, document
+from tarl_lint.api import Analysis
+from tarl_lint.model import Operand
+
+_ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
+
+
+def quantities(analysis: Analysis, operands: Iterable[Operand]) -> list[Operand]:
+    """Return the operands without labels, in their order."""
+    return [operand for operand in operands if not _is_label(analysis, operand)]
+
+
+def is_member(source: Document, node: ast.expr, texts: Iterable[str]) -> bool:
+    """Return whether an expression is a member of an enumeration, or is compared with one or by identity.
+
+    `texts` are the modules in which enumerations may be defined.
+    """
+    names = {name for text in texts for name in _enumerations(text)}
+    if _names_member(node, names):
+        return True
+    around = source.parents.get(node)
+    if not isinstance(around, ast.Compare):
+        return False
+    sides = (around.left, *around.comparators)
+    return any(isinstance(op, ast.Is | ast.IsNot) for op in around.ops) or any(
+        _names_member(side, names) for side in sides
+    )
+
+
+def _is_label(analysis: Analysis, operand: Operand) -> bool:
+    try:
+        source = document(operand.span.path, analysis.sources[operand.span.path])
+        node = source.find(operand.span)
+    except (RepairError, KeyError):
+        return False
+    if not isinstance(operand.value, bool) and is_member(source, node, analysis.sources.values()):
+        return True
+    changeable = isinstance(operand.value, bool) or operand.value == 0
+    return not changeable and _only_truth(source, node)
+
+
+def _only_truth(source: Document, node: ast.expr) -> bool:
+    """Return whether a condition asks for the truth of a value and nothing uses the value itself."""
+    inner: ast.AST = node
+    for around in source.ancestors(node):
+        if isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.Not):
+            return True
+        if isinstance(around, ast.If | ast.While | ast.IfExp | ast.Assert):
+            return around.test is inner
+        if not isinstance(around, ast.BoolOp):
+            return False
+        inner = around
+    return False
+
+
+def _names_member(node: ast.expr, names: set[str]) -> bool:
+    """Return whether an expression reads `Mode.LEVEL` or `module.Mode.LEVEL`."""
+    return isinstance(node, ast.Attribute) and ast.unparse(node.value).rpartition(".")[2] in names
+
+
+@cache
+def _enumerations(text: str) -> frozenset[str]:
+    """Return the names of the enumerations that a module defines at its top level."""
+    if "Enum" not in text and "Flag" not in text:
+        return frozenset()
+    return frozenset(
+        node.name
+        for node in ast.parse(text).body
+        if isinstance(node, ast.ClassDef)
+        and any(ast.unparse(base).rpartition(".")[2] in _ENUMERATIONS for base in node.bases)
+    )

@@ -1,0 +1,41 @@
+"""A search moves quantities: no members of an enumeration, and nothing of which only the truth is asked."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.repairing.labels import quantities
+from tarl_lint.model import Operand, SiteId, Span
+
+MODES = "from enum import Enum\n\n\nclass Mode(Enum):\n    WAIT = 1\n    DRIVE = 2\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "value", "moved"),
+    [
+        ("self.mode = Mode.DRIVE", "Mode.DRIVE", 2, False),
+        ("self.mode = modes.Mode.DRIVE", "modes.Mode.DRIVE", 2, False),
+        ("while self.mode is Mode.DRIVE: step()", "self.mode", 1, False),
+        ("ready = self.mode == Mode.DRIVE", "self.mode", 1, False),
+        ("ready = self.count == 3", "self.count", 2, True),
+        ("if self.eager and not self.done: step()", "self.eager", None, False),
+        ("if self.eager and not self.done: step()", "self.done", None, False),
+        ("if self.eager and not self.done: step()", "self.done", True, True),
+        ("if self.eager and not self.done: step()", "self.done", 0, True),
+        ("if self.eager > 2.5: step()", "self.eager", 3.0, True),
+        ("publish((self.eager or 1.0) * x)", "self.eager", 3.0, True),
+        ("publish(LIMIT if self.eager else x)", "self.eager", 3.0, False),
+        ("publish(LIMIT if self.eager else x)", "LIMIT", 0.8, True),
+    ],
+)
+def test_a_search_moves_quantities_only(
+    line: str, code: str, value: float | bool | None, moved: bool
+) -> None:
+    at = line.index(code) + 1
+    span = Span("node.py", 1, at, 1, at + len(code))
+    operand = Operand(SiteId("node", "run", line, 0), span, code, value)
+    analysis: Any = SimpleNamespace(sources={"node.py": line + "\n", "modes.py": MODES})
+    assert quantities(analysis, [operand]) == ([operand] if moved else [])
