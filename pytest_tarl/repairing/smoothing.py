@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
-from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Conjunct
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.patching.structures import Form
 from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.telling_sensors import bins, continuous
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
@@ -32,7 +32,7 @@ def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:
         return
     (conjunct,), (mutation,) = candidate.guard.conjuncts, candidate.mutations
     value, sensor = mutation.operand.value, conjunct.sensor
-    if not value or isinstance(value, bool) or mutation.form is not None or not _continuous(sensor):
+    if not value or isinstance(value, bool) or mutation.form is not None or not continuous(sensor):
         return
     typical = _mean_where(order, conjunct)
     if not typical or not _rests_at_zero(order, sensor):
@@ -48,10 +48,6 @@ def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:
         )
 
 
-def _continuous(sensor: Sensor) -> bool:
-    return sensor.numeric and not sensor.angle and sensor.guardable
-
-
 def _formed(mutation: Mutation, form: Form) -> Candidate:
     return Candidate((Mutation(mutation.operand, True, form=form),), ALWAYS)
 
@@ -62,26 +58,17 @@ def _parameter(template: Template) -> str:
 
 def _mean_where(order: Order, conjunct: Conjunct) -> float | None:
     """Return a sensor's mean over the drifted steps in which a condition on it holds."""
-    bins = [
+    seen = [
         ((low + high) / 2, count)
-        for low, high, count in _bins(order, order.online.recorded.sample, conjunct.sensor)
+        for low, high, count in bins(order, order.online.recorded.sample, conjunct.sensor)
         if conjunct.low <= low and high <= conjunct.high and isfinite(high - low)
     ]
-    steps = sum(count for _, count in bins)
-    return sum(middle * count for middle, count in bins) / steps if steps else None
+    steps = sum(count for _, count in seen)
+    return sum(middle * count for middle, count in seen) / steps if steps else None
 
 
 def _rests_at_zero(order: Order, sensor: Sensor) -> bool:
     """Return whether a sensor is about zero in nearly all recorded steps."""
-    bins = list(_bins(order, order.fixture.sample, sensor))
-    near = sum(count for low, high, count in bins if low <= 0.0 < high)
-    return near >= REST * sum(count for _, _, count in bins) > 0.0
-
-
-def _bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield the ends of the sensor's bin and the number of steps for every entry of the chain."""
-    names = [one.name for one in order.comparison.sensors]
-    at = names.index(sensor.name)
-    for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
-        low, high = sensor.interval(world.cells[cell][at], world.cells[cell][at])
-        yield low, high, count
+    seen = list(bins(order, order.fixture.sample, sensor))
+    near = sum(count for low, high, count in seen if low <= 0.0 < high)
+    return near >= REST * sum(count for _, _, count in seen) > 0.0

@@ -6,7 +6,7 @@ Each parameter of a template at an expression is an operand like any other, so t
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations, groupby
 
 from pytest_tarl.errors import RepairError
@@ -17,7 +17,8 @@ from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.labels import is_member
 from pytest_tarl.repairing.request import Order
-from pytest_tarl.repairing.typical_sizes import TypicalSizes, threshold
+from pytest_tarl.repairing.telling_sensors import continuous, telling, usual
+from pytest_tarl.repairing.typical_sizes import TypicalSizes, called, threshold
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand, SiteId, Span, Step
@@ -32,6 +33,7 @@ MOST = {
 FIRST = (
     2  # expressions that get all templates first: the slices' first one and the one next to the publish call
 )
+LEAST = 40  # episodes that templates with a sensor get at least if the sensor tells the drift
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
 _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
 
@@ -52,7 +54,9 @@ class Structures:
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates, cheap templates first. Raises BudgetSpentError."""
-        groups = self._groups()
+        known, spots = templates(self.order.root), list(_spots(self.order))
+        told = self._told(known, spots)
+        groups = [*([told] if told else []), *self._groups(known, spots)]
         whole = self.trials.budget
         sizes = [len(operands) for operands in groups]
         for number, operands in enumerate(groups):
@@ -68,6 +72,8 @@ class Structures:
             self._sweeps.append(sweep)
             left = whole - self.trials.spent
             share = left * sizes[number] // sum(sizes[number:])
+            if operands is told:
+                share = min(max(share, LEAST), left)
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
             try:
@@ -103,9 +109,19 @@ class Structures:
         growing = {one.name: one.stronger == "larger" for one in form.template.parameters}
         return 0.0 < factor != 1.0 and (factor < 1.0) == growing.get(form.parameter, factor > 1.0)
 
-    def _groups(self) -> list[list[Operand]]:
-        spots = list(_spots(self.order))
-        known = templates(self.order.root)
+    def _told(self, known: Sequence[Template], spots: Sequence[_Spot]) -> list[Operand]:
+        """Return the operands of templates with a sensor that tells the drift, at all of their expressions."""
+        sensors = telling(self.order)
+        found: list[Operand] = []
+        for made in known if sensors else ():
+            for forms in _forms(self.order, made, spots) if made.on == "sensor" else ():
+                for operand, form in forms:
+                    if form.sensor in sensors:
+                        self._found[operand] = form
+                        found.append(operand)
+        return found
+
+    def _groups(self, known: Sequence[Template], spots: Sequence[_Spot]) -> list[list[Operand]]:
         groups: list[list[Operand]] = []
         for first in (True, False):
             for _, same in groupby(known, key=lambda one: one.cost):
@@ -118,8 +134,9 @@ class Structures:
         for number, forms in enumerate(_forms(self.order, template, spots)):
             if (number < FIRST) == first:
                 for operand, form in forms:
-                    self._found[operand] = form
-                    yield operand
+                    if operand not in self._found:
+                        self._found[operand] = form
+                        yield operand
 
 
 def form_words(order: Order, mutation: Mutation) -> str:
@@ -159,9 +176,9 @@ def _forms(order: Order, template: Template, spots: Sequence[_Spot]) -> Iterator
             continue
         by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:
-            if sensor.numeric and sensor.guardable and sensor.low is not None and sensor.high is not None:
-                reach = max(abs(sensor.low), abs(sensor.high)) or 1.0
-                by_sensor += _operands(template, spot, Form(template, sensor=sensor), 1.0 / reach)
+            if continuous(sensor):
+                scale = 1.0 / usual(order, sensor)
+                by_sensor += _operands(template, spot, Form(template, sensor=sensor), scale)
         yield by_sensor
 
 
@@ -186,7 +203,7 @@ def _spots(order: Order) -> Iterator[_Spot]:
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
             continue
-        for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site):
+        for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site, sizes.returned):
             key = (source.path, source.start(node))
             if key not in seen and not is_member(source, node, order.analysis.sources.values()):
                 seen.add(key)
@@ -209,8 +226,13 @@ def _steps(order: Order) -> list[Step]:
     return list(dict.fromkeys(step for pair in zip(ranked, late, strict=True) for step in pair))
 
 
-def _expressions(source: Document, span: Span, numeric: bool) -> Iterator[tuple[ast.expr, str]]:
-    """Yield the expressions to change in the statement at a span, with kind; `numeric` if it recorded numbers."""
+def _expressions(
+    source: Document, span: Span, numeric: bool, returned: Collection[str]
+) -> Iterator[tuple[ast.expr, str]]:
+    """Yield the expressions to change in the statement at a span, with kind.
+
+    `numeric` tells whether the statement recorded numbers, `returned` which functions returned some.
+    """
     statements = [
         node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
     ]
@@ -226,16 +248,19 @@ def _expressions(source: Document, span: Span, numeric: bool) -> Iterator[tuple[
             elif isinstance(value, ast.Attribute):
                 yield value, "input"
         elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
-            yield from ((each, "value") for each in _passed(statement.value))
+            yield from ((each, "value") for each in _passed(statement.value, returned))
 
 
-def _passed(call: ast.Call) -> Iterator[ast.expr]:
-    """Yield the numbers computed for the arguments of a call, also inside messages constructed there."""
+def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
+    """Yield the numbers computed for the arguments of a call, also inside messages constructed there.
+
+    `returned` are the functions of the program that returned numbers.
+    """
     for each in (*call.args, *(keyword.value for keyword in call.keywords)):
-        if _is_numeric(each):
+        if _is_numeric(each) or (isinstance(each, ast.Call) and called(each) in returned):
             yield each
         elif isinstance(each, ast.Call) and _makes_an_object(each):
-            yield from _passed(each)
+            yield from _passed(each, returned)
 
 
 def _computes(node: ast.expr) -> bool:

@@ -22,6 +22,7 @@ class TypicalSizes:
 
     def __init__(self, order: Order) -> None:
         self.by_site = _recorded(order)
+        self.returned = dict(_returned(order, self.by_site))
         self._by_name = dict(_assigned(order, self.by_site))
         self._constants = {
             (operand.site, operand.code): abs(float(operand.value))
@@ -45,6 +46,8 @@ class TypicalSizes:
             return self._of_two(site, node)
         if isinstance(node, ast.Call) and ast.unparse(node.func) in BOUNDING:
             return max(filter(None, (self._estimated(site, each) for each in node.args)), default=None)
+        if isinstance(node, ast.Call) and called(node) in self.returned:
+            return self.returned[called(node)]
         code = ast.unparse(node)
         return self._constants.get((site, code)) or self._by_name.get(code)
 
@@ -57,6 +60,11 @@ class TypicalSizes:
         if isinstance(node.op, ast.Mult):
             return left * right
         return left / right if isinstance(node.op, ast.Div) else None
+
+
+def called(call: ast.Call) -> str:
+    """Return the last part of the name of a called function."""
+    return ast.unparse(call.func).rpartition(".")[2]
 
 
 def threshold(node: ast.expr) -> float:
@@ -80,6 +88,14 @@ def _recorded(order: Order) -> Mapping[str, float]:
             if count and flow:
                 found[place.id] = flow / count
     return found
+
+
+def _returned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+    """Yield the names of functions of the flows that returned numbers, with the size recorded there."""
+    for step in order.analysis.sites:
+        size = by_site.get(str(step.site))
+        if size and step.site.text.startswith("return "):
+            yield step.site.qualname.rpartition(".")[2], size
 
 
 def _assigned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:

@@ -134,7 +134,7 @@ class Sweep:
         """
         moving = self._gains.moving(block)
         yield from self._carried_over(guard)
-        for factor in (1.0, *NEAR) if self.proposed else NEAR:
+        for factor in (1.0, FLIP, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._narrow(guard, moving)
         for factor, before in () if self._gains.anything() else FURTHER:
@@ -310,8 +310,10 @@ class Sweep:
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try an operand between its best factor and that factor's neighbours, on a log scale."""
-        gains = {factor: gain for factor, gain in self._gains.of(*best).items() if factor > 0}
-        factor = max(gains, key=gains.__getitem__)
+        factor = max(self._gains.of(*best), key=self._gains.of(*best).__getitem__)
+        sign = -1.0 if factor < 0 else 1.0
+        gains = {abs(one): gain for one, gain in self._gains.of(*best).items() if one * sign > 0}
+        factor = abs(factor)
         if gains[factor] <= 0:
             return
         finest = NARROWEST if gains[factor] >= ALMOST * self.goal.wanted else FINEST
@@ -322,7 +324,7 @@ class Sweep:
             for one in (ordered[place - 1], ordered[place + 1])
             if max(factor, one) > finest * min(factor, one)
         ]
-        between = [round(sqrt(factor * neighbour), 3) for neighbour in around]
+        between = [sign * round(sqrt(factor * neighbour), 3) for neighbour in around]
         self._expect([(*best, one) for one in between], pair)
         for one in between:
             self._refined[best] += 1

@@ -1,0 +1,59 @@
+"""Which sensors tell a drift: those whose values differ so much between the worlds that one value shows the world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.sensors import Sensor
+
+OVERLAP = 0.25  # largest share of steps that the two worlds may have in common for a sensor that tells
+
+
+def telling(order: Order) -> list[Sensor]:
+    """Return the numeric sensors that tell the drift, in their order."""
+    return [one for one in order.comparison.sensors if continuous(one) and _overlap(order, one) <= OVERLAP]
+
+
+def continuous(sensor: Sensor) -> bool:
+    """Return whether a program can calculate with a sensor's value."""
+    return sensor.numeric and not sensor.angle and sensor.guardable
+
+
+def usual(order: Order, sensor: Sensor) -> float:
+    """Return a sensor's mean absolute value in the drifted world, from the middles of its bins; 1 if that is 0."""
+    seen = [
+        (abs(low + high) / 2, count)
+        for low, high, count in bins(order, order.online.recorded.sample, sensor)
+        if isfinite(high - low)
+    ]
+    steps = sum(count for _, count in seen)
+    return (sum(middle * count for middle, count in seen) / steps if steps else 0.0) or 1.0
+
+
+def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
+    """Yield the ends of the sensor's bin and the number of steps for every entry of the chain."""
+    names = [one.name for one in order.comparison.sensors]
+    at = names.index(sensor.name)
+    for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
+        low, high = sensor.interval(world.cells[cell][at], world.cells[cell][at])
+        yield low, high, count
+
+
+def _overlap(order: Order, sensor: Sensor) -> float:
+    """Return the share of steps that both worlds spend in the same bins, 1 if a world was not seen."""
+    designed = _shares(order, order.fixture.sample, sensor)
+    drifted = _shares(order, order.online.recorded.sample, sensor)
+    if not designed or not drifted:
+        return 1.0
+    return sum(min(part, drifted.get(bin_, 0.0)) for bin_, part in designed.items())
+
+
+def _shares(order: Order, world: Sample, sensor: Sensor) -> dict[tuple[float, float], float]:
+    found: dict[tuple[float, float], float] = {}
+    for low, high, count in bins(order, world, sensor):
+        found[low, high] = found.get((low, high), 0.0) + count
+    steps = sum(found.values())
+    return {place: count / steps for place, count in found.items()} if steps else {}
