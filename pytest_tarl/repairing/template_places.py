@@ -1,0 +1,163 @@
+"""The expressions at which templates of structural repairs may be written, in the order to try them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.repairing.labels import is_member
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.typical_sizes import TypicalSizes, called, threshold
+from tarl_lint.model import SiteId, Span, Step
+
+_NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
+_AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Spot:
+    """An expression of a kind at which a template may be written.
+
+    `typical` is the usual size of its value, `away` its distance in statements from a publish call. `hears` tells
+    whether its module subscribes to topics, so that a template can read a sensor there.
+    """
+
+    site: SiteId
+    source: Document
+    node: ast.expr
+    kind: str
+    typical: float
+    away: int
+    hears: bool
+
+
+def spots(order: Order) -> Iterator[Spot]:
+    """Yield the expressions in the statements of flows, in the order of the statements."""
+    sizes = TypicalSizes(order)
+    seen: set[tuple[str, int]] = set()
+    away = _away(order)
+    hearing = {flow.source.span.path for flow in order.analysis.flows}
+    for step in _steps(order, away):
+        try:
+            source = document(step.span.path, order.analysis.sources[step.span.path])
+        except (RepairError, KeyError):
+            continue
+        for node, kind in _expressions(source, step.span, str(step.site) in sizes.by_site, sizes.returned):
+            key = (source.path, source.start(node))
+            if key not in seen and not is_member(source, node, order.analysis.sources.values()):
+                seen.add(key)
+                usual = threshold(node) if kind == "comparison" else sizes.of(step.site, node)
+                hears = source.path in hearing
+                yield Spot(step.site, source, node, kind, usual, away[step.site], hears)
+
+
+def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
+    """Return the flows' statements, alternately from the slices' ranking and from the publish calls backwards.
+
+    Limits, filters and offsets of a command act where the command is sent, wherever the loss comes from.
+    """
+    rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
+    ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+    late = sorted(order.analysis.sites, key=lambda step: away[step.site])
+    return list(dict.fromkeys(step for pair in zip(ranked, late, strict=True) for step in pair))
+
+
+def _away(order: Order) -> dict[SiteId, int]:
+    """Return how many statements each statement is away from a publish call."""
+    away: dict[SiteId, int] = {}
+    for flow in order.analysis.flows:
+        for distance, step in enumerate(reversed(flow.steps)):
+            away[step.site] = min(distance, away.get(step.site, distance))
+    return away
+
+
+def _expressions(
+    source: Document, span: Span, numeric: bool, returned: Collection[str]
+) -> Iterator[tuple[ast.expr, str]]:
+    """Yield the expressions to change in the statement at a span, with kind.
+
+    `numeric` tells whether the statement recorded numbers, `returned` which functions returned some.
+    """
+    statements = [
+        node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
+    ]
+    for statement in statements:
+        if isinstance(statement, ast.If | ast.While):
+            for node in ast.walk(statement.test):
+                if isinstance(node, ast.Compare) and len(node.ops) == 1 and _orders(node.ops[0]):
+                    yield node, "comparison"
+        elif isinstance(statement, ast.Assign | ast.AnnAssign | ast.AugAssign | ast.Return):
+            value = statement.value
+            if value is not None and (_is_numeric(value) or (numeric and _computes(value))):
+                yield value, "value"
+            elif isinstance(value, ast.Attribute):
+                yield value, "input"
+        elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
+            yield from ((each, "value") for each in _passed(statement.value, returned))
+
+
+def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
+    """Yield the numbers computed for the arguments of a call, also inside messages constructed there.
+
+    `returned` are the functions of the program that returned numbers.
+    """
+    for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+        if _is_numeric(each) or (isinstance(each, ast.Call) and called(each) in returned):
+            yield each
+        elif isinstance(each, ast.Call) and _makes_an_object(each):
+            yield from _passed(each, returned)
+
+
+def _computes(node: ast.expr) -> bool:
+    """Return whether an expression may yield a number: a function call or a conditional expression."""
+    return isinstance(node, ast.IfExp) or (isinstance(node, ast.Call) and not _makes_an_object(node))
+
+
+def _makes_an_object(call: ast.Call) -> bool:
+    return ast.unparse(call.func).rpartition(".")[2][:1].isupper()
+
+
+def _is_numeric(node: ast.expr) -> bool:
+    """Return whether an expression computes a number."""
+    if isinstance(node, ast.BinOp):
+        return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
+    if isinstance(node, ast.UnaryOp):
+        return isinstance(node.op, ast.USub) and not isinstance(node.operand, ast.Constant)
+    if isinstance(node, ast.Call):
+        name = ast.unparse(node.func)
+        return name in _NUMERIC or name.startswith(("math.", "np.", "numpy."))
+    return False
+
+
+def _orders(op: ast.cmpop) -> bool:
+    return isinstance(op, ast.Lt | ast.LtE | ast.Gt | ast.GtE)
+
+
+def pairs(among: Sequence[Spot], most: int) -> list[tuple[Spot, Spot]]:
+    """Return at most `most` pairs of expressions in one function that differ only in their axis."""
+    found = []
+    for one, other in combinations(among, 2):
+        together = one.source is other.source and one.source.function(one.node) is other.source.function(
+            other.node
+        )
+        if together and one.kind != "comparison" and _axis_apart(one, other):
+            found.append((one, other))
+    return found[:most]
+
+
+def _axis_apart(one: Spot, other: Spot) -> bool:
+    for text in (lambda spot: spot.source.source(spot.node), _assigned):
+        first, second = text(one).rpartition("."), text(other).rpartition(".")
+        names = {(first[2], second[2]), (second[2], first[2])}
+        if first[0] == second[0] and any(axes in names for axes in _AXES):
+            return True
+    return False
+
+
+def _assigned(spot: Spot) -> str:
+    statement = spot.source.statement(spot.node)
+    return ast.unparse(statement.targets[0]) if isinstance(statement, ast.Assign) else ""
