@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 
 from pytest_tarl.repairing.incumbent import Watch
-from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
@@ -41,7 +41,12 @@ class Purse:
             return outcome
 
         budget = round(share * (self.episodes - self.spent))
-        trials = Trials(run, budget, foresee=lambda wanted: mutants.foresee(wanted, order.drift))
+        trials = Trials(
+            run,
+            budget,
+            foresee=lambda wanted: mutants.foresee(wanted, order.drift),
+            design=lambda seed: mutants.run(ORIGINAL, seed, None),
+        )
         return trials
 
     def settle(self, trials: Trials) -> None:

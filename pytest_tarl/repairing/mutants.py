@@ -108,6 +108,6 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     except TarlError:
         return Outcome(worst, passed=False)
     total = float(ended.trace.reward.sum())
-    return Outcome(
-        min(total, worst) if ended.crashed else total, ended.passed, ended.judged, ended.trace.steps
-    )
+    earned = min(total, worst) if ended.crashed else total
+    rewards = tuple(ended.trace.reward.tolist())
+    return Outcome(earned, ended.passed, ended.judged, ended.trace.steps, rewards)

@@ -34,12 +34,13 @@ SHARE = 2 / 3  # share of the risk α for the first candidate; each later one ge
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One episode: total reward, whether the test passed, the verdicts of its formulas, and its rewarded steps."""
+    """One episode: total reward, whether the test passed, the verdicts of its formulas, its steps and their rewards."""
 
     total: float
     passed: bool
     judged: tuple[Judged, ...] = ()
     steps: int | None = None
+    rewards: tuple[float, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

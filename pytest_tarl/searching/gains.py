@@ -67,6 +67,32 @@ class Gains:
         moved = {unit for unit, _ in self._moved}
         return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
 
+    def distinct(self, among: Sequence[Unit]) -> list[Unit]:
+        """Return the units without those that are the same constant as an earlier one, passed on to a function.
+
+        They share the definition, and changed missions in the same way by all factors of which at least two are known.
+        """
+        kept: list[Unit] = []
+        for unit in among:
+            if not any(self._same(unit, other) for other in kept):
+                kept.append(unit)
+        return kept
+
+    def _same(self, unit: Unit, other: Unit) -> bool:
+        one, two = unit.operands[0], other.operands[0]
+        if one.definition is None or one.definition != two.definition or one.literal or two.literal:
+            return False
+        if not self.moves(unit):
+            return False
+        pairs = [
+            (gains.get(factor), gain)
+            for guard in {guard for each, guard in self._by_key if each == unit}
+            for gains in (self.of(other, guard),)
+            for factor, gain in self.of(unit, guard).items()
+            if factor != 1.0 and factor in gains
+        ]
+        return len(pairs) >= len(NEAR) and all(gain == its for its, gain in pairs)
+
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
         """Return the units that lost with all of these factors: more than the slack, or nothing where all is lost.
 

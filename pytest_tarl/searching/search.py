@@ -14,6 +14,7 @@ from typing import Protocol
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation, form_values, redefinition
 from pytest_tarl.searching.accept import Outcome, unforeseen
+from pytest_tarl.searching.course import deviation
 from tarl_lint.model import Operand
 
 Mutate = Callable[[Operand, float], Mutation | None]
@@ -118,10 +119,14 @@ class Trials:
     loses: Callable[[Candidate], bool] = (
         lost_nothing  # whether the candidate loses missions that rejected ones lost
     )
+    design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
     misses: Counter[int] = field(default_factory=Counter)  # seed → candidates that fell short on it
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
+    _course: dict[int, tuple[float, ...]] = field(
+        default_factory=dict
+    )  # rewards of designed missions, by seed
     _short: list[dict[int, float]] = field(default_factory=list)  # for each weak candidate: seed → total
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
@@ -138,6 +143,22 @@ class Trials:
         """Announce the episodes that are likely to be requested next, in order, so that workers can start them."""
         left = max(self.budget - self.spent, 0)
         self.foresee([one for one in wanted if one not in self._known][:left])
+
+    def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
+        """Return how far a candidate's missions are from the designed ones, 0 if that cannot be known.
+
+        Charges the designed missions, each once. Raises BudgetSpentError and RepairError.
+        """
+        found = [deviation(self(candidate, seed).rewards, self._designed(seed)) for seed in seeds]
+        return fmean(found) if self.design is not None else 0.0
+
+    def _designed(self, seed: int) -> tuple[float, ...]:
+        if seed not in self._course:
+            if self.design is None:
+                return ()
+            self.charge()
+            self._course[seed] = self.design(seed).rewards
+        return self._course[seed]
 
     def charge(self) -> None:
         """Count an episode that is about to run in the designed world. Raises BudgetSpentError."""

@@ -9,17 +9,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from math import sqrt
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.closeness import CLOSER, EXACT, RIVALS, rivals
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
+from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
-OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
 LEADING = (
     3  # best units that get larger steps before the next guard, which starts with their best factors ...
 )
@@ -38,14 +38,11 @@ FLIP = -1.0  # flips the sign
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
 FINE = (*FINER, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
+BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)  # for named constants, if these found nothing either
 LAST = (10.0, 0.05)
 FLIPPED = 3  # units that gained from a smaller value and are tried with the other sign
-REFINEMENTS = 3  # consecutive refinements of one operand ...
-PROMISING = 0.4  # ... while its gain is at least this share of the loss ...
+REFINEMENTS = 3  # consecutive refinements of one operand while it gains `PROMISING` ...
 REFINED = 8  # ... and at most this many refining runs per operand
-FINEST = 1.1  # two factors with a smaller ratio are not refined further ...
-ALMOST = 0.9  # ... unless one gains this share of the loss; its window may be narrower, down to ...
-NARROWEST = 1.02  # ... this ratio
 PLAINER_ROUNDS = 2  # refinements of each constant that is plainer than the candidate found ...
 PLAINER = 12  # ... and runs after which the search for plainer ones ends
 SLACK = 0.1  # loss to tolerate on the way to larger steps, as a share of the loss to repair
@@ -88,6 +85,7 @@ class Sweep:
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._refused: set[tuple[Unit, Guard]] = set()  # yielded as confirmed, then refused by the caller
+        self._compared = False  # whether other constants were compared by the course of missions
         self._replaced: set[Unit] = set()  # units in place of which gentler ones were tried
         self._turn = 0
 
@@ -152,6 +150,7 @@ class Sweep:
         """Try one factor on several operands, then refine the best one."""
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
+        among = self._gains.distinct(among)
         for at, unit in enumerate(among):
             self._expect([(each, guard, factor) for each in among[at:]], pair)
             yield from self._try(unit, guard, factor, pair)
@@ -180,10 +179,16 @@ class Sweep:
             yield from self._all(factor, guard, still)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps on operands that move the reward and were not refined: their window may be narrow."""
-        for factor in FINE:
+        """Try small steps on operands that move the reward and were not refined: their window may be narrow.
+
+        If nothing gains, go on with the steps between these for named constants.
+        """
+        for factor in (*FINE, *BETWEEN_FINE):
+            if factor in BETWEEN_FINE and self._gains.anything():
+                return
+            among = self.units if factor in FINE else named(self.units)
             for guard in guards:
-                moved = [unit for unit in self._gains.moving(self.units) if self._gains.moves(unit)]
+                moved = [unit for unit in self._gains.moving(among) if self._gains.moves(unit)]
                 yield from self._all(
                     factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
                 )
@@ -211,6 +216,7 @@ class Sweep:
         if holds or (near and oddness(candidate.mutations) is Oddness.NATURE):
             yield from self._instead(candidate, unit, pair)
         if holds:
+            yield from self._truer(candidate, unit, factor, pair)
             yield candidate
         if holds or (near and self.trials.loses(candidate)):
             self._refused.add((unit, guard))
@@ -265,6 +271,40 @@ class Sweep:
                 if self.trials.spent - begun < PLAINER:
                     yield from self._try(other, found.guard, step, pair)
 
+    def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """Yield another constant first if missions go much more as designed with it: it is nearer to the cause."""
+        seeds = [self.goal.pairs[pair].seed]
+        if self._compared or (mine := self._deviation(found, seeds)) <= EXACT:
+            return
+        self._compared = True
+        begun = self.trials.spent
+        for other, step in rivals(unit, factor, self.units, self._gains, found.guard):
+            mutations = other.mutations(self.mutate, step)
+            candidate = Candidate(mutations, found.guard)
+            if not mutations or candidate in self._tried or self.trials.spent - begun >= RIVALS:
+                continue
+            self._tried.add(candidate)
+            near = self._near(candidate, pair)
+            if near is None:
+                continue
+            holds = (
+                near
+                and self._deviation(candidate, seeds) <= CLOSER * mine
+                and self._settled.holds(candidate, self.trials, self.goal, pair)
+            )
+            self._learn(other, candidate, step)
+            if holds:
+                yield candidate
+                self._refused.add((other, found.guard))
+                return
+
+    def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
+        """Return how far missions are from the designed ones, 0 if that cannot be known."""
+        try:
+            return self.trials.deviation(candidate, seeds)
+        except RepairError:
+            return 0.0
+
     def _closer(
         self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int
     ) -> Iterator[Candidate]:
@@ -310,23 +350,9 @@ class Sweep:
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try an operand between its best factor and that factor's neighbours, on a log scale."""
-        factor = max(self._gains.of(*best), key=self._gains.of(*best).__getitem__)
-        sign = -1.0 if factor < 0 else 1.0
-        gains = {abs(one): gain for one, gain in self._gains.of(*best).items() if one * sign > 0}
-        factor = abs(factor)
-        if gains[factor] <= 0:
-            return
-        finest = NARROWEST if gains[factor] >= ALMOST * self.goal.wanted else FINEST
-        ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
-        place = ordered.index(factor)
-        around = [
-            one
-            for one in (ordered[place - 1], ordered[place + 1])
-            if max(factor, one) > finest * min(factor, one)
-        ]
-        between = [sign * round(sqrt(factor * neighbour), 3) for neighbour in around]
-        self._expect([(*best, one) for one in between], pair)
-        for one in between:
+        steps = between(self._gains.of(*best), self.goal.wanted)
+        self._expect([(*best, one) for one in steps], pair)
+        for one in steps:
             self._refined[best] += 1
             yield from self._try(*best, one, pair)
 

@@ -1,0 +1,32 @@
+"""Tell which of several repairs is at the cause: with it, missions go as designed from start to end.
+
+Too weak heating elements are compensated by a larger loss of the walls once the kiln is hot, but only the right power
+lets it heat up as designed. Both earn the same total, at other times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.gains import Gains, Part
+from pytest_tarl.searching.plainness import named
+from pytest_tarl.searching.units import Unit
+
+EXACT = 0.01  # deviation up to which a mission goes as designed
+CLOSER = 0.5  # share of a candidate's deviation that another may have at most to be preferred
+RIVALS = 6  # runs of other constants beside a candidate that deviates
+
+
+def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
+    """Yield other named constants of the same function, with the factor found and its reciprocal.
+
+    A constant that divides needs the reciprocal. Constants that never changed a mission are left out.
+    """
+    at = found.operands[0].site
+    tried = gains.under(guard)
+    for unit in named(units) if factor > 0 else ():
+        site = unit.operands[0].site
+        same = (site.module, site.qualname) == (at.module, at.qualname)
+        if unit != found and same and (unit not in tried or gains.moves(unit)):
+            yield from ((unit, round(one, 3)) for one in (1.0 / factor, factor))

@@ -1,0 +1,43 @@
+"""Choose the next factors of one constant: halfway between its best factor and the neighbours, on a log scale."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+
+OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
+FINEST = 1.1  # two factors with a smaller ratio are not refined further ...
+ALMOST = 0.9  # ... unless one gains this share of the loss; its window may be narrower, down to ...
+NARROWEST = 1.02  # ... this ratio ...
+PROMISING = 0.4  # ... or gains this share of the loss, and both neighbours at most ...
+SHARP = 0.5  # ... this share of its gain: a peak that ends between them
+
+
+def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
+    """Return the factors to try next, at most two, with the sign of the best; none if nothing gains.
+
+    `by_factor` are the gains of a constant, `wanted` is the gain that restores the reward.
+    """
+    factor = max(by_factor, key=by_factor.__getitem__)
+    sign = -1.0 if factor < 0 else 1.0
+    gains = {abs(one): gain for one, gain in by_factor.items() if one * sign > 0}
+    factor = abs(factor)
+    if gains[factor] <= 0:
+        return []
+    ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
+    place = ordered.index(factor)
+    neighbours = (ordered[place - 1], ordered[place + 1])
+    finest = NARROWEST if _narrow(gains, factor, neighbours, wanted) else FINEST
+    around = [one for one in neighbours if max(factor, one) > finest * min(factor, one)]
+    return [sign * round(sqrt(factor * one), 3) for one in around]
+
+
+def _narrow(
+    gains: Mapping[float, float], factor: float, neighbours: tuple[float, float], wanted: float
+) -> bool:
+    """Return whether the window of good values may be narrower than the distance to the neighbours."""
+    most = gains[factor]
+    if most >= ALMOST * wanted:
+        return True
+    known = [gains[one] for one in neighbours if one in gains]
+    return most >= PROMISING * wanted and len(known) == 2 and max(known) <= SHARP * most
