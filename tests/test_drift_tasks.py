@@ -19,6 +19,7 @@ JUDGING = (
     "drift_judging_3",
     "drift_judging_4",
     "drift_judging_5",
+    "drift_judging_6",
     "drift_structure",
 )
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
@@ -135,6 +136,24 @@ def test_the_fourth_set_has_every_kind_and_says_where_drifts_occur() -> None:
     assert all(known["practice"] for known in fourth)
 
 
+def test_the_sixth_set_has_every_kind_and_says_where_drifts_occur() -> None:
+    sixth = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_6"]
+    assert sorted(known["kind"] for known in sixth) == [
+        "helper",
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
+        "two constants",
+        "two constants",
+        "unrepairable",
+    ]
+    assert all(known["practice"] for known in sixth)
+
+
 Rates = dict[str, tuple[float, float]]
 
 
@@ -163,7 +182,7 @@ def test_worlds_of_the_fourth_set_are_deterministic() -> None:
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-@pytest.mark.parametrize("folder", ["drift_judging_3", "drift_judging_4"])
+@pytest.mark.parametrize("folder", ["drift_judging_3", "drift_judging_4", "drift_judging_6"])
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
     tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == folder]
     before, after = worlds(folder)[0], worlds(folder, "--by-hand")[0]
