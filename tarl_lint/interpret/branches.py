@@ -108,11 +108,22 @@ def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
     return elements if laden else []
 
 
+def _leaves(body: Sequence[ir.Stmt]) -> bool:
+    """Return whether a statement may end a turn before its end."""
+    inner = [
+        part for s in body for name in ("body", "orelse", "final") for part in (getattr(s, name, ()) or ())
+    ]
+    handled = [part for s in body if isinstance(s, ir.Try) for handler in s.handlers for part in handler[2]]
+    leaving = any(isinstance(s, ir.Jump | ir.Return | ir.Raise) for s in body)
+    return leaving or (bool(inner or handled) and _leaves([*inner, *handled]))
+
+
 def _turns(
     ctx: Interpreter, s: ir.Loop, target: ir.Expr, source: Value, elements: Sequence[Value], frame: Frame
 ) -> bool:
     """Unroll a loop: execute the body once for each element."""
-    depth, before = len(ctx.store.layers), frame.turn
+    depth, before, outside = len(ctx.store.layers), frame.turn, frame.steps
+    frame.steps = frozenset() if _leaves(s.body) else frozenset(s.body)
     broken: list[Delta] = []
     _length(ctx, source, ctx.condition(frame, s))
     done: Delta | None = {}
@@ -130,7 +141,7 @@ def _turns(
         done = joins.joined(ctx, ends) if ends else None
         if done is None:
             break
-    frame.turn = before
+    frame.turn, frame.steps = before, outside
     return _loop_end(ctx, s, [done] if done is not None else [], broken, frame)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import builtins
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tarl_lint.catalog import fact
@@ -119,13 +119,28 @@ def is_property(method: Obj) -> bool:
 def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
     base = evaluate(ctx, expr.base, frame)
     if isinstance(expr.index, ir.Slice):
-        return sizes.sliced(ctx, base, expr.index, expr.pos, frame)
+        part = _part_of_text(ctx, base, expr.index.bounds, frame) if expr.index.bounds else None
+        return part or sizes.sliced(ctx, base, expr.index, expr.pos, frame)
     index = evaluate(ctx, expr.index, frame)
     if (frame.tries or len(ctx.stack) > 1) and (decides := ctx.use(index)):
         for raises in LOOKUP_ERRORS:
             ctx.ops.may_fail(ctx, decides, raises, frame, named=True)
     said = dunder_methods.special(ctx, base, "__getitem__", [index], frame, expr.pos)
     return said if said is not None else read_item(ctx, base, index)
+
+
+def _part_of_text(
+    ctx: Interpreter, base: Value, bounds: Sequence[ir.Expr | None], frame: Frame
+) -> Value | None:
+    """Return `text[a:b]` of a known text in a run for a launch file, where texts name topics; None otherwise."""
+    known, text = base.constant()
+    if not ctx.launching or not known or not isinstance(text, str):
+        return None
+    ends = [evaluate(ctx, one, frame).constant() if one is not None else (True, None) for one in bounds]
+    numbers = [end for found, end in ends if found and (end is None or isinstance(end, int))]
+    if len(numbers) < len(ends) or 0 in numbers[2:]:
+        return None
+    return Value(base.deps, consts=frozenset([text[slice(*numbers)]]))
 
 
 def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:

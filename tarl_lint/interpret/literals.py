@@ -67,7 +67,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
     kind = "mapping" if expr.key is not None else "sequence"
     first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
     known = sizes.unpacked(ctx, first)
-    single = (expr.key is None or ctx.thorough) and len(expr.loops) == 1
+    single = (expr.key is None or ctx.thorough or ctx.exact) and len(expr.loops) == 1
     if (
         single
         and not expr.loops[0][2]

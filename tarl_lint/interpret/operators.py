@@ -45,6 +45,7 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     "<=": operator.le,
     ">": operator.gt,
     ">=": operator.ge,
+    "formatted": lambda value, spec: format(value, spec),
     "in": lambda part, text: part in text,
     "not in": lambda part, text: part not in text,
 }
@@ -178,6 +179,10 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
         return _fold_text(values)
     if name == "%" and len(values) == 2 and values[1].pts:
         return ctx.ops.remainder(ctx, values)
+    if name in MEMBER and ctx.exact and (several := sizes.constants(ctx, values[1])) is not None:
+        found, constant = values[0].constant()
+        there = constant in [one.constant()[1] for one in several]
+        return frozenset([there is (name == "in")]) if found else None
     function = FOLDED.get(name)
     if name in PRESENT and _certainly_set(values):
         return frozenset([name in ("is not", "!=")])

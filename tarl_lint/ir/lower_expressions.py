@@ -135,7 +135,8 @@ class Expressions:
         if node.format_spec is None and node.conversion in AS_TEXT:
             return inner
         spec = [self.expr(node.format_spec, scope)] if node.format_spec is not None else []
-        return ir.Operation("", [inner, *spec], position(node))
+        name = "formatted" if spec and node.conversion in AS_TEXT else ""
+        return ir.Operation(name, [inner, *spec], position(node))
 
     def _comprehension(
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope

@@ -63,6 +63,7 @@ class Frame(Obj):
         "shared",
         "slot",
         "statement",
+        "steps",
         "tries",
         "turn",
         "yielded",
@@ -83,6 +84,7 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
+        self.steps: frozenset[ir.Stmt] = frozenset()  # executed exactly once in each turn of an unrolled loop
         self.answer: object = None  # receiver of the function's result, if ROS is the caller
         self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None

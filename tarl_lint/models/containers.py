@@ -84,6 +84,8 @@ def mutate(
         for obj in base.objects if plain else ():
             sizes.lengthen(ctx, obj, plain[0])
         insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
+    elif name == "append" and (place := _next_place(ctx, base, plain, frame)) is not None:
+        updates.write_item(ctx, base, const(place), through_statement(ctx, plain[0], frame, call))
     elif name == "append" and _subscribers(plain):
         _append_subscriber(ctx, base, plain[0], frame, call)
     else:
@@ -94,6 +96,14 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
     for obj in base.objects:
         for key in index.keys() or (None,):
             updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
+
+
+def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
+    """Return the index that a list gives what each turn of an unrolled loop appends; None if it is not known."""
+    if len(values) != 1 or frame.statement not in frame.steps:
+        return None
+    known = sizes.unpacked(ctx, base)
+    return len(known) if known is not None and len(known) < sizes.MAX_KNOWN else None
 
 
 def _subscribers(values: list[Value]) -> bool:

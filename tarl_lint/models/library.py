@@ -329,6 +329,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "len": containers.counted_elements,
     **dict.fromkeys(("bool", "any", "all"), iterators.asked),
     "str": strings.as_text,
+    "int": strings.as_number,
     **dict.fromkeys(catalog.SAME_TEXT, strings.same_text),
     **dict.fromkeys(catalog.PATH_JOINS, strings.joined_path),
     "enumerate": iterators.zipped_elements,

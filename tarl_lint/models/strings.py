@@ -117,6 +117,17 @@ def as_text(ctx: Interpreter, it: Invocation) -> Value:
     return Value(deps, consts=frozenset([str(constant)]) if known else None)
 
 
+def as_number(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `int(x)`; a constant in a run for one launched node, whose numbers may be part of names."""
+    known, constant = it.arguments[0][0].constant() if len(it.arguments[0]) == 1 else (False, None)
+    if not (ctx.exact and known and isinstance(constant, str | int | float)):
+        return ctx.ops.generic(ctx, f"builtins.{it.name}", it.arguments, it.frame, it.call)
+    try:
+        return Value(it.arguments[0][0].deps, consts=frozenset([int(constant)]))
+    except (ValueError, OverflowError):
+        return UNKNOWN
+
+
 def same_text(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
     """Return a name passed to a resolving function unchanged."""
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN

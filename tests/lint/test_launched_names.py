@@ -138,6 +138,39 @@ class Node:
 
 second = rospy.get_param("~second", True)
 Node(second)""" + SPIN, AB),
+    ("a comprehension of publishers", "", "<rosparam>names: [r, s]</rosparam>", """
+from functools import partial
+names = rospy.get_param("~names")
+pubs = {name: rospy.Publisher(f"/{name}/out", String, queue_size=1) for name in names}
+subs = [rospy.Subscriber("/%s/in" % name, String, partial(lambda n, m: pubs[n].publish(m), name)) for name in names]
+""" + SPIN, {("/r/in", "/r/out"), ("/s/in", "/s/out")}),
+    ("a list of publishers", "", "<rosparam>names: [r, s]</rosparam>", """
+pubs = []
+def on(msg, number):
+    pubs[number].publish(msg)
+for number, name in enumerate(rospy.get_param("~names")):
+    pubs.append(rospy.Publisher(name + "/out", String, queue_size=1))
+    rospy.Subscriber(name + "/in", String, on, number)""" + SPIN, {("/r/in", "/r/out"), ("/s/in", "/s/out")}),
+    ("parts of a name", 'ns="left"', '<param name="id" value="3"/>', """
+side = rospy.get_namespace()[1:-1]
+inp = "/%s/in" % side
+out = f"/{rospy.get_namespace().split('/')[1]}/out{int(rospy.get_param('~id')):02d}\"""" + RELAY,
+     {("/left/in", "/left/out03")}),
+    ("a member of a list", "", "<rosparam>sensors: [lidar]</rosparam>", """
+pub = rospy.Publisher("/b", String, queue_size=1)
+sensors = rospy.get_param("~sensors", ["lidar", "camera"])
+if "lidar" in sensors:
+    rospy.Subscriber("/a", String, lambda msg: pub.publish(msg))
+if "camera" in sensors:
+    rospy.Subscriber("/image", String, lambda msg: pub.publish(msg))""" + SPIN, AB),
+    ("the end of an action", "", "", """
+import actionlib
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+client = actionlib.SimpleActionClient("go", MoveBaseAction)
+pub = rospy.Publisher("/b", String, queue_size=1)
+def done(state, result):
+    pub.publish(str(result.reached))
+client.send_goal(MoveBaseGoal(), done_cb=done)""" + SPIN, {("/go (result)", "/b")}),
     ("a table by a mode", "", '<param name="mode" value="first"/>', """
 inp = {"first": "/a", "second": "/c"}[rospy.get_param("~mode")]
 out = "/b" if rospy.has_param("~mode") else "/d\"""" + RELAY, AB),

@@ -10,12 +10,13 @@ from typing import Final
 
 from tarl_lint.catalog import Fact
 from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
-from tarl_lint.memory.values import Obj, Value, pointer
+from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
 from tarl_lint.models import launched, options
-from tarl_lint.models.ros import publications, services
+from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.node_names import node_name
 
@@ -77,7 +78,18 @@ def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
     if it.name not in SENDING:
         return None
     publications.send(ctx, it, info)
-    return _answer(ctx, info, it)
+    answer = _answer(ctx, info, it)
+    _call_back(ctx, info, it, answer)
+    return answer
+
+
+def _call_back(ctx: Interpreter, info: Publisher, it: Invocation, answer: Value) -> None:
+    """Run the callback of `send_goal` with the state and result that the server reports."""
+    done = it.argument((1, "done_cb")) if it.name == "send_goal" else BOTTOM
+    key = ("done", *ctx.end_key(it.frame.program.path, it.call.pos, it.frame), info.api)
+    for target in done.objects:
+        if target.kind in CALLABLE:
+            subscriptions.call_when(ctx, key, target, [answer, answer], "callback")
 
 
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
