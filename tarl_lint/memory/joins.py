@@ -84,7 +84,7 @@ def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
 
 def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
     """Return the value of a key in a continuation that does not store to it."""
-    value = ctx.store.get(key)
+    value = ctx.store.former(key)
     if value is not None:
         return value
     owner, name = key

@@ -48,17 +48,28 @@ class Shared:
     ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
+    joiners: dict[Key, set[Root]] = field(default_factory=dict)  # roots that only joined the key's value
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     dirty: set[Root] = field(default_factory=set)
     edition: int = 0  # number of changes of a class, a `from … import *` or a `__dict__`
 
-    def entry(self, key: Key, root: Root) -> Value | None:
-        """Return the initial value of a key for a root: the join of the stores of all other roots."""
+    def read(self, key: Key, root: Root) -> None:
+        """Register a root as reader of a key."""
         readers = self.readers.get(key)
         if readers is None:
             readers = self.readers[key] = set()
         readers.add(root)
+
+    def entry(self, key: Key, root: Root, *, joining: bool = False) -> Value | None:
+        """Return the initial value of a key for a root: the join of the stores of all other roots.
+
+        With `joining`, stores of the root itself do not make it run again.
+        """
+        if joining:
+            self.joiners.setdefault(key, set()).add(root)
+        else:
+            self.read(key, root)
         result: Value | None = None
         ends = self.ends.get(key)
         if ends is not None:
@@ -127,3 +138,6 @@ class Shared:
         if before is None or after != before:
             owners[root] = after
             self.dirty |= self._others(self.readers.get(key), root)
+            joiners = self.joiners.get(key)
+            if joiners:
+                self.dirty |= joiners - {root}

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
-from tarl_lint.memory.shared import Root, Shared
+from tarl_lint.memory.shared import BORN, Root, Shared
 from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
+CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
 ADDING = frozenset(["*", "<keys>", "<length>"])  # fields with weak updates only
 
 
@@ -51,6 +52,7 @@ class Store:
     layers: list[Delta] = field(default_factory=lambda: [{}])
     seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
+    merged: set[Key] = field(default_factory=set)  # keys of `found` that only joins have read
     exchanged: dict[Key, Value] = field(default_factory=dict)  # values at the last wait
     foreign: dict[Key, Value] = field(
         default_factory=dict
@@ -71,9 +73,13 @@ class Store:
     def get(self, key: Key) -> Value | None:
         """Return the current value; None if unset. Records the read."""
         reads = self.reads
+        value = self.now.get(key)
+        if value is None and not self.waited and self._new(whole := key[0].outermost or key[0]):
+            if (whole, BORN) not in reads.written:
+                reads.keys.add(key)
+            return None
         if key not in reads.written:
             reads.keys.add(key)
-        value = self.now.get(key)
         if value is None or self.waited:
             return self.peek(key)
         return None if value is ABSENT else value
@@ -87,11 +93,50 @@ class Store:
             return None if value is ABSENT else value
         found = self.found
         if key in found:
+            if key in self.merged:
+                self.merged.discard(key)
+                self.shared.read(key, self.root)
             return found[key]
         owner = key[0]
+        if not self.waited and self._new(owner.outermost or owner):
+            return None
         local = owner.kind == "frame" and private(key)
         value = found[key] = None if local else self.shared.entry(key, self.root)
         return value
+
+    def former(self, key: Key) -> Value | None:
+        """Return the current value, to join it with that of a path which stores to the key.
+
+        An object that this run makes on other paths only is another one in each run. If only joins read its keys, the
+        root does not run again because of its own stores to them.
+        """
+        owner = key[0]
+        whole = owner.outermost or owner
+        if key in self.now or self.waited or not self._made_elsewhere(whole):
+            return self.get(key)
+        if key not in self.reads.written:
+            self.reads.keys.add(key)
+        if key not in self.found:
+            self.merged.add(key)
+            self.found[key] = self.shared.entry(key, self.root, joining=True)
+        return self.found[key]
+
+    def _made_elsewhere(self, whole: Obj) -> bool:
+        """Return whether an object belongs to one run, and does not exist on the current path."""
+        if isinstance(whole, Frame):
+            return whole.captured
+        return BORN in whole.fields and self.get((whole, BORN)) is None
+
+    def isolated(self, obj: Obj) -> bool:
+        """Return whether no store of another run can be seen inside an object now."""
+        return not self.waited and self._new(obj.outermost or obj)
+
+    def _new(self, obj: Obj) -> bool:
+        """Return whether the current path allocated an object: then no other run has stored to its unset fields.
+
+        Allocation clears all fields that were ever stored, so that the others are unset everywhere.
+        """
+        return obj.kind in CLEARED and (obj, BORN) in self.now
 
     def _heed(self, key: Key, value: Value) -> None:
         """Take in stores of other roots at this key from now on; re-run this root if there are any."""
@@ -175,6 +220,8 @@ class Store:
     def doubt(self, obj: Obj) -> None:
         """Record that this run found no data inside an object."""
         self.reads.look(obj)
+        if self.isolated(obj):
+            return
         doubters = self.shared.doubters.get(obj)
         if doubters is None:
             doubters = self.shared.doubters[obj] = set()
@@ -183,7 +230,7 @@ class Store:
     def look(self, obj: Obj) -> None:
         """Record that this run depends on the set of an object's fields."""
         self.reads.look(obj)
-        if obj not in self.seen:
+        if obj not in self.seen and not self.isolated(obj):
             self.seen.add(obj)
             self.shared.look(obj, self.root)
 

@@ -1,0 +1,97 @@
+"""Which stores of an entry point make it run again."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+
+import pytest
+
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.read.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.settings.config import Config
+
+NODE = """
+import rospy
+from lib import Net
+from std_msgs.msg import Float64
+
+class Node:
+    def __init__(self):
+        self.x = 0
+        self.net = None
+        self.box = Net()
+        self.keep = None
+        self.pub = rospy.Publisher("out", Float64)
+        rospy.Subscriber("in", Float64, self.on)
+
+    def on(self, msg):
+        {body}
+
+rospy.init_node("n")
+Node()
+rospy.spin()
+"""
+
+
+class Counted(Linker):
+    """Counts the runs of each entry point by its name."""
+
+    def __init__(self, text):
+        super().__init__([Module("node.py", "node", text, ast.parse(text))], Config(), thorough=False)
+        self.runs = Counter()
+
+    def _run(self, root, run):
+        self.runs[root.name] += 1
+        super()._run(root, run)
+
+
+def linked(*lines):
+    machine = Counted(NODE.format(body="\n        ".join(lines)))
+    with_deep_stack(machine.link)
+    return machine
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["if msg.data > 0:", "    net = Net()", "    net.size = 3"],
+        ["if msg.data > 0:", "    rows = [1]", "    rows.append(2)"],
+        ["net = Net()", "for n in range(3):", "    net.size = n", "use = net.size"],
+        ["if msg.data > 0:", "    twice = 2", "    self.pub.register(lambda: twice)"],
+    ],
+)
+def test_stores_to_objects_of_one_run_do_not_repeat_it(lines):
+    assert linked(*lines).runs["on"] == 1
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["self.pub.publish(self.x)", "self.x = msg.data"],
+        ["if msg.data > 0:", "    self.x = msg.data", "else:", "    self.pub.publish(self.x)"],
+        ["if msg.data > 0:", "    self.x = 0", "self.pub.publish(self.x)", "self.x = msg.data"],
+        ["if msg.data > 0:", "    self.box.x = 0", "self.pub.publish(self.box.x)", "self.box.x = msg.data"],
+        ["if self.net is None:", "    self.net = Net()", "self.pub.publish(self.net.last)", "self.net.last = msg.data"],
+        [
+            "if self.keep is None:",
+            "    self.keep = []",
+            "for x in self.keep:",
+            "    self.pub.publish(x)",
+            "self.keep.append(msg.data)",
+        ],
+        [
+            "if self.keep is not None:",
+            "    self.pub.publish(self.keep())",
+            "else:",
+            "    x = msg.data",
+            "    self.keep = lambda: x",
+        ],
+    ],
+)  # fmt: skip
+def test_what_an_earlier_run_stored_is_found(lines):
+    machine = linked(*lines)
+    assert machine.runs["on"] > 1
+    assert [flow.kind for flow in Tracer(machine).flows()] == ["explicit"]
