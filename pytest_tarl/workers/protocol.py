@@ -73,6 +73,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "stuck": run.stuck,
         "simulator": run.simulator,
         "notes": run.notes,
+        "older": [str(path) for path in run.older],
         "values": dict(run.values),
         "judged": run.judged,
     }
@@ -95,6 +96,7 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
         thread=arrays.get("thread"),
     )
     told = {name: head[name] for name in TOLD} | {"notes": tuple(head["notes"])}
+    told["older"] = tuple(map(Path, head["older"]))
     told["judged"] = tuple(Judged(*one) for one in head["judged"])
     return EpisodeRun(plan=plan, trace=trace, **told)
 
