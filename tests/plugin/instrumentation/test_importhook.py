@@ -3,13 +3,15 @@ from __future__ import annotations
 import ast
 import contextlib
 import doctest
-import importlib
+import importlib.util
 import inspect
 import linecache
 import pickle
 import sys
 import traceback
+import types
 from collections.abc import Iterator
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
 from pathlib import Path
 from typing import Any
 
@@ -432,3 +434,17 @@ def test_the_result_of_an_entry_point_is_the_exit_status(project):
         node.run_entry(project / "fails.py", "App.run")
     with imports(project, Recorder(), plan={}) as node, pytest.raises(AttributeError, match="main"):
         node.run_entry(project / "fails.py", "main")
+
+
+def test_modules_without_source_in_the_project_stay_imported(project: Path) -> None:
+    node = imports(project, Recorder())
+    outside = types.ModuleType("made_by_a_test")
+    folder = types.ModuleType("namespace_package")
+    folder.__spec__ = ModuleSpec("namespace_package", None, is_package=True)
+    compiled = types.ModuleType("compiled")
+    compiled.__spec__ = ModuleSpec(
+        "compiled", ExtensionFileLoader("compiled", "x.so"), origin=str(project / "x.so")
+    )
+    own = types.ModuleType("gains")
+    own.__spec__ = importlib.util.spec_from_file_location("gains", project / "gains.py")
+    assert [node._belongs(one) for one in (outside, folder, sys, compiled, own)] == [False] * 4 + [True]

@@ -69,6 +69,7 @@ def test_a_pause_longer_than_idle_begins_a_new_mission_without_losing_steps(
     found = list(records(tmp_path / "log"))
     kinds = [one["kind"] for one in found if one["kind"] != "steps"]
     assert kinds == ["start", *["mission", "end"] * (2 if asleep > 60 else 1)]
+    assert all(one["passed"] for one in found if one["kind"] == "end")
     rewards = [unpacked(one["reward"], "float64").tolist() for one in found if one["kind"] == "steps"]
     assert list(chain.from_iterable(rewards)) == [float(number) for number in range(100)]
 

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl import Sensor, Signal
+from pytest_tarl.errors import LogError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.observing import command, outlet
 from pytest_tarl.observing.frames import Record, records
@@ -75,6 +76,20 @@ def test_a_mission_without_marks_ends_with_the_node(
     assert (mission["kind"], end["kind"], end["passed"]) == ("mission", "end", passed)
     assert failure is None or end["failure"] == failure
     assert (raised is error) is (comes_out or error is None)
+
+
+def test_a_sensor_that_nothing_sets_on_a_robot_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = tmp_path / "node.py"
+    node.write_text("import rospy\n")
+    sensors = (Sensor("place", topic="/place", field="x"), Sensor("speed"))
+    fixture = SimpleNamespace(sensors=sensors, test="test_x.py::test_x")
+    monkeypatch.setattr(command, "load", lambda _: fixture)
+    monkeypatch.setattr(command, "_sites", lambda _: SimpleNamespace(places=()))
+    with pytest.raises(LogError, match=r"Sensor 'speed' has no topic\..*Give it a topic"):
+        command.observe(command.Order(node, fixture=tmp_path / "f.npz", log=tmp_path / "log", reward="/r"))
+    assert not (tmp_path / "log").exists()
 
 
 @pytest.mark.parametrize("more", [{"mission": "/mission"}, {"idle": 1.0}])
