@@ -148,7 +148,7 @@ def _default_of(
     ctx.graph.parameters.add(node)
     if expr is not None:
         literals.mark(ctx, node, expr, default, frame)
-    ctx.graph.flow(default.deps, node)
+    ctx.graph.flow(ctx.use(default) if default.pts else default.deps, node)
     if ctx.thorough and default.pts:
         return ctx.carry(default, node)  # a mapping with its entries
     return Value(ctx.kept(node), consts=consts)
