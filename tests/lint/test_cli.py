@@ -87,6 +87,13 @@ def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
     assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 removed).\n"
 
 
+def test_a_named_baseline_is_written_and_no_other(node, capsys):
+    assert lint(capsys, "--baseline", "own.json", "--write-baseline")[1].startswith("own.json: 1 flow accepted")
+    assert Path("own.json").exists()
+    assert not Path("tarl-flows.json").exists()
+    assert lint(capsys, "--baseline", "own.json")[0] == 0
+
+
 def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys):
     lint(capsys, "--write-baseline")
     node.write_text("def f(:\n")

@@ -189,7 +189,16 @@ def test_the_lineage_of_a_class_visits_a_shared_base_once_and_last():
     left, right = made_class("left", base), made_class("right", base)
     assert lineage(made_class("both", left, right))[1:] == [left, right, base]
     assert lineage(base) == [base]
-    assert lineage(Obj("class", "unknown"))[0].key == "unknown"
+    unknown = Obj("class", "unknown")
+    assert lineage(unknown) == [unknown]
+    assert lineage(inner := made_class("inner", unknown, base)) == [inner, unknown, base]
+
+
+def test_the_lineage_of_very_many_bases_is_cut():
+    cls = made_class("0")
+    for number in range(1, 80):
+        cls = made_class(str(number), cls)
+    assert len(lineage(cls)) == 50
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,143 @@
+"""Limits, widths and boundaries of reports, each with the value on both sides."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from itertools import islice
+from types import SimpleNamespace
+
+import pytest
+
+from tarl_lint.model import Span
+from tarl_lint.report import upload_limits
+from tarl_lint.report.flows import shown_steps
+from tarl_lint.report.frame import TALL, frame, lines_of
+from tarl_lint.report.line import View, columns, crop, location, plain, tabs, unbroken
+from tarl_lint.report.upload_limits import MOST_RESULTS, MOST_STEPS, Cut, cuts, taken
+from tarl_lint.run import groups
+from tarl_lint.system import svg
+
+LONGEST = 12  # steps that are shown in full
+
+
+@pytest.mark.parametrize(
+    ("results", "smaller"),
+    [
+        (3, [Cut(3, MOST_STEPS), Cut(3, 0), Cut(1, 0), Cut(0, 0)]),
+        (0, [Cut(0, MOST_STEPS), Cut(0, 0)]),
+        (MOST_RESULTS + 1, [Cut(MOST_RESULTS, MOST_STEPS), Cut(MOST_RESULTS, 0)]),
+    ],
+)
+def test_reports_become_smaller_until_nothing_is_left(results, smaller):
+    assert list(islice(cuts(results), len(smaller))) == smaller
+    assert list(cuts(results))[-1] == Cut(0, 0)
+
+
+def test_a_report_of_exactly_the_limit_is_taken(monkeypatch):
+    monkeypatch.setattr(upload_limits, "MOST_BYTES", 1000)
+    assert taken("x" * 1000)
+    assert taken("x" * 1001)  # compressed, it is smaller
+    noise = random.Random(0).choices("abcdefghijklmnop", k=4000)
+    assert not taken("".join(noise))
+
+
+def test_only_a_long_list_of_steps_is_reduced_to_its_chain(example):
+    flow = example.flow()
+    exact = replace(flow, steps=flow.steps[:1] * LONGEST, chain=(1, 2))
+    longer = replace(exact, steps=(*exact.steps, flow.steps[-1]))
+    assert shown_steps(exact, View()) == exact.steps
+    assert shown_steps(replace(longer, chain=()), View()) == longer.steps
+    assert shown_steps(longer, View(all_steps=True)) == longer.steps
+    registrations = [step for step in longer.steps if step.role == "register"]
+    assert len(registrations) == LONGEST
+    assert list(shown_steps(longer, View())) == [*registrations, longer.steps[1], longer.steps[2]]
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "shown"),
+    [
+        ("abcdef", 6, "abcdef"),
+        ("abcdef", 5, "abcd…"),
+        ("abcdef", 0, "abcdef"),
+        ("abcdef", -1, "abcdef"),
+        ("漢字", 4, "漢字"),
+        ("漢字", 3, "漢…"),
+        ("é" + "\u0301" * 3, 1, "é" + "\u0301" * 3),
+    ],
+)
+def test_a_text_is_cropped_to_columns(text, width, shown):
+    assert crop(text, width, "…") == shown
+
+
+def test_widths_tabs_and_line_ends():
+    assert [columns(text) for text in ("abc", "漢", "e\u0301", "é")] == [3, 2, 1, 1]
+    assert tabs("\tx") == "    x"
+    assert location(Span("a\nb.py", 2, 3, 4, 5)) == "a\\nb.py:2:3"
+    line = (("a\nb", ""), ("c\rd", "strong"))
+    assert unbroken(line) == (("a\\nb", ""), ("c\\rd", "strong"))
+    assert unbroken((("ab", ""),)) == (("ab", ""),)
+    assert lines_of("a\r\nb\rc\n\x0cd") == ["a", "b", "c", "\x0cd"]
+
+
+def framed(text: str, span: Span, view: View = View()) -> list[str]:  # noqa: B008 - frozen
+    return [plain(line).rstrip() for line in frame(text.split("\n"), span, "", view)]
+
+
+def test_a_frame_has_the_lines_before_and_carets_below_each_line_of_the_span():
+    text = "\n\na = 1\nf(\n  x,\n)\nb"
+    assert framed(text, Span("n", 4, 1, 6, 2)) == [
+        "   3 │ a = 1",
+        "   4 │ f(",
+        "     │ ^^",
+        "   5 │   x,",
+        "     │   ^^",
+        "   6 │ )",
+        "     │ ^",
+    ]
+    assert framed(text, Span("n", 1, 1, 1, 1)) == ["   1 │"]
+    assert framed(text, Span("n", 8, 1, 8, 2)) == []
+    assert framed(text, Span("n", 7, 1, 9, 2))[-2:] == ["   7 │ b", "     │ ^"]
+
+
+def test_a_tall_span_is_shown_by_its_beginning_and_its_last_line():
+    text = "\n".join("x" for _ in range(20))
+    exact, taller = (framed(text, Span("n", 1, 1, end, 2)) for end in (TALL, TALL + 1))
+    assert len(exact) == 2 * TALL
+    assert [line[:5].strip() for line in taller[::2]] == ["1", "2", "3", "4", "…", ""]
+    assert taller[-2] == f"   {TALL + 1} │ x"
+
+
+def test_a_narrow_frame_is_cropped_with_its_carets():
+    assert framed("abcdefghij", Span("n", 1, 3, 1, 10), View(width=12)) == ["   1 │ abcd…", "     │   ^^^"]
+
+
+def test_a_picture_of_no_system_has_its_margins_only():
+    (start,) = (line for line in svg.report([]) if line.startswith("<svg"))
+    assert f'width="{svg.MARGIN:.0f}" height="{svg.MARGIN:.0f}"' in start
+
+
+def processes(monkeypatch: pytest.MonkeyPatch, *lines: int, jobs: int | None = None) -> int:
+    tasks = [SimpleNamespace(analyse=True, lines=count) for count in lines]
+    monkeypatch.setattr(groups, "_processors", lambda: 8)
+    return groups._workers(tasks, jobs)  # type: ignore[arg-type]
+
+
+def test_a_large_tree_uses_as_many_processes_as_its_largest_group_allows(monkeypatch):
+    many = groups.MANY_LINES
+    assert processes(monkeypatch, many - 1) == 1
+    assert processes(monkeypatch, *[many // 4] * 4) == 4
+    assert processes(monkeypatch, *[many // 4] * 3, many // 2) == 2
+    assert processes(monkeypatch, *[many] * 20) == 8
+    assert processes(monkeypatch, 1, 1, jobs=9) == 2
+    assert processes(monkeypatch, 1, 1, jobs=0) == 1
+
+
+def test_the_processors_of_this_process_are_counted(monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda process: {*range(5 - process)}, raising=False)
+    assert groups._processors() == 5
+    monkeypatch.delattr("os.sched_getaffinity")
+    monkeypatch.setattr("os.cpu_count", lambda: None)
+    assert groups._processors() == 1
+    monkeypatch.setattr("os.cpu_count", lambda: 7)
+    assert groups._processors() == 7
