@@ -88,7 +88,9 @@ def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
 
 
 def test_a_named_baseline_is_written_and_no_other(node, capsys):
-    assert lint(capsys, "--baseline", "own.json", "--write-baseline")[1].startswith("own.json: 1 flow accepted")
+    assert lint(capsys, "--baseline", "own.json", "--write-baseline")[1].startswith(
+        "own.json: 1 flow accepted"
+    )
     assert Path("own.json").exists()
     assert not Path("tarl-flows.json").exists()
     assert lint(capsys, "--baseline", "own.json")[0] == 0

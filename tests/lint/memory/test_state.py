@@ -388,6 +388,34 @@ def test_generations_count_the_ancestors_with_the_same_function(ctx):
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
+def test_a_path_that_did_not_make_an_object_joins_the_stores_of_others_without_reading_its_own(shared, store):
+    obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
+    store.push()
+    store.put((obj, BORN), BOTTOM)
+    store.put((obj, "x"), ONE)
+    assert store.former((obj, "x")) is ONE
+    store.pop()
+    shared.leave(shared.ends, other, (obj, "x"), TWO)
+    assert store.former((obj, "x")) == TWO
+    shared.dirty.clear()
+    shared.leave(shared.ends, mine, (obj, "x"), ONE)
+    assert shared.dirty == set()
+    shared.leave(shared.ends, other, (obj, "x"), Value(frozenset([3])))
+    assert shared.dirty == {mine}
+
+
+def test_only_an_object_that_the_current_path_made_is_isolated_and_only_before_a_wait(store, obj):
+    assert not store.isolated(obj)
+    store.push()
+    store.put((obj, BORN), BOTTOM)
+    assert store.isolated(obj)
+    store.waited = True
+    assert not store.isolated(obj)
+    store.waited = False
+    store.pop()
+    assert not store.isolated(obj)
+
+
 # --- waits --------------------------------------------------------------------------------------------
 
 

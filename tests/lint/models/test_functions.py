@@ -248,6 +248,12 @@ CASES: dict[tuple[str, ...], str] = {
         out.publish(NAME(msg.data))  # data
         out.publish(NAME(1.0))  # clean
     """,
+    ("int",): """
+        out.publish(NAME(msg.data))  # data
+        out.publish(NAME("1"))  # clean
+        kept = [0.0, msg.data]
+        out.publish(kept[NAME(1.0)])  # data
+    """,
     NAMES: """
         kept = {"near": msg.data, "far": 0.0}
         out.publish(kept[NAME("near")])  # data
@@ -399,7 +405,7 @@ COVERED = [(name, body) for names, body in CASES.items() for name in names]
 
 def test_each_function_with_a_model_has_a_test():
     names = [name for name, _ in COVERED]
-    assert sorted(names) == sorted(BUILTIN)
+    assert sorted(names) == sorted(BUILTIN), "add a body for each new model to CASES"
 
 
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
