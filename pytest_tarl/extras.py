@@ -11,7 +11,7 @@ from urllib.request import url2pathname
 
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
-FLEET = ("duckdb", "fsspec", "pyarrow")
+FLEET = ("dask", "duckdb", "fsspec", "pyarrow")
 STRESS = ("cma", "hypothesis")
 SOBOL = ("SALib",)
 

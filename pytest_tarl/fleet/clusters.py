@@ -14,8 +14,10 @@ from math import erfc, sqrt
 import numpy as np
 
 from pytest_tarl.fleet.database import Database
-from pytest_tarl.fleet.residual_maps import ResidualMap, designed, residual_map
+from pytest_tarl.fleet.engine import Engine
+from pytest_tarl.fleet.residual_maps import ResidualMap, designed, residual_maps
 from pytest_tarl.fleet.robots import Robots
+from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
@@ -42,14 +44,16 @@ class Clusters:
     maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # by robot
 
 
-def clustered(database: Database, fixture: Fixture, robots: Robots, alpha: float) -> Clusters:
+def clustered(
+    database: Database, where: Store, engine: Engine, fixture: Fixture, robots: Robots, alpha: float
+) -> Clusters:
     """Return the clusters of the robots that are named."""
     named = {one.name: one for one in (*robots.below, *robots.drifted)}
     some = sorted(named.values(), key=lambda one: (-max(one.world, one.bound), one.name))
     if not some:
         return Clusters()
     world = designed(fixture)
-    maps = [residual_map(database, world, one) for one in some[:MOST]]
+    maps = residual_maps(database, where, engine, fixture, world, some[:MOST])
     return of(maps, world.variance[:-1], fixture.sample.cells, alpha, len(some) - len(maps))
 
 

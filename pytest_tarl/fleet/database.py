@@ -1,7 +1,8 @@
 """The missions that a question is about, in an embedded DuckDB: each once, in the order of robot, time and identity.
 
-Only integers are counted and rows sorted here. Sums of floats are computed from rows in that order, so results do not
-depend on files, partitions or threads, to the last bit.
+It holds one row for each mission; the rows of cells stay where they lie (partitions.py). Only integers are counted and
+rows sorted here. Sums of floats are computed from rows in that order, so results do not depend on files, partitions or
+threads, to the last bit.
 """
 
 from __future__ import annotations
@@ -21,9 +22,8 @@ import pyarrow as pa
 from pytest_tarl.errors import FleetError
 from pytest_tarl.files import advice_on
 from pytest_tarl.fleet.dataset import Part
-from pytest_tarl.fleet.schema import cell_of, name_of
+from pytest_tarl.fleet.partitions import Wanted
 from pytest_tarl.fleet.store import Store
-from pytest_tarl.sensors import Cell
 
 MEMORY = "1GB"  # beyond it, DuckDB moves rows to SPILLED
 SPILLED = Path(".tarl/fleet")
@@ -51,11 +51,11 @@ class Filter:
 
 
 class Database:
-    """Missions numbered from 0 by robot, time and identity; `cells` are those of the recording, then all others."""
+    """Missions numbered from 0 by robot, time and identity; `wanted` says which of them lie in which files."""
 
-    def __init__(self, connection: Any, cells: tuple[Cell, ...]) -> None:
+    def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
-        self.cells = cells
+        self.wanted = wanted
 
     def columns(self, query: str, *arguments: object) -> Columns:
         """Return the result of a query as columns."""
@@ -78,9 +78,7 @@ class Database:
 
 
 @contextmanager
-def opened(
-    where: Store, parts: Sequence[Part], recorded: Sequence[Cell], by: Sequence[str], which: Filter
-) -> Iterator[Database]:
+def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter) -> Iterator[Database]:
     """Load the missions of some files, grouped by the columns `by`, keys of BY.
 
     Raise FleetError if a file cannot be read.
@@ -95,9 +93,12 @@ def opened(
         try:
             if where.protocol != "file":
                 connection.register_filesystem(where.fs)
+            keys = [part.path.partition("/")[2] for part in parts]
+            connection.register(
+                "parts", pa.table({"key": keys, "part": np.arange(len(keys), dtype=np.int32)})
+            )
             _missions(connection, [where.address(part.path) for part in parts], by, which)
-            cells = _cells(connection, [where.address(part.beside("cells")) for part in parts], recorded)
-            yield Database(connection, cells)
+            yield Database(connection, tuple(_wanted(connection, parts)))
         except duckdb.Error as problem:
             raise FleetError(
                 f"{where.shown('')} cannot be read ({str(problem).splitlines()[0]}): check the files and the free "
@@ -142,12 +143,12 @@ def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: F
             SELECT *{"," if grouped else ""} {grouped}
             FROM (
                 SELECT mission, robot, site, version, coalesce(repair, '') AS repair, time, passed, total, steps,
-                    formulas, {KEY} AS key,
+                    formulas, part,
                     count(*) OVER same AS copies,
-                    row_number() OVER (same ORDER BY version, robot, site, filename) AS copy
+                    row_number() OVER (same ORDER BY version, robot, site, part) AS copy
                 FROM (SELECT * FROM ({EMPTY}) UNION ALL BY NAME SELECT * FROM read_parquet(
                     ?, filename = true, hive_partitioning = true, hive_types_autocast = false, union_by_name = true
-                ))
+                )) JOIN parts ON {KEY} = parts.key
                 WINDOW same AS (PARTITION BY mission)
             )
             WHERE copy = 1 AND time >= ? AND (? = '' OR robot = ?)
@@ -158,53 +159,17 @@ def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: F
     )
 
 
-def _cells(connection: Any, files: Sequence[str], recorded: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Load the transitions of the missions between cells, in any order, and return the cells by number.
-
-    Names become numbers on the way, so that no text is held in memory.
-    """
-    cells = _coded(connection, recorded, _names(connection, files))
-    connection.execute(
-        f"""
-        CREATE TEMP TABLE cells AS
-        SELECT m.number, a.code AS cell, coalesce(b.code, -1) AS next_cell, c.count, c.reward
-        FROM (
-            SELECT mission, cell, next_cell, count, reward, {KEY} AS key FROM read_parquet(?, filename = true)
-        ) AS c JOIN missions AS m ON c.mission = m.mission AND c.key = m.key
-            JOIN codes AS a ON c.cell = a.cell LEFT JOIN codes AS b ON c.next_cell = b.cell
-        """,  # noqa: S608
-        [list(files)],
-    )
-    found = connection.execute("SELECT cell FROM cells UNION SELECT next_cell FROM cells").fetchall()
-    used = {code for (code,) in found} | {-1, *range(len(recorded))}
-    if len(used) > len(cells):
-        return cells
-    kept = [code for code in range(len(cells)) if code in used]  # the others are of missions not in question
-    renumbered = pa.table(
-        {"old": pa.array([-1, *kept], pa.int32()), "new": pa.array(range(-1, len(kept)), pa.int32())}
-    )
-    connection.register("renumbered", renumbered)
-    connection.execute(
-        """
-        CREATE OR REPLACE TEMP TABLE cells AS
-        SELECT c.number, a.new AS cell, b.new AS next_cell, c.count, c.reward
-        FROM cells AS c JOIN renumbered AS a ON c.cell = a.old JOIN renumbered AS b ON c.next_cell = b.old
-        """
-    )
-    return tuple(cells[code] for code in kept)
-
-
-def _names(connection: Any, files: Sequence[str]) -> set[str]:
-    """Return the names of all cells in the files."""
-    found = connection.execute(
-        "SELECT DISTINCT unnest([cell, next_cell]) AS name FROM read_parquet(?)", [list(files)]
-    ).fetchall()
-    return {name for (name,) in found if name is not None}
-
-
-def _coded(connection: Any, recorded: Sequence[Cell], names: set[str]) -> tuple[Cell, ...]:
-    """Number the cells, those of the recording first, in the table `codes`."""
-    cells = (*recorded, *sorted({cell_of(name) for name in names} - set(recorded)))
-    codes = {"cell": list(map(name_of, cells)), "code": np.arange(len(cells), dtype=np.int32)}
-    connection.register("codes", pa.table(codes))
-    return cells
+def _wanted(connection: Any, parts: Sequence[Part]) -> Iterator[Wanted]:
+    """Yield the missions in question of each file."""
+    rows = connection.execute(
+        "SELECT part, mission, number FROM missions ORDER BY part, mission"
+    ).fetchnumpy()
+    ends = np.searchsorted(rows["part"], np.arange(len(parts) + 1)).tolist()
+    for part, begin, end in zip(parts, ends, ends[1:], strict=False):
+        mine = slice(begin, end)
+        yield Wanted(
+            part.beside("cells"),
+            part.path,
+            np.asarray(rows["mission"][mine]).astype(np.uint64),
+            np.asarray(rows["number"][mine]).astype(np.int64),
+        )

@@ -52,7 +52,7 @@ def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
     """Yield identity and robot of each mission that the test's partition holds for a day."""
     for path in where.files(f"missions/test={folder}"):
         if f"/date={date}/" in path:
-            table = _columns(where, path, ["mission", "robot"])
+            table = columns(where, path, ["mission", "robot"])
             yield from zip(table["mission"].to_pylist(), table["robot"].to_pylist(), strict=True)
 
 
@@ -75,9 +75,10 @@ def _opened(where: Store, path: str) -> Any:
         return pq.read_metadata(file)
 
 
-def _columns(where: Store, path: str, names: Sequence[str]) -> Any:
+def columns(where: Store, path: str, names: Sequence[str]) -> Any:
+    """Return columns of a file as an Arrow table. Raise FleetError if it cannot be read."""
     with _readable(where, path), where.opened(path) as file:
-        return pq.read_table(file, columns=list(names))
+        return pq.read_table(file, columns=list(names), use_threads=False)
 
 
 @contextmanager

@@ -1,8 +1,9 @@
-"""Where the missions are judged: on threads of this process, or on a Dask cluster.
+"""Where the missions are judged: by Dask, on threads of this process, or on a cluster.
 
 Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so the number of
-workers, and workers that die, do not change a bit. Each task carries its rows: if a worker dies, the scheduler runs
-its tasks again elsewhere.
+workers, and workers that die, do not change a bit. A task names the files that it reads, and the workers read them: if
+one dies, the scheduler runs its tasks again elsewhere. Locally, nothing is started but threads, and none with one
+worker.
 """
 
 from __future__ import annotations
@@ -13,30 +14,63 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from functools import partial
+from itertools import islice
+from typing import Any, Protocol, TypeVar
 
 from pytest_tarl.errors import FleetError, SettingsError
 from pytest_tarl.extras import install_command
 
 REACHED = 10  # s to wait for the scheduler
 RETRIES = 3  # of a task whose worker dies
-AHEAD = 2  # tasks for each worker that wait or run, which bounds the memory
+AHEAD = 2  # tasks for each thread of a cluster that wait or run, which bounds the memory
+WINDOW = 8  # tasks for each thread of this process that are handed to Dask together
 
 Result = TypeVar("Result")
 
 
-@dataclass(frozen=True)
-class Engine:
-    """An executor and the number of tasks that it runs at a time."""
-
-    executor: Executor
-    workers: int
+class Engine(Protocol):
+    """Runs tasks."""
 
     def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
         """Yield the result of a function for each tuple of arguments, in order.
 
         Raise FleetError if a worker cannot run a task.
         """
+
+
+@dataclass(frozen=True)
+class Local:
+    """Dask's scheduler in this process; it runs a window of tasks at a time, which bounds the memory."""
+
+    workers: int
+    threads: ThreadPoolExecutor | None  # None with one worker
+
+    def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
+        """Yield the results in order."""
+        rest = iter(tasks)
+        while window := [partial(function, *one) for one in islice(rest, WINDOW * self.workers)]:
+            # Dask looks for names of tasks in arguments, so these are bound.
+            yield from self._got({f"tarl-{number}": (one,) for number, one in enumerate(window)})
+
+    def _got(self, graph: dict[str, tuple[Callable[[], Any]]]) -> list[Any]:
+        from dask import local, threaded
+
+        names = list(graph)
+        if self.threads is None:
+            return list(local.get_sync(graph, names))
+        return list(threaded.get(graph, names, pool=self.threads, num_workers=self.workers))
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """A Dask cluster's executor and the number of its threads."""
+
+    executor: Executor
+    workers: int
+
+    def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
+        """Yield the results in order; AHEAD tasks for each thread are on their way."""
         waiting: deque[Future[Result]] = deque()
         try:
             for one in tasks:
@@ -51,7 +85,7 @@ class Engine:
 
     def _submitted(self, function: Callable[..., Result], arguments: tuple[Any, ...]) -> Future[Result]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # Dask's on the size of a task's rows
+            warnings.simplefilter("ignore", UserWarning)  # Dask's on the size of a task's arguments
             return self.executor.submit(function, *arguments)
 
 
@@ -71,12 +105,15 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Run tasks on threads of this process."""
-    executor = ThreadPoolExecutor(workers, thread_name_prefix="tarl-fleet")
+    """Run tasks in this process."""
+    if workers == 1:
+        yield Local(1, None)
+        return
+    threads = ThreadPoolExecutor(workers, thread_name_prefix="tarl-fleet")
     try:
-        yield Engine(executor, workers)
+        yield Local(workers, threads)
     finally:
-        executor.shutdown(wait=True, cancel_futures=True)
+        threads.shutdown(wait=True, cancel_futures=True)
 
 
 @contextmanager
@@ -104,7 +141,7 @@ def cluster(address: str) -> Iterator[Engine]:
             )
         executor = client.get_executor(retries=RETRIES, pure=False)
         try:
-            yield Engine(executor, workers)
+            yield Cluster(executor, workers)
         finally:
             with suppress(OSError, TimeoutError):
                 executor.shutdown(wait=False)

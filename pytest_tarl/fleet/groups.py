@@ -10,6 +10,7 @@ import numpy as np
 from pytest_tarl.fleet import samples
 from pytest_tarl.fleet.database import Database
 from pytest_tarl.fleet.engine import Engine
+from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.bounds import Range, mean_of, rate
 from pytest_tarl.learning.drift import Difference, compare, corrected
 from pytest_tarl.learning.fixture import Fixture
@@ -18,7 +19,7 @@ from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
-from pytest_tarl.sensors import Sensor
+from pytest_tarl.sensors import Cell, Sensor
 
 MOST = 1000  # missions of a group that are compared; bounds use all of them
 FEWEST = 2  # missions needed for a verdict
@@ -54,7 +55,9 @@ class Group:
 
 def judged(
     database: Database,
+    where: Store,
     fixture: Fixture,
+    cells: tuple[Cell, ...],
     by: Sequence[str],
     engine: Engine,
     *,
@@ -62,10 +65,13 @@ def judged(
     tolerance: float | None,
     seed: int = 0,
 ) -> tuple[Group, ...]:
-    """Return all groups in order; verdicts are corrected for the number of groups (Holm)."""
+    """Return all groups in order; verdicts are corrected for the number of groups (Holm).
+
+    `cells` are those of the recording and all others.
+    """
     columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
     rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY
-    every = samples.groups(database, len(rows), MOST)
+    every = samples.groups(database, where, engine, cells, len(rows), MOST)
     verdicts = engine.each(_compared, _tasks(fixture, every, rows, alpha, tolerance, seed))
     violations = _violations(database)
     found = []

@@ -16,8 +16,10 @@ from pytest_tarl.fleet.database import BY, Database, Filter, opened
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.engine import Engine, cluster, local
 from pytest_tarl.fleet.schema import Origin, origin, repair_path
+from pytest_tarl.fleet.scores import scored
 from pytest_tarl.fleet.store import Store, store
 from pytest_tarl.learning.fixture import Fixture, load, parsed
+from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.sensors import Cell
 
 LOWEST = 10  # missions of one robot listed
@@ -96,11 +98,11 @@ def answer(question: Question) -> Answer:
             f"{'; '.join(_left_out(parts, own))}. Name the recording that the robots observed with --fixture."
         )
     which = Filter(question.robot, question.since)
-    with opened(where, fitting, fixture.sample.cells, question.by, which) as database:
+    with opened(where, fitting, question.by, which) as database:
         if not database.missions:
             raise FleetError(_nothing(where, question))
         with _engine(question) as engine:
-            found = _judged(database, fixture, question, _left_out(parts, own), engine)
+            found = _judged(database, where, fixture, question, _left_out(parts, own), engine)
     return replace(found, accepted=_accepted(where, found.repairs))
 
 
@@ -120,22 +122,39 @@ def _engine(question: Question) -> AbstractContextManager[Engine]:
 
 
 def _judged(
-    database: Database, fixture: Fixture, question: Question, left_out: Mapping[str, int], engine: Engine
+    database: Database,
+    where: Store,
+    fixture: Fixture,
+    question: Question,
+    left_out: Mapping[str, int],
+    engine: Engine,
 ) -> Answer:
     alpha, one = question.alpha, bool(question.robot)
-    every = robots.judged(database, fixture, engine, alpha)
-    found = groups.judged(database, fixture, question.by, engine, alpha=alpha, tolerance=question.tolerance)
+    first = begun(fixture, alpha=alpha, seed=0)
+    every_score = scored(database, where, first.scale, engine)
+    cells = (*fixture.sample.cells, *every_score.others)
+    every = robots.judged(database, first, every_score, engine, alpha)
+    found = groups.judged(
+        database,
+        where,
+        fixture,
+        cells,
+        question.by,
+        engine,
+        alpha=alpha,
+        tolerance=question.tolerance,
+    )
     return Answer(
         question=question,
         fixture=fixture,
         missions=database.missions,
         copies=int(database.names("SELECT sum(copies - 1) FROM missions")[0][0]),
-        cells=database.cells,
+        cells=cells,
         groups=found,
-        onsets=group_onsets.judged(database, fixture, engine, found, alpha),
+        onsets=group_onsets.judged(database, first, every_score, engine, found, alpha),
         robots=every,
         parts=None if one else decomposition.decomposed(database),
-        clusters=clusters.clustered(database, fixture, every, alpha),
+        clusters=clusters.clustered(database, where, engine, fixture, every, alpha),
         repairs=repairs.effects(database, question.by),
         left_out=left_out,
         period=_period(database),

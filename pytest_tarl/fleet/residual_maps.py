@@ -6,13 +6,16 @@ the world changed, not upstream of it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pytest_tarl.fleet.database import Database
+from pytest_tarl.fleet.engine import Engine
 from pytest_tarl.fleet.robots import Robot, lower
-from pytest_tarl.fleet.samples import following, watched
+from pytest_tarl.fleet.samples import following
+from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
@@ -39,7 +42,7 @@ class Designed:
 
 
 def designed(fixture: Fixture) -> Designed:
-    """Return the model of a recording for the cells of `watched`: its own and one for all others."""
+    """Return the model of a recording for the cells of `following`: its own and one for all others."""
     cells = len(fixture.sample.cells) + 1
     model = fitted(fixture.sample.chain, cells)
     own = Sample(**{**vars(fixture.sample), "cells": ((),) * cells, "lists": ()})
@@ -47,21 +50,34 @@ def designed(fixture: Fixture) -> Designed:
     return Designed(model, variance, variance * visits)
 
 
-def residual_map(database: Database, world: Designed, robot: Robot) -> ResidualMap:
-    """Return the map of a robot's missions since its onset.
+def residual_maps(
+    database: Database,
+    where: Store,
+    engine: Engine,
+    fixture: Fixture,
+    world: Designed,
+    robots: Sequence[Robot],
+) -> list[ResidualMap]:
+    """Return the map of each robot's missions since its onset.
 
     A robot with few missions may show too little noise by chance: its variance is at least that of as many recorded
     visits.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
-    found = database.columns(query, robot.name)
-    first, end = int(found["first"][0]), int(found["ends"][0])
-    rows, transitions = following(database, min(first + since(robot), end - 1), end)
-    sample = watched(rows, transitions, len(world.variance) - 1)
+    spans = []
+    for robot in robots:
+        found = database.columns(query, robot.name)
+        first, end = int(found["first"][0]), int(found["ends"][0])
+        spans.append((min(first + since(robot), end - 1), end))
+    every = following(database, where, engine, fixture.sample.cells, spans)
+    return [_map(robot.name, sample, world) for robot, sample in zip(robots, every, strict=True)]
+
+
+def _map(name: str, sample: Sample, world: Designed) -> ResidualMap:
     mean, variance, visits = _mean(sample, world.model)
     with np.errstate(divide="ignore", invalid="ignore"):
         least = world.of_visit / visits
-    return ResidualMap(robot.name, mean[:-1], np.fmax(variance, least)[:-1])
+    return ResidualMap(name, mean[:-1], np.fmax(variance, least)[:-1])
 
 
 def since(robot: Robot) -> int:

@@ -14,19 +14,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pytest_tarl.fleet import side_by_side
-from pytest_tarl.fleet.database import Columns, Database
+from pytest_tarl.fleet.database import Database
 from pytest_tarl.fleet.engine import Engine
-from pytest_tarl.fleet.samples import following, part, watched
-from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.moments import Moments
-from pytest_tarl.monitoring.monitor import Counts, Monitor, begun, shares
+from pytest_tarl.monitoring.monitor import Counts, Monitor, shares
 from pytest_tarl.monitoring.status import Evidence, Status
 from pytest_tarl.monitoring.status import status as status_of
-from pytest_tarl.sensors import Cell
 
-PORTION = 50_000  # missions read together
+PORTION = 50_000  # missions judged together
 
 
 @dataclass(frozen=True)
@@ -54,14 +52,30 @@ class Robots:
     below: tuple[Robot, ...]
 
 
-def judged(database: Database, fixture: Fixture, engine: Engine, q: float, seed: int = 0) -> Robots:
-    """Judge each robot's missions in the order of their times.
+def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q: float) -> Robots:
+    """Judge each robot's missions in the order of their times; `first` is a monitor without missions."""
+    rows = database.columns(
+        "SELECT any_value(robot) AS robot, max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ends"
+    )
+    return named(tuple(watched(first, scores, rows["robot"], rows["ends"], engine, q)), q)
 
-    Raise FixtureError if the recording has too few episodes.
-    """
-    first = begun(fixture, alpha=q, seed=seed)
-    found = engine.each(portioned, _tasks(database, first, q))
-    return named(tuple(one for some in found for one in some), q)
+
+def watched(
+    first: Monitor, scores: Scores, names: Sequence[str], ends: object, engine: Engine, q: float
+) -> Iterator[Robot]:
+    """Yield the evidence on robots with consecutive missions, those of robot n before `ends[n]`."""
+    every: Ints = np.asarray(ends).astype(np.int64)
+    some = list(portions(every))
+
+    def tasks() -> Iterator[tuple[object, ...]]:
+        begin, place = 0, 0
+        for portion in some:
+            own = [str(one) for one in names[place : place + portion.size]]
+            yield first, scores.between(begin, int(portion[-1])), portion - begin, own, q
+            begin, place = int(portion[-1]), place + portion.size
+
+    for found in engine.each(portioned, tasks()):
+        yield from found
 
 
 def named(every: tuple[Robot, ...], q: float) -> Robots:
@@ -79,41 +93,22 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
     return tuple(every[n] for n in sorted(picked, key=lambda n: (-evidence[n], every[n].name)))
 
 
-def _tasks(database: Database, first: Monitor, q: float) -> Iterator[tuple[object, ...]]:
-    """Yield the arguments of `portioned` for portions of robots."""
-    ends = database.columns(
-        "SELECT max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ALL"
-    )["ends"]
-    others = database.cells[len(first.scale.cells) :]
-    begin = 0
-    for portion in portions(np.asarray(ends).astype(np.int64)):
-        yield first, *following(database, begin, int(portion[-1])), portion - begin, others, q
-        begin = int(portion[-1])
-
-
-def portioned(
-    first: Monitor, rows: Columns, transitions: Columns, ends: Ints, others: Sequence[Cell], q: float
-) -> list[Robot]:
-    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
-
-    `others` are the cells that the recording lacks, numbered after its own.
-    """
-    recorded = len(first.scale.cells)
-    sample = watched(rows, transitions, recorded)
+def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
+    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order."""
     found: dict[int, Robot] = {}
-    for some in side_by_side.watched(first, sample, ends):
+    for some in side_by_side.watched(first, scores, ends):
         for place, (number, peak) in enumerate(zip(some.robots.tolist(), some.peaks(), strict=True)):
             low, high = int(ends[number - 1]) if number else 0, int(ends[number])
-            name, passed = str(rows["robot"][low]), int(np.count_nonzero(sample.passed[low:high]))
             world, bound = evidence(first, peak)
             status = None
             if max(world, bound) >= -np.log2(q):
                 monitor = fresh(first)
                 monitor.processes, monitor.pool = some.state(place)
-                new = new_cells(others, transitions, int(rows["number"][low]), high - low, recorded)
-                monitor.told(part(sample, low, high), np.asarray(rows["time"][low:high], np.float64), new)
+                own = scores.between(low, high)
+                monitor.told(own.passed, own.total, own.steps, own.time, own.new())
                 status = status_of(monitor)
-            found[number] = Robot(name, high - low, passed, world, bound, status)
+            passed = int(np.count_nonzero(scores.passed[low:high]))
+            found[number] = Robot(names[number], high - low, passed, world, bound, status)
     return [found[number] for number in range(len(ends))]
 
 
@@ -128,19 +123,6 @@ def fresh(first: Monitor) -> Monitor:
     """Return a monitor without missions, of the same recording."""
     processes = restarts.begun(first.processes.threshold)
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
-
-
-def new_cells(
-    others: Sequence[Cell], transitions: Columns, begin: int, count: int, recorded: int
-) -> list[Cell]:
-    """Return the cells that the recording lacks, once for each mission that visited them."""
-    low, high = np.searchsorted(transitions["number"], (begin, begin + count)).tolist()
-    cell = np.asarray(transitions["cell"][low:high])
-    there = cell >= recorded
-    if not there.any():
-        return []
-    pairs = np.stack([np.asarray(transitions["number"][low:high])[there], cell[there]], axis=1)
-    return [others[row - recorded] for row in np.unique(pairs, axis=0)[:, 1].tolist()]
 
 
 def robot(name: str, monitor: Monitor, q: float) -> Robot:

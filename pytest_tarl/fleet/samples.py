@@ -1,17 +1,20 @@
-"""Rows of missions as the sample that the comparison and the watch read."""
+"""Missions as the samples that the comparison reads, with the transitions that workers return."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from pytest_tarl.fleet.database import Columns, Database
-from pytest_tarl.learning.packing import represented_chain
-from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
+from pytest_tarl.fleet.engine import Engine
+from pytest_tarl.fleet.partitions import Transitions, bare, watched_chain
+from pytest_tarl.fleet.scores import transitions
+from pytest_tarl.fleet.store import Store
+from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.sensors import Cell
 
-COLUMNS = "number, mission, robot, time, passed, total, steps"  # of missions
+COLUMNS = "number, mission, passed, total, steps"  # of missions
 COMPARED = """
     CREATE OR REPLACE TEMP TABLE compared AS
     SELECT number, group_number FROM (
@@ -22,113 +25,60 @@ MISSIONS = f"""
     SELECT group_number, {COLUMNS} FROM missions WHERE number IN (
         SELECT number FROM compared WHERE group_number >= ? AND group_number < ?
     ) ORDER BY group_number, number"""  # noqa: S608 - a constant
-TRANSITIONS = """
-    SELECT m.group_number, c.number, c.cell, c.next_cell, c.count, c.reward
-    FROM cells AS c JOIN compared AS m ON c.number = m.number
-    WHERE m.group_number >= ? AND m.group_number < ? ORDER BY ALL"""
-PORTION = 50_000  # missions read together
+PORTION = 100_000  # missions read together
 
 
-def groups(database: Database, count: int, most: int) -> Iterator[Sample]:
+def groups(
+    database: Database, where: Store, engine: Engine, cells: tuple[Cell, ...], count: int, most: int
+) -> Iterator[Sample]:
     """Yield at most `most` missions of each of `count` groups: those with the smallest identities, random digests."""
     database.run(COMPARED, most)
-    together = max(1, PORTION // most)
-    for begin in range(0, count, together):
-        rows = database.columns(MISSIONS, begin, begin + together)
-        transitions = database.columns(TRANSITIONS, begin, begin + together)
-        for group in range(begin, min(begin + together, count)):
-            yield _grouped(_of(group, rows), _of(group, transitions), database.cells)
+    sizes = database.columns(
+        "SELECT count(*) AS size FROM compared GROUP BY group_number ORDER BY group_number"
+    )
+    ends = np.cumsum(np.asarray(sizes["size"]).astype(np.int64))
+    begin = 0
+    while begin < count:
+        before = int(ends[begin - 1]) if begin else 0
+        end = max(begin + 1, int(np.searchsorted(ends, before + PORTION, side="right")))
+        rows = database.columns(MISSIONS, begin, end)
+        numbers = np.asarray(rows["number"]).astype(np.int64)
+        found = transitions(database, where, cells, engine, np.sort(numbers))
+        for group in range(begin, end):
+            low, high = np.searchsorted(rows["group_number"], (group, group + 1)).tolist()
+            yield _grouped({name: column[low:high] for name, column in rows.items()}, found, cells)
+        begin = end
 
 
-def _of(group: int, columns: Columns) -> Columns:
-    low, high = np.searchsorted(columns["group_number"], (group, group + 1)).tolist()
-    return {name: column[low:high] for name, column in columns.items()}
-
-
-def _grouped(rows: Columns, transitions: Columns, cells: tuple[Cell, ...]) -> Sample:
+def _grouped(rows: Columns, every: Transitions, cells: tuple[Cell, ...]) -> Sample:
     numbers = np.asarray(rows["number"]).astype(np.int64)
-    episode: Ints = np.asarray(np.searchsorted(numbers, transitions["number"]), np.int64)
-    return _sample(rows, _chain(episode, transitions), cells)
-
-
-def following(database: Database, first: int, end: int) -> tuple[Columns, Columns]:
-    """Return the rows of the missions `first` to `end` - 1 and of their transitions, in order."""
-    rows = database.columns(
-        f"SELECT {COLUMNS} FROM missions WHERE number >= ? AND number < ? ORDER BY number",  # noqa: S608 - a constant
-        first,
-        end,
-    )
-    return rows, database.columns(
-        "SELECT * FROM cells WHERE number >= ? AND number < ? ORDER BY ALL", first, end
-    )
-
-
-def watched(rows: Columns, transitions: Columns, recorded: int) -> Sample:
-    """Return missions over the cells of a recording and one more for all others, rounded as in a recording."""
-    numbers = rows["number"].astype(np.int64)
-    episode: Ints = np.asarray(np.searchsorted(numbers, transitions["number"]), np.int64)
-    chain = represented_chain(_without_others(_chain(episode, transitions), recorded))
-    return _sample(rows, chain, ((),) * (recorded + 1))
-
-
-def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Give all cells that the recording lacks one number, and join the transitions that become equal."""
-    width = recorded + 1
-    cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
-    if not max(chain.cell.max(initial=0), chain.next_cell.max(initial=0)) >= recorded:
-        return chain
-    codes, place = np.unique((chain.episode * width + cell) * (width + 1) + after + 1, return_inverse=True)
-    return Chain(
-        episode=codes // (width + 1) // width,
-        cell=codes // (width + 1) % width,
-        next_cell=codes % (width + 1) - 1,
-        count=sum_by(place, chain.count, codes.size).astype(np.int64),
-        reward=sum_by(place, chain.reward, codes.size),
-        parts=np.zeros((codes.size, 0)),
-    )
-
-
-def _chain(episode: Ints, transitions: Columns) -> Chain:
-    cell, after, count = (
-        np.asarray(transitions[name]).astype(np.int64) for name in ("cell", "next_cell", "count")
-    )
-    reward = np.asarray(transitions["reward"], np.float64)
-    return Chain(
-        episode.astype(np.int64),
-        cell,
-        np.where(after < 0, END, after),
-        count,
-        reward,
-        np.zeros((cell.size, 0)),
-    )
-
-
-def _sample(rows: Columns, chain: Chain, cells: tuple[Cell, ...]) -> Sample:
     total: Floats = np.asarray(rows["total"], np.float64)
-    steps: Ints = np.asarray(rows["steps"]).astype(np.int64)
     return Sample(
         cells=cells,
         seeds=tuple(int(one) for one in rows["mission"].tolist()),
         passed=np.asarray(rows["passed"]).astype(bool),
         total=total,
-        steps=steps,
+        steps=np.asarray(rows["steps"]).astype(np.int64),
         part_names=(),
-        chain=chain,
+        chain=every.of(numbers).chain(numbers),
         lists=(),
     )
 
 
-def part(sample: Sample, begin: int, end: int) -> Sample:
-    """Return the missions `begin` to `end` - 1 of a sample whose rows are sorted by mission."""
-    first, last = np.searchsorted(sample.chain.episode, (begin, end)).tolist()
-    columns = {name: column[first:last] for name, column in vars(sample.chain).items()}
-    return Sample(
-        cells=sample.cells,
-        seeds=sample.seeds[begin:end],
-        passed=sample.passed[begin:end],
-        total=sample.total[begin:end],
-        steps=sample.steps[begin:end],
-        part_names=(),
-        chain=Chain(**columns | {"episode": columns["episode"] - begin}),
-        lists=(),
-    )
+def following(
+    database: Database, where: Store, engine: Engine, cells: Sequence[Cell], spans: Sequence[tuple[int, int]]
+) -> Iterator[Sample]:
+    """Yield the missions of each span of numbers, with one more cell than `cells`, those of the recording."""
+    numbers = [np.arange(low, high) for low, high in spans]
+    every: Ints = np.unique(np.concatenate([np.empty(0, np.int64), *numbers]))
+    found = transitions(database, where, cells, engine, every)
+    for low, high in spans:
+        rows = database.columns(
+            f"SELECT {COLUMNS} FROM missions WHERE number >= ? AND number < ? ORDER BY number",  # noqa: S608 - a constant
+            low,
+            high,
+        )
+        chain = watched_chain(found.between(low, high).chain(np.arange(low, high)), len(cells))
+        total = np.asarray(rows["total"], np.float64)
+        steps = np.asarray(rows["steps"]).astype(np.int64)
+        yield bare(len(cells) + 1, np.asarray(rows["passed"]).astype(bool), total, steps, chain)

@@ -11,15 +11,13 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from pytest_tarl.fleet.samples import part
-from pytest_tarl.learning.tables import Floats, Ints, Sample
+from pytest_tarl.fleet.scores import Scores
+from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import conformal, judging
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes
-from pytest_tarl.monitoring.scores import binned
 
 COLUMNS = 512  # processes judged together, so that their stakes stay in the processor's cache
-ENTRIES = 1_000_000  # entries of a table of missions and cells
 
 
 @dataclass(frozen=True)
@@ -49,32 +47,21 @@ class Watched:
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
 
 
-def watched(first: Monitor, sample: Sample, ends: Ints) -> Iterator[Watched]:
+def watched(first: Monitor, scores: Scores, ends: Ints) -> Iterator[Watched]:
     """Judge the missions of robots; those of robot n end before `ends[n]`. Yield robots with similar numbers together.
 
-    `first` is a monitor without missions. The cells of the sample are those of its scale and one more.
+    `first` is a monitor without missions.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins
-    bins = _binned(first, sample)
     together = max(1, COLUMNS // first.processes.count)
     order = np.argsort(counts, kind="stable")
     for begin in range(0, order.size, together):
         robots = order[begin : begin + together]
-        yield _judged(first, sample, bins, robots, begins[robots], counts[robots])
+        yield _judged(first, scores, robots, begins[robots], counts[robots])
 
 
-def _binned(first: Monitor, sample: Sample) -> Ints:
-    """Return the bins of all scores, shape (missions, scores), computed in portions of bounded size."""
-    size = max(1, ENTRIES // len(sample.cells))
-    some = [
-        binned(first.scale, part(sample, begin, min(begin + size, sample.episodes)))
-        for begin in range(0, sample.episodes, size)
-    ]
-    return np.concatenate(some)
-
-
-def _judged(first: Monitor, sample: Sample, bins: Ints, robots: Ints, begins: Ints, counts: Ints) -> Watched:
+def _judged(first: Monitor, scores: Scores, robots: Ints, begins: Ints, counts: Ints) -> Watched:
     bounds, size = len(first.bounds), len(robots)
     processes = judging.begun(first.processes.threshold, bounds, size)
     pool = np.tile(first.pool, (size, 1))
@@ -86,9 +73,9 @@ def _judged(first: Monitor, sample: Sample, bins: Ints, robots: Ints, begins: In
             first.bounds,
             processes,
             pool,
-            sample.passed[mission],
-            sample.total[mission],
-            np.where(there[:, :, None], bins[mission], -1),
+            scores.passed[mission],
+            scores.total[mission],
+            np.where(there[:, :, None], scores.bins[mission], -1).astype(np.int64),
             first.draws(begin, number.size),
             begin,
             np.clip(counts - begin, 0, number.size),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,12 +65,15 @@ class Monitor:
 
         Cells are numbered as in the scale; all others, which are listed in `new`, share the next number.
         """
-        bins = binned(self.scale, sample)
         self.moments.add(self.counts.missions, time.tolist())
-        for begin in range(0, sample.episodes, conformal.TOGETHER):
+        self.judge(sample.passed, sample.total, binned(self.scale, sample))
+        self._count(sample.steps, sample.total, new)
+
+    def judge(self, passed: NDArray[np.bool_], total: Floats, bins: NDArray[np.integer[Any]]) -> None:
+        """Update the processes with missions in order; `bins` are those of their scores, shape (missions, scores)."""
+        for begin in range(0, len(passed), conformal.TOGETHER):
             some = slice(begin, begin + conformal.TOGETHER)
-            self._judge(sample.passed[some], sample.total[some], bins[some])
-        self._count(sample, new)
+            self._judge(passed[some], total[some], bins[some].astype(np.int64))
 
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
         """Update the processes with some missions and add them to the pool."""
@@ -92,19 +96,26 @@ class Monitor:
             found.append(drawn[1][max(0, first - begin) : max(0, first + count - begin)])
         return np.concatenate(found)
 
-    def told(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
+    def told(
+        self,
+        passed: NDArray[np.bool_],
+        total: Floats,
+        steps: Ints,
+        time: Floats,
+        new: Sequence[Cell] = (),
+    ) -> None:
         """Count all missions of a monitor whose processes were updated already (judging.py)."""
         self.moments.add(self.counts.missions, time.tolist())
-        self.counts.missions += sample.episodes
-        self.counts.passed += int(sample.passed.sum())
-        self._count(sample, new)
+        self.counts.missions += len(passed)
+        self.counts.passed += int(passed.sum())
+        self._count(steps, total, new)
 
-    def _count(self, sample: Sample, new: Sequence[Cell]) -> None:
-        self.counts.without_steps += int((sample.steps == 0).sum())
-        self.counts.without_rewards += int((np.isnan(sample.total) & (sample.steps > 0)).sum())
+    def _count(self, steps: Ints, total: Floats, new: Sequence[Cell]) -> None:
+        self.counts.without_steps += int((steps == 0).sum())
+        self.counts.without_rewards += int((np.isnan(total) & (steps > 0)).sum())
         for bound in self.bounds:
             if bound.what == "total":
-                outside = (sample.total < bound.low) | (sample.total > bound.high)
+                outside = (total < bound.low) | (total > bound.high)
                 self.counts.beyond_range += int(outside.sum())
         for cell in new:
             if cell in self.new or len(self.new) < MOST_NEW:

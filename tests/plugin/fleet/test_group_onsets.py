@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pytest_tarl.fleet import group_onsets, ingest
+from pytest_tarl.fleet import ingest, robots
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.question import Question, answer
 from tests.plugin.monitoring import missions
@@ -40,6 +40,6 @@ def test_a_season_that_no_robot_shows_is_found_in_its_site_with_its_onset(data: 
 def test_a_group_of_one_robot_has_the_evidence_of_the_robot(
     data: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(group_onsets, "PORTION", 7)
+    monkeypatch.setattr(robots, "PORTION", 7)
     found = answer(Question(data, by=("robot",), robot="south203"))
     assert found.onsets.every == found.robots.every

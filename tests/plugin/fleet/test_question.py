@@ -22,7 +22,7 @@ import pytest
 
 from pytest_tarl.commands.cli import main
 from pytest_tarl.errors import FixtureError, FleetError, SettingsError
-from pytest_tarl.fleet import dataset, document, engine, groups, ingest, robots
+from pytest_tarl.fleet import dataset, document, engine, groups, ingest, robots, samples, scores
 from pytest_tarl.fleet.database import Filter, opened
 from pytest_tarl.fleet.ingest import Order
 from pytest_tarl.fleet.logged_samples import logged_samples
@@ -155,6 +155,8 @@ def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
         for path in sorted((tmp_path / "data").rglob("*.parquet")):
             path.with_name(f"copy{path.name}").write_bytes(path.read_bytes())
     monkeypatch.setattr(robots, "PORTION", random.choice([1, 100]))
+    monkeypatch.setattr(scores, "PORTION", random.choice([1, 100]))
+    monkeypatch.setattr(samples, "PORTION", random.choice([1, 100, 100_000]))
     connect = duckdb.connect
     threads = (1, 7)[seed]
     monkeypatch.setattr(
@@ -311,9 +313,7 @@ def test_rows_beyond_the_memory_move_to_a_folder_that_is_removed(
         "connect",
         lambda *args, config: used.append(Path(config["temp_directory"])) or connect(*args, config=config),
     )
-    with opened(
-        store(str(folder / "data")), dataset.parts(store(str(folder / "data"))), (), (), Filter()
-    ) as one:
+    with opened(store(str(folder / "data")), dataset.parts(store(str(folder / "data"))), (), Filter()) as one:
         one.run("SET memory_limit = '24MB'")
         one.run("CREATE TEMP TABLE large AS SELECT hash(i) AS h FROM range(5000000) AS t(i)")
         assert any(used[0].iterdir())
@@ -374,17 +374,40 @@ def test_an_unreachable_cluster_is_one_sentence(
     assert err.count("\n") == 1
 
 
-def test_tasks_that_wait_are_few_and_are_cancelled_with_their_question() -> None:
+@pytest.mark.parametrize("workers", [1, 2, 7])
+def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: int) -> None:
     ran: list[int] = []
 
     def tasks() -> Iterator[tuple[int]]:
         yield from ((number,) for number in range(100))
 
-    with engine.local(1) as some:
-        results = some.each(ran.append, tasks())
+    def squared(number: int) -> int:
+        ran.append(number)
+        return number**2
+
+    with engine.local(workers) as some:
+        assert list(some.each(squared, tasks())) == [number**2 for number in range(100)]
+        ran.clear()
+        results = some.each(squared, tasks())
         next(results)
-        results.close()
-    assert 1 <= len(ran) <= 1 + engine.AHEAD
+        results.close()  # type: ignore[attr-defined]
+    assert 1 <= len(ran) <= engine.WINDOW * workers
+
+
+def test_a_task_has_its_arguments_whatever_they_look_like() -> None:
+    odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
+    with engine.local(1) as some:
+        assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd
+
+
+@pytest.mark.parametrize("workers", [1, 2, 7])
+def test_the_number_of_workers_does_not_change_a_bit(
+    folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
+) -> None:
+    for module in (robots, scores, samples):
+        monkeypatch.setattr(module, "PORTION", 20)
+    again = answer(Question(str(folder / "data"), workers=workers))
+    assert document.text(again) == document.text(found)
 
 
 def test_two_runs_that_add_the_same_missions_at_once_count_them_once(

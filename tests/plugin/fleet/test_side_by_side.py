@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import hypothesis.strategies as st
 import numpy as np
@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given, settings
 
 from pytest_tarl.fleet import robots, side_by_side
-from pytest_tarl.fleet.samples import part
+from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Chain, Sample
 from pytest_tarl.monitoring import restarts
 from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.monitoring.restarts import Processes
+from pytest_tarl.monitoring.scores import binned
 from tests.plugin.monitoring import missions
 
 
@@ -55,29 +56,41 @@ def field_missions(counts: list[int], width: int, seed: int) -> Sample:
 @given(
     counts=st.lists(st.integers(1, 150), min_size=1, max_size=7),
     together=st.sampled_from([1, 60, 1000]),
-    entries=st.sampled_from([1, 400, 10**6]),
     large=st.sampled_from([8, 600]),
     seed=st.integers(0, 99),
 )
 @settings(max_examples=6, deadline=None)
 def test_each_robot_has_the_state_of_its_own_monitor(
-    recording: Fixture, counts: list[int], together: int, entries: int, large: int, seed: int
+    recording: Fixture, counts: list[int], together: int, large: int, seed: int
 ) -> None:
     first = begun(recording, alpha=0.05, seed=3)
     sample = field_missions(counts, len(recording.sample.cells) + 1, seed)
     ends = np.cumsum(counts)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(side_by_side, "COLUMNS", together)
-        patched.setattr(side_by_side, "ENTRIES", entries)
         patched.setattr(restarts, "LARGE", large)  # so that stakes are scaled down at different missions
         found = {}
-        for some in side_by_side.watched(first, sample, ends):
+        none = np.empty(0, np.int64)
+        time = np.arange(sample.episodes, dtype=float)
+        bins = binned(first.scale, sample).astype(np.int8)
+        scores = Scores(sample.passed, sample.total, sample.steps, time, bins, none, none, ())
+        for some in side_by_side.watched(first, scores, ends):
             for place, robot in enumerate(some.robots.tolist()):
                 found[robot] = (*some.state(place), some.peaks()[place])
         assert sorted(found) == [*range(len(counts))]
         for robot, end in enumerate(ends.tolist()):
             alone = robots.fresh(first)
-            mine = part(sample, end - counts[robot], end)
+            low = end - counts[robot]
+            rows = (sample.chain.episode >= low) & (sample.chain.episode < end)
+            columns = {name: column[rows] for name, column in vars(sample.chain).items()}
+            mine = replace(
+                sample,
+                seeds=sample.seeds[low:end],
+                passed=sample.passed[low:end],
+                total=sample.total[low:end],
+                steps=sample.steps[low:end],
+                chain=Chain(**columns | {"episode": columns["episode"] - low}),
+            )
             alone.take(mine, np.arange(mine.episodes, dtype=float))
             processes, pool, peak = found[robot]
             assert np.array_equal(pool, alone.pool)

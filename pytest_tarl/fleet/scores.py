@@ -1,0 +1,106 @@
+"""The scores of all missions in question: a byte each, computed where their rows lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.fleet import partitions
+from pytest_tarl.fleet.database import Database
+from pytest_tarl.fleet.engine import Engine
+from pytest_tarl.fleet.store import Store
+from pytest_tarl.learning.tables import Floats, Ints
+from pytest_tarl.monitoring.scores import Scale
+from pytest_tarl.sensors import Cell
+
+PORTION = 25_000  # missions scored together
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Missions in some order: results, start in seconds since 1970, and bins of scores, shape (missions, scores).
+
+    `new_mission` and `new_cell` have a row for each cell that a mission visited and the recording lacks: the place of
+    the mission, in order, and the cell as an index into `others`.
+    """
+
+    passed: NDArray[np.bool_]
+    total: Floats
+    steps: Ints
+    time: Floats
+    bins: NDArray[np.int8]
+    new_mission: Ints
+    new_cell: Ints
+    others: tuple[Cell, ...]
+
+    def between(self, begin: int, end: int) -> Scores:
+        """Return the missions `begin` to `end` - 1."""
+        first, last = np.searchsorted(self.new_mission, (begin, end)).tolist()
+        return Scores(
+            self.passed[begin:end],
+            self.total[begin:end],
+            self.steps[begin:end],
+            self.time[begin:end],
+            self.bins[begin:end],
+            self.new_mission[first:last] - begin,
+            self.new_cell[first:last],
+            self.others,
+        )
+
+    def ordered(self, order: Ints) -> Scores:
+        """Return the missions in another order; `order` has each of them once."""
+        place = np.empty_like(order)
+        place[order] = np.arange(order.size)
+        moved = place[self.new_mission]
+        rows = np.lexsort((self.new_cell, moved))
+        return Scores(
+            self.passed[order],
+            self.total[order],
+            self.steps[order],
+            self.time[order],
+            self.bins[order],
+            moved[rows],
+            self.new_cell[rows],
+            self.others,
+        )
+
+    def new(self) -> list[Cell]:
+        """Return the cells that the recording lacks, once for each mission that visited them."""
+        return [self.others[number] for number in self.new_cell.tolist()]
+
+
+def scored(database: Database, where: Store, scale: Scale, engine: Engine) -> Scores:
+    """Return the scores of all missions, in the order of their numbers."""
+    results = database.columns("SELECT passed, total, steps, time FROM missions ORDER BY number")
+    bins = np.empty((len(results["total"]), len(scale.edges)), np.int8)
+    new: list[tuple[int, Cell]] = []
+    tasks = ((where, some, scale) for some in partitions.portions(database.wanted, PORTION))
+    for found in engine.each(partitions.scored, tasks):
+        bins[found.numbers] = found.bins
+        new += found.new
+    others = tuple(sorted({cell for _, cell in new}))
+    code = {cell: number for number, cell in enumerate(others)}
+    rows = sorted((mission, code[cell]) for mission, cell in new)
+    return Scores(
+        passed=np.asarray(results["passed"]).astype(bool),
+        total=np.asarray(results["total"], np.float64),
+        steps=np.asarray(results["steps"]).astype(np.int64),
+        time=np.asarray(results["time"], np.float64),
+        bins=bins,
+        new_mission=np.array([mission for mission, _ in rows], np.int64),
+        new_cell=np.array([number for _, number in rows], np.int64),
+        others=others,
+    )
+
+
+def transitions(
+    database: Database, where: Store, cells: Sequence[Cell], engine: Engine, missions: Ints
+) -> partitions.Transitions:
+    """Return the transitions of some missions, given by their sorted numbers."""
+    wanted = [one.only(np.isin(one.numbers, missions)) for one in database.wanted]
+    number = partitions.numbered(cells)
+    tasks = ((where, some, number) for some in partitions.portions(wanted, PORTION))
+    return partitions.sorted_rows([*engine.each(partitions.transitions, tasks)])
