@@ -99,8 +99,10 @@ def scored(database: Database, where: Store, scale: Scale, engine: Engine) -> Sc
 def transitions(
     database: Database, where: Store, cells: Sequence[Cell], engine: Engine, missions: Ints
 ) -> partitions.Transitions:
-    """Return the transitions of some missions, given by their sorted numbers."""
-    wanted = [one.only(np.isin(one.numbers, missions)) for one in database.wanted]
+    """Return the transitions of some missions, given by their numbers."""
+    chosen = np.zeros(database.missions, bool)
+    chosen[missions] = True
+    wanted = [one.only(chosen[one.numbers]) for one in database.wanted]
     number = partitions.numbered(cells)
     tasks = ((where, some, number) for some in partitions.portions(wanted, PORTION))
     return partitions.sorted_rows([*engine.each(partitions.transitions, tasks)])
