@@ -185,7 +185,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--cluster",
         default="",
         metavar="ADDRESS",
-        help="judge on the workers of this Dask scheduler, such as tcp://192.0.2.1:8786",
+        help="judge on the workers of this Dask scheduler, which read the data set, such as tcp://192.0.2.1:8786",
     )
     flag(
         "--workers",
