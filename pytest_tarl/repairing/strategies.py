@@ -39,6 +39,7 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             generator,
             late=same,
             aside=aside_operands(order),
+            structure_follows=order.options.structure,
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -14,8 +14,9 @@ from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
 EXACT = 0.01  # deviation up to which a mission goes as designed
-CLOSER = 0.5  # share of a candidate's deviation that another may have at most to be preferred
-RIVALS = 6  # runs of other constants beside a candidate that deviates
+CLOSER = 0.6  # share of a candidate's deviation that another may have at most to be preferred
+COMPARED = 3  # missions on which two candidates that hold are compared
+RIVALS = 8  # runs after which no further constant is tried beside a candidate that deviates
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:

@@ -15,7 +15,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.closeness import CLOSER, EXACT, RIVALS, rivals
+from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
@@ -53,7 +53,8 @@ class Sweep:
 
     The first two guards are used throughout (the second is the second opinion), the others only at the end. With
     `proposed` the operands' values are proposals that the program does not contain yet, so they are first tried
-    unchanged; where such a change is idle, a factor that makes it `weaker` is left out.
+    unchanged; where such a change is idle, a factor that makes it `weaker` is left out. Only parameters of one change
+    are then combined. If a search for structural changes follows, the search ends early where nothing gains.
     """
 
     def __init__(
@@ -68,7 +69,9 @@ class Sweep:
         late: Sequence[Operand] = (),
         aside: Sequence[Operand] = (),
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
+        structure_follows: bool = False,
     ) -> None:
+        self.structure_follows = structure_follows
         self.units = units(operands)
         self.late = units(late)
         self.aside = units(aside)
@@ -102,6 +105,8 @@ class Sweep:
         if not gained:
             yield from self._together()
         yield from self._late_ones((*self.aside, *self.late), chief)
+        if self.structure_follows and not self._gains.anything():
+            return
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
@@ -273,8 +278,8 @@ class Sweep:
 
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield another constant first if missions go much more as designed with it: it is nearer to the cause."""
-        seeds = [self.goal.pairs[pair].seed]
-        if self._compared or (mine := self._deviation(found, seeds)) <= EXACT:
+        seeds = [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
+        if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
             return
         self._compared = True
         begun = self.trials.spent
@@ -287,13 +292,9 @@ class Sweep:
             near = self._near(candidate, pair)
             if near is None:
                 continue
-            holds = (
-                near
-                and self._deviation(candidate, seeds) <= CLOSER * mine
-                and self._settled.holds(candidate, self.trials, self.goal, pair)
-            )
+            holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
             self._learn(other, candidate, step)
-            if holds:
+            if holds and self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
                 yield candidate
                 self._refused.add((other, found.guard))
                 return
@@ -367,7 +368,11 @@ class Sweep:
         gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
         if unit is None or guard is None or gain <= self.slack:
             return
-        yield from self._joining(self._gains.under(guard)).candidates(Joint(((unit, factor),), guard))
+        among = [
+            one for one in self.units if not self.proposed or one.operands[0].span == unit.operands[0].span
+        ]
+        joining = self._joining(self._gains.under(guard), among)
+        yield from joining.candidates(Joint(((unit, factor),), guard))
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
@@ -376,13 +381,21 @@ class Sweep:
         """
         self._refused -= {tried for tried in self._refused if tried[1] == guard}
         leaders = self._gains.leaders(guard)
-        if leaders and leaders[0][0] > self.slack:
+        if leaders and leaders[0][0] > self.slack and not self.proposed:
             hidden = [unit for unit in self.units if not self._gains.moves(unit)]
             yield from self._joining({}).unions([part for _, part in leaders], guard, hidden)
 
-    def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
+    def _joining(
+        self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
+    ) -> ForwardSelection:
         return ForwardSelection(
-            self.units, self.mutate, self.trials, self.goal, gains, self.slack, self._settled
+            self.units if among is None else among,
+            self.mutate,
+            self.trials,
+            self.goal,
+            gains,
+            self.slack,
+            self._settled,
         )
 
 
