@@ -1,0 +1,72 @@
+"""Sensors that tell a drift, and the places at which their templates are tried."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.patching.document import document
+from pytest_tarl.repairing import typical_sizes
+from pytest_tarl.repairing.telling_sensors import telling, usual
+from pytest_tarl.repairing.template_places import spots
+from tarl_lint.api import analyse
+from tests.plugin.repairing.test_smoothing import TOOL, order
+
+AIMING = """\
+import rospy
+from std_msgs.msg import Float32
+from table import elevation, name
+
+
+class Cannon:
+    def __init__(self):
+        self.out = rospy.Publisher("/out", Float32, queue_size=1)
+        rospy.Subscriber("/far", Float32, self.on_far)
+
+    def on_far(self, msg):
+        self.out.publish(elevation(msg.data))
+
+
+if __name__ == "__main__":
+    rospy.init_node("cannon")
+    Cannon()
+    rospy.spin()
+"""
+TABLE = "def elevation(far):\n    return far * 0.5\n\n\ndef name(far):\n    return str(far)\n"
+
+
+@pytest.mark.parametrize(("designed", "drifted", "tells"), [(0, 5, True), (5, 0, True), (3, 3, False)])
+def test_a_sensor_tells_if_it_differs_between_the_worlds(designed: int, drifted: int, tells: bool) -> None:
+    assert telling(order(designed, drifted)) == ([TOOL] if tells else [])
+
+
+def test_a_sensor_that_cannot_be_calculated_with_does_not_tell() -> None:
+    colour = Sensor("colour", topic="/colour", field="data", categories=("red", "blue"))
+    assert telling(order(0, 1, colour)) == []
+
+
+@pytest.mark.parametrize(("low", "high", "mean"), [(0, 1, 0.55), (-1, 0, 0.45), (-0.55, 0.45, 1.0)])
+def test_the_usual_size_is_that_in_the_drifted_world(low: float, high: float, mean: float) -> None:
+    sensor = Sensor("tool", topic="/tool", field="data", low=low, high=high, bins=10)
+    assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
+
+
+def test_a_call_that_returns_a_number_is_a_place_for_templates(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "aiming.py").write_text(AIMING)
+    (tmp_path / "table.py").write_text(TABLE)
+    analysis = analyse([tmp_path / "aiming.py", tmp_path / "table.py"], root=tmp_path)
+    returned = {str(step.site): 12.0 for step in analysis.sites if step.code.startswith("return")}
+    assert len(returned) == 1
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: returned)
+    asked: Any = order(0, 5)
+    asked.analysis, asked.comparison.culprits = analysis, ()
+    found = {spot.source.source(spot.node): spot for spot in spots(asked)}
+    assert set(found) == {"elevation(msg.data)", "far * 0.5"}
+    call, inner = found["elevation(msg.data)"], found["far * 0.5"]
+    assert (call.typical, call.hears, inner.hears) == (12.0, True, False)
+    assert call.source is document("aiming.py", AIMING)

@@ -1,0 +1,52 @@
+"""Where the next values of a constant lie, and which constants need none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.refining import between
+from pytest_tarl.searching.units import Unit
+from tests.plugin.searching.test_search import operand
+
+
+@pytest.mark.parametrize(
+    ("gains", "expected"),
+    [
+        ({1.0: 0.0, 2.2: 5.0}, [1.483, 5.06]),  # the outermost factor: inward and outward
+        ({1.0: 0.0, 2.2: 5.0, 5.0: 3.0}, [1.483, 3.317]),
+        ({1.0: 0.0, 2.2: 0.0, 0.4: 0.0}, []),  # nothing gains
+        (
+            {1.1: 0.0, 1.16: 5.0, 1.22: 0.0, 1.0: 0.0},
+            [1.13, 1.19],
+        ),  # a sharp peak is narrower than its neighbours
+        ({1.1: 4.0, 1.16: 5.0, 1.22: 3.0, 1.0: 0.0}, []),  # a flat one is not
+        ({1.0: 0.0, 1.1: 2.0, 1.05: 0.0, 1.16: 0.0}, []),  # and a small one may be luck
+        ({1.0: 0.0, 1.1: 9.5, 1.05: 9.0, 1.16: 9.0}, [1.075, 1.13]),  # nearly there
+        ({1.0: 0.0, 1.14: 5.0, 1.13: 0.0, 1.15: 0.0}, []),  # 2 % are the limit
+        ({1.0: 0.0, -1.0: 5.0, 2.2: 1.0}, [-0.435, -2.3]),  # the sign stays
+    ],
+)
+def test_the_next_factors_lie_halfway_to_the_neighbours(
+    gains: dict[float, float], expected: list[float]
+) -> None:
+    assert between(gains, wanted=10.0) == pytest.approx(expected, abs=0.002)
+
+
+def test_uses_of_one_constant_that_act_alike_are_tried_once() -> None:
+    definition = operand(40, "SPEED", 2.0).span
+    passed, used = (Unit((replace(operand(line, "speed", 2.0), definition=definition),)) for line in (3, 4))
+    other = Unit((replace(operand(5, "speed", 2.0), definition=operand(41, "SPEED", 2.0).span),))
+    gains = Gains(0.1)
+    for unit in (passed, used, other):
+        gains.enter((unit, ALWAYS), 2.2, 0.01)
+    assert gains.distinct([passed, used, other]) == [passed, used, other]  # one factor may be chance
+    for unit in (passed, used, other):
+        gains.enter((unit, ALWAYS), 0.4, -0.2)
+    assert gains.distinct([passed, used, other]) == [passed, other]
+    gains.enter((used, ALWAYS), 1.5, 0.3)
+    gains.enter((passed, ALWAYS), 1.5, 0.2)
+    assert gains.distinct([passed, used, other]) == [passed, used, other]
