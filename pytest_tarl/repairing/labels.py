@@ -1,7 +1,8 @@
-"""Constants that are no quantities: members of an enumeration, and values of which only the truth is asked.
+"""Constants that are no quantities: members of an enumeration, values of which only the truth is asked, and exponents.
 
 A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
-nothing. No search moves these. Booleans and zeros stay, since their truth can change.
+nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, no choice of the author. No search moves these. Booleans
+and zeros stay, since their truth can change.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pytest_tarl.patching.document import Document, document
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
+GEOMETRIC = (0.5, 2, 3)  # exponents of roots, areas and volumes
 _ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
 
 
@@ -48,8 +50,17 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
         return False
     if not isinstance(operand.value, bool) and is_member(source, node, analysis.sources.values()):
         return True
+    if _is_exponent(source, node):
+        return True
     changeable = isinstance(operand.value, bool) or operand.value == 0
     return not changeable and _only_truth(source, node)
+
+
+def _is_exponent(source: Document, node: ast.expr) -> bool:
+    """Return whether an expression is a literal exponent as geometry has it."""
+    around = source.parents.get(node)
+    power = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Pow) and around.right is node
+    return power and isinstance(node, ast.Constant) and node.value in GEOMETRIC
 
 
 def _only_truth(source: Document, node: ast.expr) -> bool:

@@ -1,4 +1,4 @@
-"""A search moves quantities: no members of an enumeration, and nothing of which only the truth is asked."""
+"""A search moves quantities: no members of an enumeration, exponents, and nothing of which only the truth is asked."""
 
 from __future__ import annotations
 
@@ -26,6 +26,11 @@ MODES = "from enum import Enum\n\n\nclass Mode(Enum):\n    WAIT = 1\n    DRIVE =
         ("if self.eager and not self.done: step()", "self.done", True, True),
         ("if self.eager and not self.done: step()", "self.done", 0, True),
         ("if self.eager > 2.5: step()", "self.eager", 3.0, True),
+        ("publish((x**2 + y**2) ** 0.5)", "2", 2, False),
+        ("publish((x**2 + y**2) ** 0.5)", "0.5", 0.5, False),
+        ("publish(x**1.8 * 2)", "1.8", 1.8, True),
+        ("publish(x**1.8 * 2)", "2", 2, True),
+        ("publish(2**x)", "2", 2, True),
         ("publish((self.eager or 1.0) * x)", "self.eager", 3.0, True),
         ("publish(LIMIT if self.eager else x)", "self.eager", 3.0, False),
         ("publish(LIMIT if self.eager else x)", "LIMIT", 0.8, True),

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.patching.document import document
 from pytest_tarl.repairing import typical_sizes
 from pytest_tarl.repairing.telling_sensors import telling, usual
 from pytest_tarl.repairing.template_places import spots
@@ -69,4 +68,3 @@ def test_a_call_that_returns_a_number_is_a_place_for_templates(
     assert set(found) == {"elevation(msg.data)", "far * 0.5"}
     call, inner = found["elevation(msg.data)"], found["far * 0.5"]
     assert (call.typical, call.hears, inner.hears) == (12.0, True, False)
-    assert call.source is document("aiming.py", AIMING)
