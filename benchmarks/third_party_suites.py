@@ -111,6 +111,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("suites", nargs="*", help=f"of {', '.join(SUITES)} (default: all)")
     parser.add_argument("--keep", type=Path, help="folder in which to keep the results of all tests")
+    parser.add_argument("--tests", nargs="*", metavar="PATH", help="only these parts of each suite")
     given = parser.parse_args()
     unknown = sorted(set(given.suites) - set(SUITES))
     if unknown:
@@ -123,7 +124,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="suites-") as folder:
         python = environment(Path(folder))
         for name in given.suites or SUITES:
-            changed += compared(name, Path(folder), python, given.keep)
+            changed += compared(name, Path(folder), python, given.keep, tuple(given.tests or ()))
     if changed:
         sys.exit("\n".join(["", "changed by recording:", *changed]))
 
@@ -158,9 +159,12 @@ def sources(name: str, folder: Path, python: Path) -> Path:
     return unpacked
 
 
-def compared(name: str, folder: Path, python: Path, keep: Path | None) -> list[str]:
-    """Print the row of a suite and return the tests whose outcome recording changed."""
+def compared(
+    name: str, folder: Path, python: Path, keep: Path | None, only: tuple[str, ...] = ()
+) -> list[str]:
+    """Print the row of a suite, or of some of its tests; return those whose outcome recording changed."""
     suite, at = SUITES[name], sources(name, folder, python)
+    suite = replace(suite, tests=only or suite.tests)
     plain, plain_seconds = run(python, suite, at, folder, record=False)
     recorded, recorded_seconds = run(python, suite, at, folder, record=True)
     runs = [plain["tests"]]

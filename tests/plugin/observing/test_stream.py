@@ -92,6 +92,9 @@ def test_a_site_waits_for_the_value_of_an_unfinished_statement() -> None:
     entries = recorder._entries()
     entries.append(3)
     assert recorder.drain().empty
+    entries += [0.5, 7, 2.5, 3]
+    chunk = recorder.drain()
+    assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3, 7], [0.5, 2.5])
     entries.append(1.5)
     chunk = recorder.drain()
     assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3], [1.5])
