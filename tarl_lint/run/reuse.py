@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.prefilter.one_sided import two_sided
@@ -16,6 +17,7 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.run.cache import Report
 from tarl_lint.settings.config import Config
 
+KEPT_ANALYSES: Final = 4  # of each program; each is compared with the edited text
 Moves = Mapping[str, Mapping[int, int]]  # file → line → line after the edit
 
 
@@ -31,21 +33,29 @@ class _Analysis:
 
 
 class Analyses:
-    """The last analysis of each program in an editor session, by the path of its last file."""
+    """The last analyses of each program in an editor session, by the path of its last file, newest first.
+
+    After an edit is undone, the next one is compared with an analysis before the undone one.
+    """
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._last: dict[str, _Analysis] = {}
+        self._last: dict[str, tuple[_Analysis, ...]] = {}
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
         """Keep a report and what its analysis has read, by file; unless a file could not be analysed."""
         if readings and not report.errors and two_sided([s.text for s in scripts], self._config):
-            self._last[scripts[-1].path] = _Analysis(tuple(scripts), readings, report)
+            made, path = _Analysis(tuple(scripts), readings, report), scripts[-1].path
+            self._last[path] = (made, *self._last.get(path, ()))[:KEPT_ANALYSES]
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:
         """Return the report that an analysis of the files would return, None if this takes an analysis."""
-        last = self._last.get(scripts[-1].path)
-        if last is None or [s.path for s in last.scripts] != [s.path for s in scripts]:
+        each = (self._moved(last, scripts) for last in self._last.get(scripts[-1].path, ()))
+        return next((report for report in each if report is not None), None)
+
+    def _moved(self, last: _Analysis, scripts: Sequence[Script]) -> Report | None:
+        """Return the report of an analysis with the lines of edited texts, None if an edit can change it."""
+        if [s.path for s in last.scripts] != [s.path for s in scripts]:
             return None
         moves: dict[str, Mapping[int, int]] = {}
         for before, now in zip(last.scripts, scripts, strict=True):

@@ -191,6 +191,17 @@ def test_an_undone_edit_takes_no_analysis(tmp_path, analysed):
     assert analysed == []
 
 
+def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, analysed):
+    workspace = Workspace([tmp_path])
+    workspace.lint({})
+    workspace.lint(edited(tmp_path, "node.py", "value > 3", "value > 4"))
+    workspace.lint({})
+    analysed.clear()
+    buffers = edited(tmp_path, "helper.py", "return total", "return total - 1")
+    assert workspace.lint(buffers) == Workspace([tmp_path]).lint(buffers)
+    assert analysed == ["node.py"]  # of the new session
+
+
 def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
     Path(tmp_path, "other.py").write_text(NODE)
     workspace = Workspace([tmp_path])
