@@ -12,7 +12,7 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.run import cache, runner
 from tarl_lint.run.cache import Cache, Report
 from tarl_lint.run.reuse import Analyses
-from tarl_lint.run.runner import Result
+from tarl_lint.run.runner import Early, Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
@@ -31,10 +31,17 @@ class Workspace:
         self._options = Options(paths=tuple(paths), jobs=1)
         self._known: _Memory | None = None
 
-    def lint(self, buffers: Mapping[Path, str], current: Callable[[], bool] = lambda: True) -> Result:
+    def lint(
+        self,
+        buffers: Mapping[Path, str],
+        current: Callable[[], bool] = lambda: True,
+        early: Early | None = None,
+    ) -> Result:
         """Return the result; `buffers` maps absolute paths to the texts of unsaved files.
 
-        `current` returns whether the result is still wanted; it is called before each program is analysed.
+        `current` returns whether the result is still wanted; it is called before each program is analysed. `early`
+        gets incomplete results while programs are still to be analysed, with the paths of the files whose findings
+        are final. The programs that are run from an edited file are analysed first.
 
         Raises LintError for unusable settings or an unusable baseline, and if there is nothing to lint. Raises
         Superseded if the result is no longer wanted; the programs analysed so far are not analysed again.
@@ -48,7 +55,7 @@ class Workspace:
         if self._known is None or self._known.config != config:
             self._known = _Memory(config, cache.opened(self._options.paths, config))
         texts = {path: text.encode("utf-8", "surrogatepass") for path, text in buffers.items()}
-        return runner.run(self._options, config, proceed, texts, self._known)
+        return runner.run(self._options, config, proceed, texts, self._known, early)
 
     def accept(self, fingerprint: str, result: Result) -> Path:
         """Add the findings of a result with this fingerprint to the baseline and return its path.
@@ -75,6 +82,8 @@ class _Memory(Cache):
         self._analyses = Analyses(config)
         self._saved = saved
         self._known: dict[str, Report] = {}
+        self._digests: Mapping[str, str] = {}  # of the last complete run, by path
+        self._seen: Mapping[str, str] = {}
         self._used: dict[str, int] = {}  # key → number of the last run that needed its report
         self._run = 0
 
@@ -98,6 +107,11 @@ class _Memory(Cache):
         """Keep a report with what its analysis has read."""
         self._analyses.keep(scripts, readings, report)
 
+    def edited(self, digests: Mapping[str, str]) -> frozenset[str]:
+        """Return the files that are not as in the last complete run, by their digests; none in the first run."""
+        before, self._seen = self._digests, digests
+        return frozenset(path for path, one in digests.items() if before and before.get(path) != one)
+
     def plan(self, _: str) -> Sequence[str]:
         """Return no plan: each run determines the reports it needs."""
         return []
@@ -106,4 +120,5 @@ class _Memory(Cache):
         """Drop the reports that the last runs did not need."""
         for key in [key for key, run in self._used.items() if self._run - run >= KEPT_RUNS]:
             del self._known[key], self._used[key]
+        self._digests = self._seen
         self._run += 1

@@ -40,6 +40,7 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
+        self.shown_in = self.places  # positions in the texts of the diagnostics that were published last
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
         self._waiting: asyncio.Task[None] | None = None
@@ -67,14 +68,20 @@ class Server(LanguageServer):
     async def lint(self) -> None:
         """Lint the workspace with the open buffers, and publish changed diagnostics.
 
-        A further change stops the run before the next program; the change starts a run of its own.
+        A further change stops the run before the next program; the change starts a run of its own. Diagnostics of
+        files whose findings are final are published while other programs are still being analysed.
         """
         if self.linted is None:
             return
         async with self._running:
             changes = self._changes
-            lint = partial(self.linted.lint, self.buffers(), lambda: self._changes == changes)
             loop = asyncio.get_running_loop()
+
+            def early(result: Result, settled: frozenset[str]) -> None:
+                if self._changes == changes:
+                    loop.call_soon_threadsafe(self._publish_some, result, settled)
+
+            lint = partial(self.linted.lint, self.buffers(), lambda: self._changes == changes, early)
             try:
                 result = await loop.run_in_executor(None, lint)
             except Superseded:
@@ -85,6 +92,7 @@ class Server(LanguageServer):
             self._problem = ""
             self.kept = await loop.run_in_executor(None, recorded.read, self.root)
             self.result, self.places = result, Places(self.root, result.texts)
+            self.shown_in = self.places
             self._publish(findings.diagnostics(result, self.places))
         self._refresh()
 
@@ -116,12 +124,21 @@ class Server(LanguageServer):
 
     def _publish(self, found: dict[str, list[types.Diagnostic]]) -> None:
         for path in sorted({*found, *self.shown}):
-            now = found.get(path, [])
-            if now != self.shown.get(path, []):
-                self.text_document_publish_diagnostics(
-                    types.PublishDiagnosticsParams(self.places.uri(path), now)
-                )
-        self.shown = {path: now for path, now in found.items() if now}
+            self._show(path, found.get(path, []))
+
+    def _publish_some(self, result: Result, settled: frozenset[str]) -> None:
+        """Publish the diagnostics of some files; the text of the others may have moved since theirs were found."""
+        self.shown_in = Places(self.root, result.texts)
+        found = findings.diagnostics(result, self.shown_in)
+        for path in sorted({*found, *self.shown} & settled):
+            self._show(path, found.get(path, []))
+
+    def _show(self, path: str, now: list[types.Diagnostic]) -> None:
+        if now != self.shown.get(path, []):
+            self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(self.places.uri(path), now))
+        self.shown.pop(path, None)
+        if now:
+            self.shown[path] = now
 
     def _refresh(self) -> None:
         wants = self.client_capabilities.workspace
@@ -201,7 +218,7 @@ def _answers(made: Server) -> None:
         if path is None:
             return []
         here = [one for one in ls.shown.get(path, []) if _touches(one.range, asked.range)]
-        return fixes.fixes(uri, path, here, ls.kept.patches.get(path, ()), ls.places)
+        return fixes.fixes(uri, path, here, ls.kept.patches.get(path, ()), ls.shown_in)
 
 
 def _touches(first: types.Range, second: types.Range) -> bool:

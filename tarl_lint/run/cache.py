@@ -92,6 +92,10 @@ class Cache:
         """Return a report of earlier texts of the files that still holds, None if there is none."""
         return None
 
+    def edited(self, digests: Mapping[str, str]) -> frozenset[str]:  # noqa: ARG002 - for others
+        """Return the files that are not as in the last run, by their digests; none if they are not known."""
+        return frozenset()
+
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
         """Keep what the analysis behind a report has read, if `adapts`."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -33,10 +33,22 @@ class Task:
         return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
 
 
+Partly = Callable[[Report, frozenset[str]], None]  # a report so far, and the files whose findings are final
+
+
 def examine(
-    scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
+    scripts: Sequence[Script],
+    config: Config,
+    cache: Cache,
+    jobs: int | None = 1,
+    tell: Tell = silent,
+    partly: Partly | None = None,
 ) -> Report:
-    """Return the findings in the files, independent of the number of processes (None: chosen by the size)."""
+    """Return the findings in the files, independent of the number of processes (None: chosen by the size).
+
+    `partly` gets what is known after 1, 2, 4, … of several analyses. Then programs that are run from an edited file
+    come first, and small ones before large ones.
+    """
     digests = {
         s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
         for s in scripts
@@ -48,9 +60,16 @@ def examine(
     else:
         tasks = _tasks(scripts, config)
         keys = [digest([str(task.analyse), *(digests[s.path] for s in task.scripts)]) for task in tasks]
-        reports = _reports(tasks, keys, config, cache, jobs, tell)
+        edited = cache.edited(digests)
+        told = None if partly is None else _Progressive(partly, edited)
+        reports = _reports(tasks, keys, config, cache, jobs, tell, told)
         cache.put_plan(whole, keys)
     cache.save()
+    return _joined(reports)
+
+
+def _joined(reports: Sequence[Report]) -> Report:
+    """Return the reports of all programs as one."""
     errors = sorted({e for r in reports for e in r.errors}, key=lambda e: (e.path, e.line, e.message))
     findings = tuple(dict.fromkeys(f for r in reports for f in r.findings))  # programs may share a file
     return Report(
@@ -73,16 +92,47 @@ def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
     return [*grouped, *(Task((s,), analyse=False) for s in alone)]
 
 
+@dataclass(frozen=True)
+class _Progressive:
+    """Reports what is known while programs are still to be analysed."""
+
+    partly: Partly
+    edited: frozenset[str]
+
+    def turn(self, task: Task) -> tuple[bool, int]:
+        """Return the priority of a program: from an edited file first, then small ones."""
+        return task.scripts[-1].path not in self.edited, task.lines
+
+    def tell(self, tasks: Sequence[Task], found: Sequence[Report | None], done: int) -> None:
+        """Report what is found, after 1, 2, 4, … analyses, since each report takes time."""
+        pending = [task for task, report in zip(tasks, found, strict=True) if report is None]
+        if not pending or done & (done - 1):
+            return
+        unsettled = {script.path for task in pending for script in task.scripts}
+        settled = frozenset(s.path for task in tasks for s in task.scripts if s.path not in unsettled)
+        self.partly(_joined([report for report in found if report is not None]), settled)
+
+
 def _reports(
-    tasks: Sequence[Task], keys: Sequence[str], config: Config, cache: Cache, jobs: int | None, tell: Tell
+    tasks: Sequence[Task],
+    keys: Sequence[str],
+    config: Config,
+    cache: Cache,
+    jobs: int | None,
+    tell: Tell,
+    told: _Progressive | None,
 ) -> list[Report]:
     found = [_known(task, key, cache) for task, key in zip(tasks, keys, strict=True)]
     missing = [number for number, report in enumerate(found) if report is None]
+    if told is not None:
+        missing.sort(key=lambda number: told.turn(tasks[number]))
     work = [tasks[number] for number in missing]
     made = _made(work, config, _workers(work, jobs), tell, cache)
-    for number, report in zip(missing, made, strict=True):
+    for done, (number, report) in enumerate(zip(missing, made, strict=True), 1):
         found[number] = report
         cache.put(keys[number], report)
+        if told is not None:
+            told.tell(tasks, found, done)
     return [report for report in found if report is not None]
 
 

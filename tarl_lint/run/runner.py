@@ -18,11 +18,13 @@ from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.model import CODES, OFF_BY_DEFAULT, RULES, Cut, Finding, Kind
 from tarl_lint.prefilter.by_words import concerned
 from tarl_lint.read import discover, installed, module_names, source
-from tarl_lint.read.discover import Notes, SourceFile
+from tarl_lint.read.discover import Discovery, Notes, SourceFile
+from tarl_lint.read.installed import Followed
 from tarl_lint.read.layout import Layout
 from tarl_lint.read.source import Script, SourceError
 from tarl_lint.run import cache, groups
 from tarl_lint.run.cache import Cache, Report
+from tarl_lint.run.groups import Partly
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config, Options
 from tarl_lint.settings.per_file import FileIgnores
@@ -84,17 +86,22 @@ class Result:
         return tuple(f for f in self.findings if f.status == "new")
 
 
+Early = Callable[[Result, frozenset[str]], None]
+
+
 def run(
     options: Options,
     config: Config,
     tell: Tell = silent,
     buffers: Mapping[Path, bytes] = NO_BUFFERS,
     known: Cache | None = None,
+    early: Early | None = None,
 ) -> Result:
     """Lint the files at and below the paths, reporting progress to `tell`.
 
     `buffers` maps absolute paths to the texts of unsaved files in an editor; `known` is a cache to use
-    instead of the one on disk.
+    instead of the one on disk. `early` gets results while programs are still to be analysed, with the paths of the
+    files whose findings are final.
 
     Raises UsageError if there is nothing to lint, BaselineError if the baseline is unusable, AnalysisBug if the
     analysis crashed.
@@ -108,15 +115,38 @@ def run(
         buffers = {**buffers, options.stdin.path.absolute(): options.stdin.data}
     scripts, unread = read(discovery.files, buffers, tell)
     followed = installed.follow(scripts, config)
-    report = installed.without(
-        _examine((*scripts, *followed.scripts), options, config, tell, known), followed
-    )
-    errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
+    files = _Files(discovery, scripts, unread, followed, accepted)
+
+    def partly(report: Report, settled: frozenset[str]) -> None:
+        if early is not None:
+            early(_result(report, files, config), settled)
+
+    everything = (*scripts, *followed.scripts)
+    report = _examine(everything, options, config, tell, known, None if early is None else partly)
+    return _result(report, files, config)
+
+
+@dataclass(frozen=True)
+class _Files:
+    """The files of a run as they were read, and the baseline."""
+
+    discovery: Discovery
+    scripts: tuple[Script, ...]
+    unread: tuple[SourceError, ...]
+    followed: Followed
+    accepted: Baseline
+
+
+def _result(report: Report, files: _Files, config: Config) -> Result:
+    """Return the result of a run: silence findings and subtract the baseline."""
+    scripts, followed, accepted = files.scripts, files.followed, files.accepted
+    report = installed.without(report, followed)
+    errors = tuple(sorted((*files.unread, *report.errors), key=lambda e: (e.path, e.line)))
     found_in = {finding.span.path for finding in report.findings}
     broken = {error.path for error in errors if not error.bug} - found_in
     texts = {script.path: script.text for script in scripts if script.path not in broken}
     beside = {script.path: script.text for script in followed.scripts}
-    identities = _Identities(discovery.files, config)
+    identities = _Identities(files.discovery.files, config)
     marked = tuple(identities.mark(f) for f in report.findings)
     wanted = tuple(f for f in marked if config.enabled(f.code))
     heard, silenced, unused = suppress.apply(wanted, texts)
@@ -124,7 +154,7 @@ def run(
     reported = [f for f in heard if not elsewhere.silences(f)]
     findings = baseline.subtract(reported, accepted.counts())
     unasked = {f.fingerprint for f in marked if f.code in OFF_BY_DEFAULT and not config.enabled(f.code)}
-    judged = _judge(discovery.files, errors, config, unasked)
+    judged = _judge(files.discovery.files, errors, config, unasked)
     vanished, kept = baseline.missing(accepted, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
@@ -139,7 +169,7 @@ def run(
         followed=followed.packages,
         ended=module_names.unfollowed(report.ended),
         texts={**texts, **beside},
-        statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
+        statistics=Statistics(len(texts), lines, files.discovery.notes, report.cut),
         has_endpoints=bool(report.findings) or not texts or concerned(scripts, config),
         baseline=config.baseline if accepted.entries else None,
         names_errors=config.enabled(UNREADABLE),
@@ -196,13 +226,18 @@ def _read(file: SourceFile, buffers: Mapping[Path, bytes]) -> Script | SourceErr
 
 
 def _examine(
-    scripts: Sequence[Script], options: Options, config: Config, tell: Tell, known: Cache | None
+    scripts: Sequence[Script],
+    options: Options,
+    config: Config,
+    tell: Tell,
+    known: Cache | None,
+    partly: Partly | None,
 ) -> Report:
     keeps = options.cache and options.stdin is None
     try:
         if known is None:
             known = cache.opened(options.paths, config) if keeps else Cache(None)
-        return groups.examine(scripts, config, known, options.jobs, tell)
+        return groups.examine(scripts, config, known, options.jobs, tell, partly)
     except Exception as error:
         if groups.debugging():
             raise

@@ -147,6 +147,24 @@ async def test_the_unsaved_buffer_counts(client: LanguageClient, tmp_path: Path)
     assert error.severity == lsp.DiagnosticSeverity.Error
 
 
+async def test_all_programs_of_a_shared_file_follow_its_edit(client: LanguageClient, tmp_path: Path) -> None:
+    await diagnostics(client, uri(tmp_path), 2)
+    node = "from shared import scaled\n" + NODE.replace("2 * message.data", "scaled(message.data)")
+    node = node.replace("rospy.spin()", 'if __name__ == "__main__":\n    rospy.spin()')
+    shared = tmp_path / "shared.py"
+    shared.write_text("def scaled(value):\n    return 2 * value\n", "utf-8")
+    nodes = [tmp_path / f"node{number}.py" for number in range(3)]
+    for path in nodes:
+        path.write_text(node, "utf-8")
+    opened(client, shared.as_uri(), shared.read_text("utf-8"))
+    for path in nodes:
+        await diagnostics(client, path.as_uri(), 2)
+    typed(client, shared.as_uri(), "def scaled(value):\n    return 2\n")
+    for path in nodes:
+        (left,) = await diagnostics(client, path.as_uri(), 1)
+        assert left.code == "TARL102"
+
+
 async def test_columns_are_utf16_units(client: LanguageClient, tmp_path: Path) -> None:
     where = uri(tmp_path)
     await diagnostics(client, where, 2)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.editing import Superseded, Workspace
+from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.prefilter.one_sided import two_sided
 from tarl_lint.read.moved_lines import moved_lines
 from tarl_lint.read.source import Module
@@ -200,6 +200,26 @@ def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, 
     buffers = edited(tmp_path, "helper.py", "return total", "return total - 1")
     assert workspace.lint(buffers) == Workspace([tmp_path]).lint(buffers)
     assert analysed == ["node.py"]  # of the new session
+
+
+def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_path, analysed):
+    for number in range(4):
+        Path(tmp_path, f"other{number}.py").write_text(NODE.replace("/idle", f"/idle{number}"))
+    workspace = Workspace([tmp_path])
+    workspace.lint({})
+    analysed.clear()
+    early: list[tuple[Result, frozenset[str], int]] = []
+    buffers = edited(tmp_path, "helper.py", "2 * value", "3 * value")
+    buffers |= edited(tmp_path, "other2.py", "value > 3", "value > 4")
+    whole = workspace.lint(buffers, early=lambda *known: early.append((*known, len(analysed))))
+    assert analysed[0] == "other2.py"
+    assert [done for _, _, done in early] == [1, 2, 4]
+    for result, settled, done in early:
+        assert settled == set(analysed[:done])
+        final = [f for f in whole.findings if f.span.path in settled]
+        assert final
+        assert [f for f in result.findings if f.span.path in settled] == final
+    assert whole == Workspace([tmp_path]).lint(buffers)
 
 
 def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
