@@ -1,9 +1,11 @@
 """Which robots live in another world than recorded, and since when: the evidence of `tarl watch`, robot by robot.
 
-Each robot has a monitor of its own. The running maximum of each of its processes, adjusted (monitoring/e_bh.py), is an
-e-value at any time; their average, weighted by their shares of α, is one as well. e-BH over the robots then keeps the
-expected share of wrongly named robots at q or less, under any dependence, so that all monitors may start from the same
-recording. Against the bounds, the share may be larger by the probability that a stated bound is wrong.
+Each robot has a monitor of its own. The value of each of its processes after the last mission is an e-value, if the
+number of missions does not depend on how they went; it is large if the robot still differs. The running maximum,
+adjusted (monitoring/e_bh.py), is an e-value at any time; it is large if the robot differed once. Half of each, averaged
+over the processes with their shares of α, is an e-value as well, and e-BH over the robots keeps the expected share of
+wrongly named robots at q or less, under any dependence, so that all monitors may start from the same recording.
+Against the bounds, the share may be larger by the probability that a stated bound is wrong.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, shares
+from pytest_tarl.monitoring.restarts import log_evidence
 from pytest_tarl.monitoring.status import Evidence, Status
 from pytest_tarl.monitoring.status import status as status_of
 
@@ -97,9 +100,10 @@ def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], 
     """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order."""
     found: dict[int, Robot] = {}
     for some in side_by_side.watched(first, scores, ends):
-        for place, (number, peak) in enumerate(zip(some.robots.tolist(), some.peaks(), strict=True)):
+        both = zip(some.robots.tolist(), some.peaks(), some.latest(), strict=True)
+        for place, (number, peak, latest) in enumerate(both):
             low, high = int(ends[number - 1]) if number else 0, int(ends[number])
-            world, bound = evidence(first, peak)
+            world, bound = evidence(first, peak, latest)
             status = None
             if max(world, bound) >= -np.log2(q):
                 monitor = fresh(first)
@@ -127,20 +131,23 @@ def fresh(first: Monitor) -> Monitor:
 
 def robot(name: str, monitor: Monitor, q: float) -> Robot:
     """Return the evidence of a monitor."""
-    world, bound = evidence(monitor, monitor.processes.peak)
+    world, bound = evidence(monitor, monitor.processes.peak, log_evidence(monitor.processes))
     counts = monitor.counts
     reached = max(world, bound) >= -np.log2(q)
     return Robot(name, counts.missions, counts.passed, world, bound, status_of(monitor) if reached else None)
 
 
-def evidence(monitor: Monitor, peak: Floats) -> tuple[float, float]:
-    """Return the evidence of the peaks of a monitor's processes: that missions differ, that they are below a bound."""
+def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:
+    """Return the evidence that missions differ, and that they are below a bound, as log2 of e-values.
+
+    `peak` and `latest` are log2 of the largest and the last evidence of each of a monitor's processes.
+    """
     stated = len(monitor.bounds)
-    adjusted = e_bh.adjusted(peak)
+    each = np.logaddexp2(e_bh.adjusted(peak), latest) - 1.0
     weight = shares(stated, len(peak) - stated)
     testable = np.array([e_process.testable(float(one.share(one.least))) for one in monitor.bounds], bool)
-    world = _mean(adjusted[stated:], weight[stated:])
-    return world, _mean(adjusted[:stated][testable], weight[:stated][testable])
+    world = _mean(each[stated:], weight[stated:])
+    return world, _mean(each[:stated][testable], weight[:stated][testable])
 
 
 def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: object) -> float:

@@ -15,7 +15,7 @@ from pytest_tarl.fleet.scores import Scores
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import conformal, judging
 from pytest_tarl.monitoring.monitor import Monitor
-from pytest_tarl.monitoring.restarts import Processes
+from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
 COLUMNS = 512  # processes judged together, so that their stakes stay in the processor's cache
 
@@ -35,9 +35,16 @@ class Watched:
         return len(self.pool) // len(self.robots)
 
     def peaks(self) -> Floats:
-        """Return the peaks of each robot's processes, shape (robots, processes)."""
+        """Return log2 of the largest evidence of each robot's processes so far, shape (robots, processes)."""
+        return self._by_robot(self.processes.peak)
+
+    def latest(self) -> Floats:
+        """Return log2 of their evidence after the last mission, same shape."""
+        return self._by_robot(log_evidence(self.processes))
+
+    def _by_robot(self, columns: Floats) -> Floats:
         size = len(self.robots)
-        stated, scored = np.split(self.processes.peak, [self.bounds * size])
+        stated, scored = np.split(columns, [self.bounds * size])
         return np.concatenate((stated.reshape(-1, size).T, scored.reshape(size, -1)), axis=1)
 
     def state(self, place: int) -> tuple[Processes, Ints]:

@@ -150,7 +150,7 @@ def _summed(stake: Floats) -> Floats:
 def log_evidence(processes: Processes) -> Floats:
     """Return log2 of the current evidence of every process, shape (processes,)."""
     left = np.ldexp(reserve(processes.age), -processes.exponent)
-    found: Floats = np.log2(np.add.reduce(processes.stake, axis=0) / BETS + left) + processes.exponent
+    found: Floats = np.log2(_summed(processes.stake[None])[0] / BETS + left) + processes.exponent
     return found
 
 
