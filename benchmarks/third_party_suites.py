@@ -93,7 +93,11 @@ SUITES = {
             "pytest-benchmark==5.1.0",  # its options are in the settings of the suite
             "email-validator",
         ),
-        options=("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),
+        # its marks of tests that are not thread-safe are registered by a plugin that runs tests in threads
+        options=(
+            *("-W", "ignore::pytest.PytestUnknownMarkWarning"),
+            *("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),
+        ),
     ),
     "networkx": Suite(
         "3.4.2",

@@ -1,0 +1,55 @@
+"""What a worker is told of the run that it belongs to."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.repeating import Instruments
+from pytest_tarl.workers.executor import OFF, posted
+from pytest_tarl.workers.worker import instruments
+
+SENSORS = (Sensor("x", edges=(0.0, 1.0, 4.0), learned=2), Sensor("y", edges=(0.0, 1.0)))
+PLACES = Instruments({Path("/a/node.py"): {(3, 5): 7, (4, 1): 8}}, frozenset({8, 2}))
+
+
+@pytest.mark.parametrize("ini", [True, False])
+def test_a_worker_gets_the_options_and_the_place_of_the_run(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, ini: bool
+) -> None:
+    if ini:
+        pytester.makeini("[pytest]\n")
+    monkeypatch.setattr(sys, "path", [*sys.path, "", "lib", "/opt/more"])
+    config = pytester.parseconfigure("--tarl-workers=3", "-x", "--junitxml=out.xml", "--basetemp=x", "-s")
+    module = pytester.getmodulecol("class TestMission:\n    def test_x(self, tarl): ...")
+    item: Any = pytester.genitems([module])[0]
+    item.config = config
+    post = posted(item, PLACES, SENSORS)
+    start, first = json.loads(post.start), json.loads(post.first)
+    options = start["options"]
+    assert {name: options[name] for name in OFF} == dict(OFF)
+    assert (options["maxfail"], options["basetemp"]) == (1, None)
+    assert options["plugins"][-1] == "no:terminal"
+    assert options["rootdir"] == str(config.rootpath)
+    assert options.get("inifilename") == (str(pytester.path / "tox.ini") if ini else None)
+    assert post.folder == str(pytester.path)
+    assert start["path"][-3:] == [str(pytester.path), str(pytester.path / "lib"), "/opt/more"]
+    assert start["target"] == f"{item.path}::TestMission::test_x"
+    assert first["nodeid"] == item.nodeid
+    assert first["edges"] == {"x": [0.0, 1.0, 4.0]}  # bins that were learned, not those of the marker
+    assert post.loud
+
+
+def test_output_is_kept_unless_it_was_asked_for(pytester: pytest.Pytester) -> None:
+    item: Any = pytester.getitem("def test_x(tarl): ...", "test_x")
+    assert not posted(item, PLACES, ()).loud
+
+
+def test_the_sites_arrive_as_they_were(pytester: pytest.Pytester) -> None:
+    item: Any = pytester.getitem("def test_x(tarl): ...", "test_x")
+    assert instruments(json.loads(posted(item, PLACES, ()).first)["instruments"]) == PLACES
