@@ -351,7 +351,9 @@ class Sweep:
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try an operand between its best factor and that factor's neighbours, on a log scale."""
-        steps = between(self._gains.of(*best), self.goal.wanted)
+        # The sign of a constant is wrong or right; only a proposed value may need another size with the other sign.
+        gains = {one: gain for one, gain in self._gains.of(*best).items() if one > 0 or self.proposed}
+        steps = between(gains, self.goal.wanted)
         self._expect([(*best, one) for one in steps], pair)
         for one in steps:
             self._refined[best] += 1
