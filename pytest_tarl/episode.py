@@ -169,12 +169,12 @@ class Tarl:
         timeout: float = 60.0,
         patience: float = 10.0,
     ) -> Simulator:
-        """Start a simulator, a program on a real ROS 2, as the world of this episode; call it before `start`.
+        """Start a simulator, a program on a real ROS, as the world of this episode; call it before `start`.
 
         Nodes hear what the simulator publishes, and it hears what they publish. `tarl.step` runs both.
 
         Args:
-            command: The program, run in the test's folder. It gets its own ROS_DOMAIN_ID and TARL_SEED.
+            command: The program, run in the test's folder. It gets TARL_SEED, and a ROS domain or master of its own.
             ready: Topics that the simulator publishes or subscribes to once it is ready.
             clock: The topic of its time; the nodes' clocks show it.
             step: The service that runs it for one step. Without it, the simulator runs in its own time.
@@ -185,7 +185,7 @@ class Tarl:
             patience: Seconds of real time without an answer or progress of its clock, after which it hangs.
 
         Raises:
-            SettingsError: The arguments are invalid, rclpy is not installed, or a node is already running.
+            SettingsError: The arguments are invalid, no rclpy or rospy is installed, or a node is already running.
             SimulatorError: The simulator ended or did not become ready.
         """
         from pytest_tarl.external.arguments import setup

@@ -35,6 +35,7 @@ class Setup:
     every_step: tuple[str, ...]
     timeout: float
     patience: float
+    ros: str = "ros2"  # or "ros1"
 
     @property
     def shown(self) -> str:
@@ -63,11 +64,6 @@ def setup(
             "tarl.external needs a command and a topic that shows that the simulator is ready, such as "
             'tarl.external("ros2 launch my_robot simulation.launch.py", ready="/odom").'
         )
-    if PathFinder.find_spec("rclpy") is None:
-        raise SettingsError(
-            "tarl.external talks to the simulator by rclpy, which is not installed: source the setup.bash of your "
-            "ROS 2, or pip install 'ros-rclpy[fastrtps]'."
-        )
     return Setup(
         tuple(parts),
         folder,
@@ -79,4 +75,16 @@ def setup(
         tuple(every_step),
         timeout,
         patience,
+        _generation(),
+    )
+
+
+def _generation() -> str:
+    """Return the ROS by which the simulator is reached: the installed one. Raise SettingsError if there is none."""
+    for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
+        if PathFinder.find_spec(library) is not None:
+            return name
+    raise SettingsError(
+        "tarl.external talks to the simulator by rclpy or rospy, and neither is installed: source the setup.bash of "
+        "your ROS, or pip install 'ros-rclpy[fastrtps]' for ROS 2."
     )

@@ -10,15 +10,19 @@ import os
 import sys
 import threading
 import traceback
+import xmlrpc.client
 from collections import deque
 from contextlib import suppress
 from time import monotonic, sleep
 from typing import Any
 
+from pytest_tarl.errors import TarlError
 from pytest_tarl.external.descendants import outlive_the_test, wait_for_end_of_parent
 from pytest_tarl.external.domain import Domain
 from pytest_tarl.external.group import Group
 from pytest_tarl.external.link import Link
+from pytest_tarl.external.link_ros1 import LinkROS1
+from pytest_tarl.rosmaster import Master
 
 LOOK = 0.05  # s between two looks at the ROS graph, once a second after CALM
 CALM = 5.0  # s
@@ -37,7 +41,8 @@ class Guardian:
         self._waking = threading.Lock()  # held while a link is woken or taken away
         self._group: Group | None = None
         self._domain: Domain | None = None
-        self._link: Link | None = None
+        self._master: Master | None = None
+        self._link: Link | LinkROS1 | None = None
         self._begun = self._looked = 0.0
         self._ended = False
 
@@ -110,15 +115,20 @@ class Guardian:
             self._commands.append(None)
 
     def _do_start(
-        self, command: list[str], folder: str, environment: dict[str, str], clock: str, topics: list[str]
+        self,
+        command: list[str],
+        folder: str,
+        environment: dict[str, str],
+        clock: str,
+        topics: list[str],
+        ros: str = "ros2",
     ) -> None:
         self._do_stop()
-        self._domain = Domain()
-        own = {
-            "ROS_DOMAIN_ID": str(self._domain.number),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-            "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # shared memory would leave files in /dev/shm after a kill
-        }
+        try:
+            own = self._network(ros)
+        except TarlError as problem:
+            self.say({"kind": "failed", "reason": str(problem)})
+            return
         os.environ.update(own)
         self._ended = False
         try:
@@ -127,8 +137,23 @@ class Guardian:
             self.say({"kind": "failed", "reason": problem.strerror or str(problem)})
             return
         self._begun = monotonic()
-        self._link = Link(self._domain.number, clock, self.say)
+        domain = self._domain
+        self._link = LinkROS1(clock, self.say) if domain is None else Link(domain.number, clock, self.say)
         self._link.subscribe(topics)
+
+    def _network(self, ros: str) -> dict[str, str]:
+        """Return the environment variables of a network of the simulator's own: a master, or in ROS 2 a domain."""
+        if ros == "ros1":
+            self._master = Master()
+            with xmlrpc.client.ServerProxy(self._master.uri) as master:
+                master.setParam("/tarl", "/use_sim_time", True)
+            return self._master.variables
+        self._domain = Domain()
+        return {
+            "ROS_DOMAIN_ID": str(self._domain.number),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # shared memory would leave files in /dev/shm after a kill
+        }
 
     def _do_stop(self) -> None:
         with self._waking:
@@ -139,7 +164,9 @@ class Guardian:
             link.close()
         if self._domain is not None:
             self._domain.release()
-        self._group = self._domain = None
+        if self._master is not None:
+            self._master.close()
+        self._group = self._domain = self._master = None
         self.say({"kind": "stopped"})
 
     def _do_subscribe(self, topics: list[str]) -> None:

@@ -1,9 +1,9 @@
-"""Messages of ROS 2 as plain data, as they travel between the test and the guardian."""
+"""Messages of both generations of ROS as plain data, as they travel between the test and the guardian."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 _NESTED = re.compile(r"(?:sequence<)?(\w+)/(?:\w+/)?(\w+)")
@@ -12,8 +12,9 @@ Find = Callable[[str, str], Any]  # (package, name) → message class
 
 def to_plain(value: Any) -> Any:
     """Return a message, a sequence or a value as dictionaries, lists, numbers and strings."""
-    if hasattr(value, "get_fields_and_field_types"):
-        return {name: to_plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
+    kinds = _fields(value)
+    if kinds is not None:
+        return {name: to_plain(getattr(value, name)) for name in kinds}
     if hasattr(value, "tolist"):  # numpy's arrays and those of the standard library
         return value.tolist()
     if isinstance(value, (bytes, bytearray)):
@@ -25,11 +26,11 @@ def to_plain(value: Any) -> Any:
 
 def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
     """Set the fields of a message from plain data, and return it."""
-    kinds = message.get_fields_and_field_types()
+    kinds = _fields(message) or {}
     for name, value in data.items():
         now = getattr(message, name)
         nested = _NESTED.match(kinds[name])
-        if hasattr(now, "get_fields_and_field_types"):
+        if _fields(now) is not None:
             filled(now, value, find)
         elif nested and isinstance(value, list):
             setattr(message, name, [filled(find(*nested.groups())(), one, find) for one in value])
@@ -38,3 +39,14 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
         else:
             setattr(message, name, value)
     return message
+
+
+def _fields(value: Any) -> Mapping[str, str] | None:
+    """Return the fields of a message with their types, in ROS 1 also of a time or duration; None for other values."""
+    if hasattr(value, "get_fields_and_field_types"):
+        return dict(value.get_fields_and_field_types())
+    if hasattr(value, "_slot_types"):
+        return dict(zip(value.__slots__, value._slot_types, strict=True))
+    if hasattr(value, "secs") and hasattr(value, "nsecs"):
+        return {"secs": "int32", "nsecs": "int32"}
+    return None

@@ -124,6 +124,9 @@ class Simulator:
     def _start(self) -> None:
         one = self.setup
         KEPT.running = None
+        if one.ros == "ros1":  # rospy serves one master in a process
+            KEPT.close()
+            self._client = KEPT.opened()
         environment = {**os.environ, **one.environment}
         self._client.do(
             "start",
@@ -132,6 +135,7 @@ class Simulator:
             environment=environment,
             clock=one.clock,
             topics=list(self._topics),
+            ros=one.ros,
         )
         self._wait(lambda: self._current, self.setup.timeout, self._unready)
 
@@ -178,7 +182,20 @@ class Simulator:
         self._wait(lambda: theirs <= self._graph["connected"], self.setup.patience, self._hung)
 
     def _forward(self, topic: str) -> Callable[[Any], None]:
-        return lambda message: self._client.do("send", topic=topic, data=to_plain(_in_ros2(message)))
+        return lambda message: self._client.do("send", topic=topic, data=to_plain(self._theirs(message)))
+
+    def _class(self, package: str, name: str) -> Any:
+        """Return a message class of the simulator's generation of ROS. Raise UnsupportedApiError for an unknown one."""
+        found = find_class("ros1" if self.setup.ros == "ros1" else "ros2", package, name)
+        if found is None:
+            raise unknown_type(package, name)
+        return found
+
+    def _theirs(self, message: Any) -> Any:
+        """Return a node's message in its class of the simulator's generation of ROS."""
+        package, _, name = type_name(type(message)).partition("/")
+        wanted = self._class(package, name)
+        return message if type(message) is wanted else snapshot(message, wanted)
 
     def _stepped(self, step: Call) -> None:
         """Run the nodes up to the end of the simulator's next step, then the simulator."""
@@ -257,11 +274,9 @@ class Simulator:
             self._run_nodes(self._time)
 
     def _on_message(self, event: Event) -> None:
-        topic, (package, _, name) = event["topic"], event["type"].split("/")
-        kind = find_class("ros2", package, name)
-        if kind is None:
-            raise unknown_type(package, name)
-        self._latest[topic] = filled(kind(), event["data"], _message_class)
+        topic, (package, *_, name) = event["topic"], event["type"].split("/")
+        kind = self._class(package, name)
+        self._latest[topic] = filled(kind(), event["data"], self._class)
         self._heard[topic] = event["sent"] or time_ns()
         if self._waiting is None:
             self._ros.bus.publish(topic, self._latest[topic])
@@ -317,18 +332,3 @@ class Simulator:
     def _words(self) -> str:
         words = self._client.last_words()
         return f"; its last output: {words}" if words else ""
-
-
-def _message_class(package: str, name: str) -> Any:
-    found = find_class("ros2", package, name)
-    if found is None:
-        raise unknown_type(package, name)
-    return found
-
-
-def _in_ros2(message: Any) -> Any:
-    """Return a node's message in its ROS 2 class."""
-    if hasattr(message, "get_fields_and_field_types"):
-        return message
-    package, _, name = type_name(type(message)).partition("/")
-    return snapshot(message, _message_class(package, name))

@@ -11,7 +11,6 @@ from typing import Any
 
 from pytest_tarl.errors import NodeError, RecordingError
 from pytest_tarl.realros.lockstep import PATIENCE, Way, Wire, WireScheduler
-from pytest_tarl.realros.master import Master
 from pytest_tarl.realros.rospy_copy import RospyCopy
 from pytest_tarl.realros.service_calls import ServiceCalls
 from pytest_tarl.ros.messages.snapshot import snapshot
@@ -19,6 +18,7 @@ from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task, running_task
 from pytest_tarl.ros.watchdog import WATCHDOG
+from pytest_tarl.rosmaster import Master
 
 WORLD = "tarl_world"
 _BASE = frozenset({"/run_id", "/rosdistro", "/rosversion"})

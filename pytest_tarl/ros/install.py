@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.messages.definitions import Kind
-from pytest_tarl.ros.messages.installed import installed_kind
+from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.messages.workspace import packages
 from pytest_tarl.ros.missing import unsupported
@@ -235,6 +235,9 @@ class StandinFinder:
 
     def _kind_of_importer(self) -> Kind:
         """Return the ROS generation of the importer, by the client library that its code names."""
+        asked = asked_kind()
+        if asked is not None:
+            return asked  # says nothing about the nodes of the episode
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind

@@ -14,7 +14,7 @@ from pytest_tarl.external.domain import Domain
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.logged import Mission, missions
 from pytest_tarl.observing.writer import unpacked
-from pytest_tarl.realros.master import Master
+from pytest_tarl.rosmaster import Master
 from tests.plugin.tank import NODE, RECORD, TEST
 from tests.realros.probes.running import installed
 

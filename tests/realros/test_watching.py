@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.external.domain import Domain
-from pytest_tarl.realros.master import Master
+from pytest_tarl.rosmaster import Master
 from tests.plugin.monitoring.missions import content, fixture, log, walks
 from tests.realros.probes.running import installed
 

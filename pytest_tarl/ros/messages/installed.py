@@ -10,6 +10,8 @@ from typing import Any
 
 from pytest_tarl.ros.messages.definitions import Kind
 
+_asked: list[Kind] = []  # generations of the classes that are being looked up, innermost last
+
 
 @cache
 def installed_kind(package: str) -> Kind | None:
@@ -31,5 +33,14 @@ def installed_class(kind: Kind, package: str, name: str, part: str) -> type[Any]
     """Return the class from an installed ROS of this generation; None if there is none."""
     if installed_kind(package) != kind:
         return None
-    found: type[Any] | None = getattr(import_module(f"{package}.{part}"), name, None)
+    _asked.append(kind)
+    try:
+        found: type[Any] | None = getattr(import_module(f"{package}.{part}"), name, None)
+    finally:
+        _asked.pop()
     return found
+
+
+def asked_kind() -> Kind | None:
+    """Return the generation of the class that is being looked up; None if an import comes from elsewhere."""
+    return _asked[-1] if _asked else None

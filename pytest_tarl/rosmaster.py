@@ -51,7 +51,7 @@ class Master:
     def _started(self) -> subprocess.Popen[bytes]:
         if shutil.which("rosmaster") is None:
             raise RecordingError(
-                "--tarl-ros=real needs `rosmaster`, which is not on the PATH: apt-get install python3-rosmaster, or "
+                "ROS 1 needs `rosmaster`, which is not on the PATH: apt-get install python3-rosmaster, or "
                 "source the setup.bash of your ROS."
             )
         for _ in range(_ATTEMPTS):
@@ -67,7 +67,7 @@ class Master:
         raise RecordingError(f"rosmaster did not answer within {_PATIENCE:g} s, {_ATTEMPTS} times in a row.")
 
     def _spawned(self, port: int) -> subprocess.Popen[bytes]:
-        environment = {**os.environ, **self._variables()}
+        environment = {**os.environ, **self.variables}
         return subprocess.Popen(
             ["rosmaster", "--core", "-p", str(port)],
             env=environment,
@@ -77,7 +77,9 @@ class Master:
             preexec_fn=_die_with_parent,
         )
 
-    def _variables(self) -> dict[str, str]:
+    @property
+    def variables(self) -> dict[str, str]:
+        """Return the environment variables that lead nodes to the master."""
         return {
             "ROS_MASTER_URI": self.uri,
             "ROS_IP": "127.0.0.1",
@@ -86,7 +88,7 @@ class Master:
         }
 
     def _set_environment(self) -> None:
-        variables = self._variables()
+        variables = self.variables
         before = {name: os.environ.get(name) for name in (*variables, "ROS_HOSTNAME", "ROS_NAMESPACE")}
         self._open.callback(_restore, before)
         os.environ.update(variables)
