@@ -101,6 +101,9 @@ class Outlet:
         while self._waiting and not self.problem:
             sleep(_PAUSE)
             self.pump()
+        if self._process.stdin is not None:
+            self._process.stdin.close()  # the writer ends even if it cannot read the end mark
+            self._process.stdin = None
         last = self._said()
         self._process.communicate()
         self.problem = self.problem or last or (ENDED if self._process.returncode else "")

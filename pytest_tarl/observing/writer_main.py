@@ -44,6 +44,12 @@ def main() -> int:
         ring = Ring(order["ring"])
         print(READY, flush=True)
         _serve(writer, ring)
+        if ring.unread:
+            print(
+                f"{order['log']}: the last {ring.unread} bytes of records were damaged in memory and are lost.",
+                flush=True,
+            )
+            return 1
     except LogError as problem:
         print(problem, flush=True)
         return 1

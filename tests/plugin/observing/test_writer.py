@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -151,6 +152,25 @@ def test_a_writer_killed_before_the_end_is_reported_too(tmp_path: Path) -> None:
     sensor, _, writer = observer.problem.partition("; ")
     assert sensor.startswith("Sensor 'x'")
     assert writer == outlet.ENDED
+
+
+def test_records_damaged_in_memory_are_reported_and_the_rest_is_written(tmp_path: Path) -> None:
+    observer = Observer([SENSOR], tmp_path / "log", ABOUT)
+    mission(observer, 1)
+    until(lambda: not observer._outlet.unsent and not observer.stream._rewards)
+    with observer._lock:
+        observer._outlet._process.send_signal(signal.SIGSTOP)
+        start, memory = observer._outlet._ring._counters[0], observer._outlet._ring._memory
+        observer.step(1.0)
+        observer._flush()
+        memory[16 + start + 20] ^= 0xFF
+        observer._outlet._process.send_signal(signal.SIGCONT)
+    observer.end(passed=True)
+    observer.close()
+    assert re.search(
+        r"log: the last \d+ bytes of records were damaged in memory and are lost", observer.problem
+    )
+    assert rewards(tmp_path / "log") == [0.0]
 
 
 def test_messages_larger_than_the_shared_memory_arrive_whole(tmp_path: Path) -> None:
