@@ -1,0 +1,58 @@
+"""How much of a program is executed once a budget is spent, with limits small enough to be reached at once."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from tarl_lint.interpret import context_selection, fixpoint, state
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.read.source import Module
+from tarl_lint.settings.config import Config
+from tests.lint.models.marked import in_callback
+
+HELPERS = "\n".join(f"def step_{n}(x):\n    y = x + {n}\n    return y" for n in range(30))
+CALLS = "\n".join(f"value = step_{n}(msg.data)" for n in range(30)) + "\nout.publish(value)"
+CHAIN = (
+    "\n".join(f"def deep_{n}(x):\n    return deep_{n + 1}(x)" for n in range(20))
+    + "\ndef deep_20(x):\n    return x"
+)
+
+
+def run(body: str, head: str) -> Linker:
+    text = in_callback(body, head)
+    machine = Linker([Module("node.py", "node", text, ast.parse(text))], Config())
+    machine.link()
+    return machine
+
+
+def executed(body: str = CALLS, head: str = HELPERS) -> int:
+    return run(body, head).work.totals["node.py"]
+
+
+def test_a_program_within_its_budget_is_not_cut():
+    assert run(CALLS, HELPERS).cut == {}
+
+
+def test_after_its_budget_a_program_gets_few_statements_in_each_run(monkeypatch):
+    whole = executed()
+    monkeypatch.setattr(state, "PATIENCE", 0)
+    assert executed() == whole
+    assert list(run(CALLS, HELPERS).cut) == ["node.py"]
+    monkeypatch.setattr(fixpoint, "HASTE", 10)
+    assert 10 <= executed() < whole - 30
+
+
+def test_beyond_the_statements_of_a_run_no_function_is_entered(monkeypatch):
+    whole = executed()
+    monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 10)
+    assert 10 <= executed() < whole - 30
+
+
+@pytest.mark.parametrize("depth", [3, 9])
+def test_functions_are_entered_up_to_a_depth(monkeypatch, depth):
+    whole = executed("out.publish(deep_0(msg.data))", CHAIN)
+    monkeypatch.setattr(context_selection, "MAX_CALLS", depth)
+    entered = 21 - (whole - executed("out.publish(deep_0(msg.data))", CHAIN))  # each has one statement
+    assert entered == depth - 2  # below the root and the callback
