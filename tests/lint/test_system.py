@@ -146,7 +146,7 @@ def test_the_number_of_chains_is_limited():
     assert (len(found), more) == (MOST, True)
 
 
-def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
+def test_main_blocks_and_functions_of_imported_modules_do_not_run(workspace, capsys):
     node = """\
         #!/usr/bin/env python3
         import rospy
@@ -162,6 +162,9 @@ def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
         from std_msgs.msg import Float64
         def double(value):
             return 2 * value
+        def main():
+            rospy.init_node("helper")
+            rospy.Publisher("unasked", Float64, queue_size=1).publish(1.0)
         if __name__ == "__main__":
             out = rospy.Publisher("never", Float64, queue_size=1)
             rospy.Subscriber("heard", Float64, lambda msg: out.publish(double(msg.data)))
@@ -171,6 +174,7 @@ def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
     _, out, _ = run(capsys, "--launch", file)
     assert flows(out) == ["/once → /user → /twice  explicit"]
     assert "never" not in out
+    assert "unasked" not in out
 
 
 def test_fingerprints_equal_those_of_a_run_without_launch_files(workspace, capsys):

@@ -1,0 +1,85 @@
+"""Whether a message has arrived is not its data; whether a value was found in it is."""
+
+from __future__ import annotations
+
+from textwrap import dedent, indent
+
+import pytest
+
+from tests.lint.models.marked import differing
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+out = rospy.Publisher("out", Float64, queue_size=1)
+{head}
+
+last, found, table, pair = None, None, {{"a": None, "b": None}}, [None, None]
+level, high = None, None
+
+def on(msg):
+    global last, found, level, high
+    last, level = msg, msg.data + 1.0
+    if msg.data > 0.0:
+        found, high = msg, msg.data + 1.0
+    table["a"] = msg
+    pair[0] = msg
+
+def tick(event):
+{body}
+
+rospy.Subscriber("in", Float64, on)
+rospy.Timer(rospy.Duration(1.0), tick)
+rospy.spin()
+"""
+GATED = "if {value} is not None:\n    out.publish(1.0)  # {flows}"
+
+
+def node(body: str, head: str = "") -> str:
+    return NODE.format(head=dedent(head), body=indent(body, "    "))
+
+
+@pytest.mark.parametrize(
+    ("before", "value", "flows"),
+    [
+        ("", "last", "clean"),
+        ("", "found", "control"),
+        ("", "level", "clean"),
+        ("", "high", "control"),
+        ("value = level", "value", "clean"),
+        ("value = high", "value", "control"),
+        ("value = last", "value", "clean"),
+        ("value = found", "value", "control"),
+        ("", "table['a']", "clean"),
+        ("", "pair[0]", "clean"),
+        ("value, _ = pair", "value", "clean"),
+        ("value = last.data if last.data > 0.0 else None", "value", "control"),
+        ("value = table.get(last.name)", "value", "control"),
+    ],
+)
+def test_a_test_for_none_asks_for_data_only_if_data_decided_it(before, value, flows):
+    assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "flows"),
+    [
+        ("last", "clean"),
+        ("found", "control"),
+        ("table['a']", "clean"),
+        ("last.data > 0.0 or None", "control"),
+    ],
+)
+def test_an_argument_is_none_where_the_caller_s_value_is(given, flows):
+    head = "def send(value):\n" + indent(GATED.format(value="value", flows=flows), "    ")
+    assert differing(node(f"send({given})", head)) == {}
+
+
+@pytest.mark.parametrize(
+    ("result", "flows"),
+    [("last", "clean"), ("found", "control"), ("level", "clean"), ("high", "control"), ("None", "clean")],
+)
+def test_a_result_is_none_where_the_returned_value_is(result, flows):
+    head = f"def asked():\n    return {result}"
+    assert differing(node(GATED.format(value="asked()", flows=flows), head)) == {}
