@@ -16,18 +16,22 @@ from pytest_tarl.searching.units import Unit
 EXACT = 0.01  # deviation up to which a mission goes as designed
 CLOSER = 0.6  # share of a candidate's deviation that another may have at most to be preferred
 COMPARED = 3  # missions on which two candidates that hold are compared
+POWERS = (1.0, 0.7)  # of the factor found; a first factor that holds is often larger than needed
 RIVALS = 8  # runs after which no further constant is tried beside a candidate that deviates
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield other named constants of the same function, with the factor found and its reciprocal.
+    """Yield other named constants of the same function, with the factor found and its reciprocal, then weaker ones.
 
     A constant that divides needs the reciprocal. Constants that never changed a mission are left out.
     """
     at = found.operands[0].site
     tried = gains.under(guard)
+    others = []
     for unit in named(units) if factor > 0 else ():
         site = unit.operands[0].site
         same = (site.module, site.qualname) == (at.module, at.qualname)
         if unit != found and same and (unit not in tried or gains.moves(unit)):
-            yield from ((unit, round(one, 3)) for one in (1.0 / factor, factor))
+            others.append(unit)
+    for power in POWERS:
+        yield from ((unit, round(factor**to, 3)) for unit in others for to in (-power, power))
