@@ -11,6 +11,7 @@ import jsonschema
 import pytest
 
 from tarl_lint.cli import main
+from tarl_lint.settings.config import Config
 from tarl_lint.system import command
 from tarl_lint.system import json as system_json
 from tarl_lint.system.chains import MOST, chains
@@ -129,6 +130,13 @@ def test_without_a_launch_file_nodes_have_the_names_in_their_code(workspace, cap
     _, out, _ = run(capsys, "--to", "/out")
     assert out.startswith(".: ") or ", names as in the code: 1 node" in out
     assert flows(out) == ["/in → /relay → /out  explicit"]
+
+
+def test_progress_names_each_program_that_is_analysed(workspace):
+    told: list[str] = []
+    launched(workspace, '<node pkg="arm" type="relay.py" name="relay"/>')
+    command.systems(command.request("all", [], None, None), Config(), told.append)
+    assert told == ["Looking for packages", "Reading 1 file", "Analysing arm/scripts/relay.py"]
 
 
 def test_the_search_ends_on_cycles(workspace, capsys):
