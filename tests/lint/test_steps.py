@@ -306,7 +306,7 @@ message_filters.TimeSynchronizer(fs=subs, queue_size=10).registerCallback(each)
         ),
         (
             "subs = []\nfor one in (left, right, state): subs.append(one)",
-            "left a, right a, right b, state a, state b, state c",
+            "left a, right b, state c",
         ),
         (
             "subs = [right]\nfor one in rospy.get_param('~names'): subs.append(message_filters.Subscriber('left', F))",
@@ -325,3 +325,20 @@ def test_appended_subscribers_keep_their_places(tmp_path, made, pairs):
 
 def test_two_runs_give_the_same_result(tmp_path):
     assert analysed(tmp_path, ferry=FERRY).flows == analysed(tmp_path, ferry=FERRY).flows
+
+
+@pytest.mark.parametrize("key", ["msg.name", "msg.name + 'x'", "str(msg.name)"])
+def test_a_key_from_data_makes_its_store_a_step(tmp_path, key):
+    node = f"""
+        import rospy
+        def on(msg):
+            table = {{}}
+            table[{key}] = 1.0
+            for name in table:
+                out.publish(name)
+        out = rospy.Publisher("b", F)
+        rospy.Subscriber("a", F, on)
+        """
+    (flow,) = analysed(tmp_path, node=node).flows
+    stores = [step.dependence for step in flow.steps if step.code.startswith("table[")]
+    assert (flow.kind, stores) == ("explicit", ["data"])

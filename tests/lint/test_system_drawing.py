@@ -1,0 +1,38 @@
+"""Columns of a picture of a system: each node after its inputs, each unfed topic just before its readers."""
+
+from __future__ import annotations
+
+from tarl_lint.system.drawing import Drawing, layers
+
+
+def drawn(*edges: str) -> list[list[str]]:
+    """Return the columns of edges such as `t a > n one`; inputs begin with a topic, outputs with a node."""
+    pairs = [tuple(edge.split(" > ")) for edge in edges]
+    names = sorted({name for pair in pairs for name in pair})
+    picture = Drawing(
+        nodes=tuple(name[2:] for name in names if name.startswith("n ")),
+        topics=tuple(name[2:] for name in names if name.startswith("t ")),
+        inputs=tuple((a[2:], b[2:], "explicit") for a, b in pairs if a.startswith("t ")),
+        outputs=tuple((a[2:], b[2:]) for a, b in pairs if a.startswith("n ")),
+        touching=(),
+        unread=frozenset(),
+    )
+    return [sorted(column) for column in layers(picture)]
+
+
+LINE = ("t a > n one", "n one > t b", "t b > n two", "n two > t c")
+
+
+def test_a_line_has_one_name_in_each_column():
+    assert drawn(*LINE) == [["t a"], ["n one"], ["t b"], ["n two"], ["t c"]]
+    assert drawn() == []
+
+
+def test_an_unfed_topic_stands_just_before_its_reader_but_a_node_just_after_its_inputs():
+    assert drawn(*LINE, "t late > n two")[2] == ["t b", "t late"]
+    early = drawn(*LINE, "t x > n three", "n three > t c")
+    assert early[:2] == [["t a", "t x"], ["n one", "n three"]]
+
+
+def test_a_cycle_is_cut_where_it_closes():
+    assert drawn(*LINE, "t c > n one") == [["t a"], ["n one"], ["t b"], ["n two"], ["t c"]]
