@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -212,6 +213,36 @@ def test_names_in_ros1(tmp_path, attributes, inside, code, flows):
     write(tmp_path, {"arm/package.xml": MANIFEST.format("arm", "catkin"), "arm/launch/a.launch": body,
                      "arm/scripts/n.py": ROS1 + code})  # fmt: skip
     assert found(tmp_path, "a.launch") == flows
+
+
+@pytest.mark.parametrize("value", [
+    'self.get_parameter("inp").value',
+    'self.get_parameter_or("inp", Parameter("inp", value="/x")).value',
+    'self.get_parameter_or("other", Parameter("other", value="/a")).value',
+])  # fmt: skip
+def test_parameters_that_the_code_does_not_declare(tmp_path, value):
+    code = f"""\
+    #!/usr/bin/env python3
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.parameter import Parameter
+    from std_msgs.msg import String
+
+    class Relay(Node):
+        def __init__(self):
+            super().__init__("n", automatically_declare_parameters_from_overrides=True)
+            self.pub = self.create_publisher(String, "/b", 10)
+            self.create_subscription(String, {value}, self.pub.publish, 10)
+
+    rclpy.init()
+    rclpy.spin(Relay())
+    """
+    body = '<node pkg="arm" exec="n.py" name="n"><param name="inp" value="/a"/></node>'
+    write(tmp_path, {"arm/package.xml": MANIFEST.format("arm", "ament_cmake"),
+                     "arm/CMakeLists.txt": "install(PROGRAMS scripts/n.py DESTINATION lib/${PROJECT_NAME})",
+                     "arm/launch/a.launch.xml": f"<launch>{body}</launch>",
+                     "arm/scripts/n.py": dedent(code)})  # fmt: skip
+    assert found(tmp_path, "a.launch.xml") == AB
 
 
 @pytest.mark.parametrize("value", [".value", ".get_parameter_value().string_array_value"])

@@ -210,12 +210,24 @@ def _written_defaults(it: Invocation) -> Mapping[int, ir.Expr]:
 
 def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
     """Return a parameter, or the alternative argument."""
-    found = _parameters(ctx, it.base, it.argument(it.fact.topic))
-    return join(found, it.argument(it.fact.extra))
+    found = _parameter_object(ctx, it)
+    names = it.argument(it.fact.topic).texts()
+    given = launched.value_of(ctx, names[0]) if len(names) == 1 else ELSEWHERE
+    alternative = it.argument(it.fact.extra)
+    if given is DEFAULT and not any(ctx.store.get((obj, "value")) for obj in found.pts):
+        return alternative
+    return join(found, alternative) if given is ELSEWHERE else found
 
 
 def _parameter_object(ctx: Interpreter, it: Invocation) -> Value:
-    return _parameters(ctx, it.base, it.argument(it.fact.topic))
+    """Return a parameter; if the code does not declare it, with the value that the launch gives the node."""
+    name = it.argument(it.fact.topic)
+    found = _parameters(ctx, it.base, name)
+    for obj in found.objects if ctx.launched is not None and len(name.texts()) == 1 else ():
+        given = launched.value_of(ctx, name.texts()[0])
+        if given is not DEFAULT and given is not ELSEWHERE and ctx.store.get((obj, "value")) is None:
+            ctx.store.put((obj, "value"), launched.made(ctx, given, it.frame, (it.call.slot, obj.name)))
+    return found
 
 
 def _parameters(ctx: Interpreter, receiver: Value, name: Value) -> Value:
