@@ -52,7 +52,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import explore  # noqa: E402
 
-BUDGET = 600  # episodes of a run, the default of --tarl-stress-budget
+BUDGET = 600  # episodes of a run
 PROBES = 4  # episodes at a drift that a peer proposes
 OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
 RECORDED = 100
