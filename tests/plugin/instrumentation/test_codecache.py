@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from pytest_tarl.instrumentation import codecache
 from pytest_tarl.instrumentation.codecache import KEPT, REMEMBERED, CodeCache, entry_name
 
 CODE = compile("x = 1", "node.py", "exec")
@@ -77,3 +78,13 @@ def test_entries_in_memory_are_bounded():
         cache.store(str(number), CODE)
     assert cache.load("0") is None
     assert cache.load(str(REMEMBERED)) is CODE
+
+
+def test_an_entry_that_cannot_be_kept_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OSError, match="No space"):
+        codecache._write(tmp_path / "entry.bin", compile("1", "x", "exec"))
+    assert not any(tmp_path.iterdir())

@@ -16,6 +16,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pytest_tarl.instrumentation import magnitude as magnitudes
 from pytest_tarl.instrumentation.magnitude import LIMIT, SAMPLE, magnitude
 
 
@@ -248,3 +249,12 @@ def test_magnitudes_are_finite_and_not_negative(value):
 def test_lists_arrays_and_nested_lists_have_the_same_magnitude(numbers):
     assert magnitude(numbers) == pytest.approx(magnitude(np.array(numbers)))
     assert magnitude([[one] for one in numbers]) == pytest.approx(magnitude(numbers))
+
+
+def test_the_number_of_known_classes_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(magnitudes, "_KINDS", {})
+    monkeypatch.setattr(magnitudes, "_KINDS_KEPT", 3)
+    kinds = [type(f"Kind{number}", (), {}) for number in range(8)]
+    for kind in kinds:
+        assert magnitude(kind()) == 0.0
+        assert len(magnitudes._KINDS) <= 3
