@@ -40,7 +40,7 @@ SETTINGS = """[run]
 source = {source}
 parallel = true
 patch = _exit
-context = ${{PYTEST_CURRENT_TEST-}}
+context = ${{TEST_OF_MUTANTS-}}
 data_file = {data}
 """
 
@@ -163,6 +163,7 @@ def pytest_unconfigure():
         Path(os.environ["TEST_TIMES"]).write_text(json.dumps(passed))
 import coverage
 def pytest_runtest_setup(item):
+    os.environ["TEST_OF_MUTANTS"] = item.nodeid  # for child processes; a test may run pytest inside
     if (current := coverage.Coverage.current()) is not None:
         current.switch_context(item.nodeid)
 """
