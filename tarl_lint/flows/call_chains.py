@@ -8,7 +8,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import Branches
 
-Entrance = tuple[int, list[Place], int]  # (condition, calls under it, outermost first, values made there)
+Entrance = tuple[int, Frame, Frame, int]  # (condition, frame of the value, frame of the condition, value)
 
 
 def made_alongside(graph: Graph) -> dict[int, list[int]]:
@@ -21,9 +21,9 @@ def made_alongside(graph: Graph) -> dict[int, list[int]]:
 
 
 def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[int]]) -> Iterator[Entrance]:
-    """Yield the calls through which conditions among the nodes choose values made in other functions.
+    """Yield the conditions among the nodes that choose values which may be made in other functions.
 
-    `alongside` is the result of `made_alongside`.
+    `calls` returns the calls between their frames. `alongside` is the result of `made_alongside`.
     """
     for node in sorted(nodes & (graph.gates.keys() | alongside.keys())):
         if node in graph.gates:
@@ -37,12 +37,11 @@ def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[in
 def _between(graph: Graph, choice: Branches, nodes: set[int], made: int, shown: int) -> Iterator[Entrance]:
     frame = graph.places[made].frame
     for decision, _ in sorted(choice):
-        calls = _calls(frame, graph.places[decision].frame) if decision in nodes else []
-        if calls:
-            yield decision, calls, shown
+        if decision in nodes:
+            yield decision, frame, graph.places[decision].frame, shown
 
 
-def _calls(frame: Frame, outer: Frame) -> list[Place]:
+def calls(frame: Frame, outer: Frame) -> list[Place]:
     """Return the calls that lead from one frame to another, outermost first; empty if none do."""
     found: list[Place] = []
     current: Frame | None = frame

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from tarl_lint.flows.call_chains import entrances, made_alongside
+from tarl_lint.flows.call_chains import calls, entrances, made_alongside
 from tarl_lint.flows.context_steps import Surroundings
 from tarl_lint.flows.ends import Ends
 from tarl_lint.flows.shortest_path import shortest_path
@@ -202,15 +202,22 @@ class Tracer:
     ) -> list[tuple[int, int]]:
         """Add the calls between conditions and the values stored under them; return the order constraints."""
         edges: dict[tuple[int, int], None] = {}
-        for decision, calls, made in entrances(self.graph, nodes, self._alongside):
-            chain = [statement_of.get(decision)]
-            for place in calls:
+        each = (
+            (statement_of.get(decision), frame, outer, statement_of.get(made))
+            for decision, frame, outer, made in entrances(self.graph, nodes, self._alongside)
+        )
+        for condition, frame, outer, value in dict.fromkeys(each):
+            places = calls(frame, outer)
+            if not places:
+                continue
+            chain = [condition]
+            for place in places:
                 found = self._statement(place)
                 if found is not None:
                     written.setdefault(id(found), found)
                     dependence.setdefault(id(found), "control")
                     chain.append(id(found))
-            chain.append(statement_of.get(made))
+            chain.append(value)
             known = [key for key in chain if key is not None]
             edges.update(dict.fromkeys((a, b) for a, b in pairwise(known) if a != b))
         return list(edges)

@@ -157,7 +157,8 @@ def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: 
     insides = [*map(visit.known.get, laden)]
     if None in insides:
         insides = [_deep(ctx, obj, visit, depth) for obj in laden]
-    return NONE.union(*filter(None, insides))
+    full = [inside for inside in insides if inside]
+    return full[0] if len(full) == 1 else NONE.union(*full)  # a set that is used again has its hash
 
 
 def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:
