@@ -61,6 +61,7 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "rclpy.lifecycle.managed_entity": "rclpy.lifecycle.entities",
     "rclpy.qos_event": "rclpy.event_handler",
     "rclpy.qos_overriding_options": "rclpy.qos_overriding_options",
+    "rclpy.signals": "rclpy.signals",
     "rclpy.topic_endpoint_info": "rclpy.graph",
     "rclpy.wait_for_message": "rclpy.wait_for_message",
     "rclpy.callback_groups": "rclpy.callback_groups",

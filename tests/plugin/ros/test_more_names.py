@@ -286,3 +286,18 @@ def test_multiplexers_are_called_by_their_services(start: Start) -> None:
         found = rospy.ServiceProxy("mux/select", MuxSelect)("odom").prev_topic
     """)
     assert ros.namespace["found"] == "/odom"
+
+
+def test_signal_handlers_may_be_chosen_and_are_never_installed(start: Start) -> None:
+    ros = start("""
+        import signal
+        import rclpy
+        from rclpy.signals import SignalHandlerOptions, get_current_signal_handlers_options
+        before = signal.getsignal(signal.SIGTERM)
+        rclpy.init(signal_handler_options=SignalHandlerOptions.SIGTERM)
+        rclpy.install_signal_handlers(rclpy.SignalHandlerOptions.ALL)
+        found = get_current_signal_handlers_options(), signal.getsignal(signal.SIGTERM) is before
+        rclpy.uninstall_signal_handlers()
+    """)
+    handlers, same = ros.namespace["found"]
+    assert (handlers.name, same) == ("NO", True)

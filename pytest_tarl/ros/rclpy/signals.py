@@ -1,0 +1,27 @@
+"""`rclpy.signals`: choices of signal handlers, which the in-process ROS never installs."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class SignalHandlerOptions(Enum):
+    """Signals on which rclpy would shut its contexts down."""
+
+    NO = 0
+    SIGINT = 1
+    SIGTERM = 2
+    ALL = 3
+
+
+def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
+    """Do nothing: signals belong to pytest."""
+
+
+def get_current_signal_handlers_options() -> SignalHandlerOptions:
+    """Return that no handler is installed."""
+    return SignalHandlerOptions.NO
+
+
+def uninstall_signal_handlers() -> None:
+    """Do nothing: no handler is installed."""
