@@ -8,22 +8,28 @@ from pathlib import Path
 from typing import Final
 
 LIMIT: Final = 20_000  # limit on the folders of one workspace
-MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "pyvenv.cfg", ".catkin")
+IGNORE: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+MARKERS: Final = (*IGNORE, "pyvenv.cfg", ".catkin")
 _BUILT: Final = frozenset({"build", "install", "log", "devel", "logs"})
 _NEVER: Final = frozenset({"__pycache__", "node_modules", "site-packages", "dist-packages"})
 
 
-def folders(root: Path, kept: frozenset[Path] = frozenset()) -> Iterator[tuple[Path, list[str]]]:
+def folders(
+    root: Path, kept: frozenset[Path] = frozenset(), ignored: list[Path] | None = None
+) -> Iterator[tuple[Path, list[str]]]:
     """Yield the source folders with their files, sorted; skip build output.
 
-    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders `kept`.
+    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders `kept`; add the
+    markers that a person has placed to `ignored`.
     """
     for looked, (folder, names, files) in enumerate(os.walk(root)):
         if looked >= LIMIT:
             return
-        ignored = looked and not set(MARKERS).isdisjoint(files)
-        if ignored and not any(one.is_relative_to(folder) for one in kept):
+        markers = [one for one in MARKERS if looked and one in files]
+        if markers and not any(one.is_relative_to(folder) for one in kept):
             names.clear()
+            if ignored is not None and markers[0] in IGNORE:
+                ignored.append(Path(folder, markers[0]))
             continue
         names[:] = sorted(name for name in names if _holds_sources(folder, name))
         yield Path(folder), sorted(files)

@@ -60,14 +60,25 @@ class Package:
 
 @dataclass(frozen=True, slots=True)
 class Workspace:
-    """All packages below a folder, sorted by name; of packages with the same name, the first counts."""
+    """All packages below a folder, sorted by name; of packages with the same name, the first counts.
+
+    `hidden`: names of further packages, each with the file, such as COLCON_IGNORE, that hides it.
+    """
 
     root: Path
     packages: tuple[Package, ...] = ()
+    hidden: tuple[tuple[str, Path], ...] = ()
 
     def package(self, name: str) -> Package | None:
         """Return the package of that name."""
         return next((one for one in self.packages if one.name == name), None)
+
+    def absence(self, name: str) -> str:
+        """Return a sentence's part that says why there is no package of that name."""
+        marker = next((path for hidden, path in self.hidden if hidden == name), None)
+        if marker is None:
+            return f"the package {name} is not in the workspace"
+        return f"the package {name} is hidden by {marker.relative_to(self.root).as_posix()}"
 
     def package_of(self, path: Path) -> Package | None:
         """Return the innermost package that contains a file."""

@@ -46,7 +46,8 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     Packages hidden by a marker such as COLCON_IGNORE are skipped, unless they contain one of the folders `kept`.
     """
     found: dict[Path, _Found] = {}
-    for folder, files in folders(root.resolve(), kept):
+    ignored: list[Path] = []
+    for folder, files in folders(root.resolve(), kept, ignored):
         if "package.xml" in files:
             found[folder] = _Found(folder, declared=True)
         owner = next((found[one] for one in (folder, *folder.parents) if one in found), None)
@@ -63,7 +64,13 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     for one in found.values():
         package = _package(one)
         packages.setdefault(package.name, package)
-    return Workspace(root.resolve(), tuple(packages[name] for name in sorted(packages)))
+    hidden = tuple((name, marker) for marker in ignored for name in _names(marker.parent))
+    return Workspace(root.resolve(), tuple(packages[name] for name in sorted(packages)), hidden)
+
+
+def _names(root: Path) -> list[str]:
+    """Return the names of the packages below a folder."""
+    return [manifest(folder)[0].name for folder, files in folders(root) if "package.xml" in files]
 
 
 def _package(found: _Found) -> Package:

@@ -284,6 +284,13 @@ def workspace(tmp_path: Path) -> Workspace:
     return read(tmp_path / "ws/src")
 
 
+def test_a_package_that_a_marker_hides_is_said_to_be_hidden(tmp_path: Path) -> None:
+    found = workspace(tmp_path)
+    assert found.absence("old") == "the package old is hidden by old/COLCON_IGNORE"
+    assert found.absence("elsewhere") == "the package elsewhere is not in the workspace"
+    assert [name for name, _ in found.hidden] == ["old"]  # build output has no marker of a person
+
+
 def test_a_workspace_lists_its_packages_programs_modules_and_files(tmp_path: Path) -> None:
     found = workspace(tmp_path)
     assert [one.name for one in found.packages] == ["arm_base", "arm_control"]

@@ -77,7 +77,7 @@ TEST = """
     start = dict(do="start", command=[sys.executable, "-c", sys.argv[2]], folder=".", environment=dict(os.environ),
                  clock="/clock", topics=[])
     guardian.stdin.write(json.dumps(start) + "\\n"); guardian.stdin.flush()
-    while "up" not in guardian.stdout.readline(): pass
+    while "up" not in (line := guardian.stdout.readline()): assert line, "the guardian ended"
     {last}
     print("ran", flush=True)
     sys.stdin.read()
@@ -118,8 +118,8 @@ def running(
         text=True,
     ) as test:
         assert test.stdout is not None
-        assert test.stdout.readline() == "ran\n"
         try:
+            assert test.stdout.readline() == "ran\n"
             yield test
         finally:
             with suppress(ProcessLookupError):
