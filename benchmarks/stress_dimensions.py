@@ -4,12 +4,13 @@
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
 
-The worlds of stress_worlds.py and, not used in development, stress_worlds_2.py are formulas. Each task of
-benchmarks/drift has its own drift, from the nominal value to that of the task, and three faults of the topic of its
-first numeric sensor: a bias, a latency and a dropout, of the same relative size in every task. Each method may run
-BUDGET episodes. A peer learns of each drift that it proposes the distance from nominal if the guarantee fails on PROBES
-common seeds, and otherwise the margin above the largest distance. A failure counts if fresh seeds confirm it, free of
-charge; each method may offer its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1).
+The worlds of stress_worlds.py, stress_worlds_2.py and, not used in development, stress_worlds_3.py are formulas. Each
+task of benchmarks/drift has its own drift, from the nominal value to that of the task, and three faults of the topic
+of its first numeric sensor: a bias, a latency and a dropout, of the same relative size in every task. Each method may
+run BUDGET episodes. A peer learns of each drift that it proposes the distance from nominal if the guarantee fails on
+PROBES common seeds, and otherwise the margin above the largest distance. A failure counts if fresh seeds confirm it,
+free of charge; each method may offer its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k +
+1).
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ from stress import nominal_of  # noqa: E402
 from stress_worlds import TOLERANCE, WORLDS, Formula, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402
 from stress_worlds_2 import FRESH_WORLDS  # noqa: E402
+from stress_worlds_3 import NEW_WORLDS  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -52,6 +54,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import explore  # noqa: E402
 
+FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS}
 BUDGET = 600  # episodes of a run
 PROBES = 4  # episodes at a drift that a peer proposes
 OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
@@ -127,7 +130,7 @@ def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> 
 
 def formula(name: str) -> Arena:
     """Return a world of stress_worlds.py."""
-    return recorded(name, Formula({**WORLDS, **FRESH_WORLDS}[name]), world_space(), FORMULA)
+    return recorded(name, Formula(FORMULAS[name]), world_space(), FORMULA)
 
 
 def ours(one: Arena, seed: int) -> list[Point]:
@@ -295,7 +298,7 @@ def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
 def main() -> None:
     """Print a line per task, and the sums."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    parser.add_argument("tasks", nargs="*", default=[*WORLDS, *FRESH_WORLDS, *TASKS])
+    parser.add_argument("tasks", nargs="*", default=[*FORMULAS, *TASKS])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
@@ -313,7 +316,7 @@ def main() -> None:
         def visitor(stage: Stage) -> dict[str, list[float | None]]:
             return compare(arena(stage), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
 
-        if task in WORLDS or task in FRESH_WORLDS:
+        if task in FORMULAS:
             found = compare(formula(task), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
         else:
             found = visit(task, visitor, None, HERE / "drift")
