@@ -20,7 +20,6 @@ REGISTERS: Final = re.compile(
 FAILS: Final = re.compile(
     r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
     r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"
-    r"|\w*(?:msg|cloud2?)_to_|\w+_to_(?:\w*msg|cv2?|numpy|array)(?:_|$)"  # as imgmsg_to_cv2 on an unknown encoding
 )  # raises for some arguments
 
 

@@ -1,7 +1,12 @@
 """Shared by all tests."""
 
 import signal
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 pytest_plugins = ["pytester"]
@@ -20,3 +25,31 @@ def pytest_configure() -> None:
     """Heed Ctrl-C, and let the programs under test heed it, also where a script started us in the background."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+class _Imported:
+    """Notes the modules that a pytest run in this process has imported, before pytester forgets them."""
+
+    def __init__(self) -> None:
+        self.modules: dict[str, ModuleType] = {}
+
+    def pytest_unconfigure(self) -> None:
+        self.modules = dict(sys.modules)
+
+
+@pytest.fixture
+def pytester(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
+    """Keep the libraries that a run in this process imports: imported again, their classes would be others."""
+    run = pytester.inline_run
+
+    def inline_run(*args: Any, plugins: Any = (), **more: Any) -> Any:
+        imported = _Imported()
+        result = run(*args, plugins=[*plugins, imported], **more)
+        for name, module in imported.modules.items():
+            file = getattr(module, "__file__", None)
+            if file is not None and not Path(file).is_relative_to(pytester.path):
+                sys.modules.setdefault(name, module)
+        return result
+
+    monkeypatch.setattr(pytester, "inline_run", inline_run)
+    return pytester

@@ -80,6 +80,10 @@ class Recorder:
             self._share()
         self._watch, self._watching = ThreadWatch(self._share), False
 
+    def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
+        """Pickle with a function of a program of several threads: in another process, nothing is recorded."""
+        return _Elsewhere, ()
+
     def bind(self, code: CodeType) -> CodeType:
         """Return instrumented code that records into this recorder."""
         if self._single and not self._watching:
@@ -174,6 +178,21 @@ def _alone() -> bool:
 def _of_tool(thread: threading.Thread) -> bool:
     runs = getattr(thread, "_target", None) or getattr(thread, "function", None)  # a Timer has a function
     return str(getattr(runs, "__module__", None)).partition(".")[0] in _TOOLS
+
+
+class _Elsewhere:
+    """Stands for a recorder in a process that does not record; `Recorder._entries` is called with it."""
+
+    __slots__ = ()
+
+    @property
+    def _local(self) -> _Elsewhere:
+        return self
+
+    @property
+    def entries(self) -> list[Any]:
+        """Return a list that nobody reads."""
+        return []
 
 
 def _plain_hook(entries: list[Any]) -> Hook:

@@ -86,9 +86,10 @@ def test_instrumented_code_is_hashable_and_prints_no_events():
     assert len(str(one.__code__.co_consts)) < 300
 
 
-def test_a_pickled_function_computes_the_same_and_records_nothing():
+@pytest.mark.parametrize("threads", [False, True])
+def test_a_pickled_function_computes_the_same_and_records_nothing(threads):
     cloudpickle = pytest.importorskip("cloudpickle")
-    recorder = Recorder()
+    recorder = Recorder(threads=threads)
     f = function("def f(x):\n    y = x * 2.0\n    z = y + len('ab')\n    return z\n", recorder)
     elsewhere = pickle.loads(cloudpickle.dumps(f))
     assert elsewhere(3.0) == elsewhere(3) == 8.0
