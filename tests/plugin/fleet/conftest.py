@@ -1,11 +1,12 @@
 """Shared by the tests of fleets."""
 
+from __future__ import annotations
+
+from contextlib import suppress
+from importlib import import_module
+
 # Imported before the first test: pytester forgets the modules that a test with it imports, and if they were imported
-# again, the classes of file systems and tasks would be others than those that are in use.
-import importlib.metadata
-
-import distributed
-import fsspec.implementations.local
-import tlz.curried
-
-LIBRARIES = (distributed, fsspec.implementations.local, importlib.metadata, tlz.curried)
+# again, their classes would be others than those in use.
+for library in ("distributed", "fsspec.implementations.local", "importlib.metadata", "pandas", "tlz.curried"):
+    with suppress(ModuleNotFoundError):  # an extra that is not installed
+        import_module(library)
