@@ -11,7 +11,7 @@ from urllib.request import url2pathname
 
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
-FLEET = ("dask", "duckdb", "fsspec", "pyarrow")
+FLEET = ("dask", "duckdb", "fsspec", "pyarrow", "threadpoolctl")
 STRESS = ("cma", "hypothesis")
 SOBOL = ("SALib",)
 

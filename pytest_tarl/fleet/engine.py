@@ -3,7 +3,8 @@
 Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so the number of
 workers, and workers that die, do not change a bit. A task names the files that it reads, and the workers read them: if
 one dies, the scheduler runs its tasks again elsewhere. Locally, nothing is started but threads, and none with one
-worker.
+worker. Linear algebra takes one thread for each task: more would compete with the other tasks, and how many there are
+would change the order of a sum, and with it the last bits of a result.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from typing import Any, Protocol, TypeVar
+
+from threadpoolctl import threadpool_limits
 
 from pytest_tarl.errors import FleetError, SettingsError
 from pytest_tarl.extras import install_command
@@ -86,7 +89,13 @@ class Cluster:
     def _submitted(self, function: Callable[..., Result], arguments: tuple[Any, ...]) -> Future[Result]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # Dask's on the size of a task's arguments
-            return self.executor.submit(function, *arguments)
+            return self.executor.submit(_by_one_thread, function, *arguments)
+
+
+def _by_one_thread(function: Callable[..., Result], *arguments: Any) -> Result:
+    """Run a task on a cluster's worker; the limit stays, because other threads of the worker may run tasks, too."""
+    threadpool_limits(1, user_api="blas")
+    return function(*arguments)
 
 
 def _result(future: Future[Result]) -> Result:
@@ -105,15 +114,16 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Run tasks in this process."""
-    if workers == 1:
-        yield Local(1, None)
-        return
-    threads = ThreadPoolExecutor(workers, thread_name_prefix="tarl-fleet")
-    try:
-        yield Local(workers, threads)
-    finally:
-        threads.shutdown(wait=True, cancel_futures=True)
+    """Run tasks in this process; linear algebra outside of tasks takes one thread as well."""
+    with threadpool_limits(1, user_api="blas"):
+        if workers == 1:
+            yield Local(1, None)
+            return
+        threads = ThreadPoolExecutor(workers, thread_name_prefix="tarl-fleet")
+        try:
+            yield Local(workers, threads)
+        finally:
+            threads.shutdown(wait=True, cancel_futures=True)
 
 
 @contextmanager
@@ -133,7 +143,7 @@ def cluster(address: str) -> Iterator[Engine]:
             f"--cluster: no Dask scheduler answers at {address} ({problem}). Start one with `dask scheduler`, and give "
             "its address, such as tcp://192.0.2.1:8786."
         ) from None
-    with client:
+    with client, threadpool_limits(1, user_api="blas"):
         workers = sum(client.nthreads().values())
         if not workers:
             raise SettingsError(

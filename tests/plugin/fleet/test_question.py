@@ -375,32 +375,6 @@ def test_an_unreachable_cluster_is_one_sentence(
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: int) -> None:
-    ran: list[int] = []
-
-    def tasks() -> Iterator[tuple[int]]:
-        yield from ((number,) for number in range(100))
-
-    def squared(number: int) -> int:
-        ran.append(number)
-        return number**2
-
-    with engine.local(workers) as some:
-        assert list(some.each(squared, tasks())) == [number**2 for number in range(100)]
-        ran.clear()
-        results = some.each(squared, tasks())
-        next(results)
-        results.close()  # type: ignore[attr-defined]
-    assert 1 <= len(ran) <= engine.WINDOW * workers
-
-
-def test_a_task_has_its_arguments_whatever_they_look_like() -> None:
-    odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
-    with engine.local(1) as some:
-        assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd
-
-
-@pytest.mark.parametrize("workers", [1, 2, 7])
 def test_the_number_of_workers_does_not_change_a_bit(
     folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
 ) -> None:
