@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 
 from pytest_tarl.errors import FleetError
 from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
-from pytest_tarl.fleet.store import Store
+from pytest_tarl.fleet.store import ADVICE, Store
 
 
 @dataclass(frozen=True)
@@ -87,6 +87,15 @@ def _readable(where: Store, path: str) -> Iterator[None]:
         yield
     except (pa.ArrowInvalid, OSError) as problem:
         raise FleetError(
-            f"{where.shown(path)} is damaged or cannot be read ({str(problem).splitlines()[0]}): delete it and ingest "
+            f"{where.shown(path)} is damaged or cannot be read ({_first_line(problem)}): delete it and ingest "
             "its logs again."
         ) from problem
+    except Exception as problem:  # each store has exceptions of its own, such as those of an HTTP client
+        raise FleetError(
+            f"{where.shown(path)} cannot be read ({_first_line(problem)}): {ADVICE}"
+        ) from problem
+
+
+def _first_line(problem: Exception) -> str:
+    """Return what an exception says, or its name if it says nothing, as timeouts do."""
+    return str(problem).partition("\n")[0] or type(problem).__name__

@@ -39,9 +39,9 @@ class Faults:
         fault = self.next(method, path)
         self.requests.append((method, path, fault))
         if fault == "503":
-            return refused(start, "503 Slow Down", "SlowDown")
+            return refused(start, "503 Slow Down", "SlowDown", method)
         if fault == "expired":
-            return refused(start, "400 Bad Request", "ExpiredToken")
+            return refused(start, "400 Bad Request", "ExpiredToken", method)
         if fault == "half" and method == "PUT":
             kept = {key: value for key, value in environ.items() if not key.startswith(CHECKED)}
             body = environ["wsgi.input"].read(int(environ["CONTENT_LENGTH"]) // 2)
@@ -52,7 +52,7 @@ class Faults:
             sleep(LATE)
         if fault == "lost":
             list(self.app(environ, ignored))
-            return refused(start, "503 Slow Down", "SlowDown")
+            return refused(start, "503 Slow Down", "SlowDown", method)
         found: Iterable[bytes] = self.app(environ, start)
         if not self.unlisted or b"list-type" not in environ["QUERY_STRING"].encode():
             return found
@@ -63,9 +63,11 @@ class Faults:
         return b" " * len(entry[0]) if hidden else entry[0]  # the length is in the header already
 
 
-def refused(start: Start, status: str, code: str) -> list[bytes]:
-    start(status, [("Content-Type", "application/xml")])
-    return [ERROR.format(code=code).encode()]
+def refused(start: Start, status: str, code: str, method: str = "PUT") -> list[bytes]:
+    """Refuse a request; the answer to HEAD has no body."""
+    body = b"" if method == "HEAD" else ERROR.format(code=code).encode()
+    start(status, [("Content-Type", "application/xml"), ("Content-Length", str(len(body)))])
+    return [body]
 
 
 def ignored(status: str, headers: object, problem: object = None) -> Callable[[bytes], None]:

@@ -1,0 +1,53 @@
+"""A store that fails in a way of its own gives one sentence."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+pytest.importorskip("pyarrow")
+
+from pytest_tarl.errors import FleetError
+from pytest_tarl.fleet import dataset
+from pytest_tarl.fleet.store import Store
+
+
+class ClientError(Exception):
+    """As the errors of HTTP clients, no OSError."""
+
+
+@pytest.mark.parametrize("reads", [False, True])
+def test_a_failure_of_the_stores_client_names_the_file_and_the_advice(reads: bool) -> None:
+    def fail(*_: object) -> None:
+        raise ClientError("An HTTP client failed:\n  data after the end")
+
+    file = SimpleNamespace(read=fail, seek=fail, tell=fail, close=lambda: None, closed=False)
+    fs = SimpleNamespace(open=(lambda *_: Opened(file)) if reads else fail)
+    with pytest.raises(FleetError) as told:
+        dataset.columns(Store(fs, "fleet/data", "s3"), "missions/a.parquet", ["mission"])
+    text = str(told.value)
+    assert text.startswith(
+        "s3://fleet/data/missions/a.parquet cannot be read (An HTTP client failed:): check "
+    )
+    assert "\n" not in text
+
+
+def test_a_failure_without_words_is_named() -> None:
+    def fail(*_: object) -> None:
+        raise TimeoutError
+
+    with pytest.raises(FleetError, match=r"a\.parquet is damaged or cannot be read \(TimeoutError\): "):
+        dataset.columns(Store(SimpleNamespace(open=fail), "fleet", "s3"), "a.parquet", ["mission"])
+
+
+class Opened:
+    """A file that is used in a `with` statement."""
+
+    def __init__(self, file: object) -> None:
+        self.file = file
+
+    def __enter__(self) -> object:
+        return self.file
+
+    def __exit__(self, *_: object) -> None: ...
