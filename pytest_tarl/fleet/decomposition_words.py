@@ -48,4 +48,5 @@ def lowest(one: Component, levels: tuple[str, ...]) -> str:
     if problem(one) or not one.effects or not one.low > 0:
         return ""
     order = sorted(range(len(levels)), key=lambda n: (one.effects[n], levels[n]))[:EXTREMES]
-    return ", ".join(f"{levels[n]} {one.effects[n]:+.3g}" for n in order if one.effects[n] < 0)
+    named = [level or f"no {one.name}" for level in levels]
+    return ", ".join(f"{named[n]} {one.effects[n]:+.3g}" for n in order if one.effects[n] < 0)

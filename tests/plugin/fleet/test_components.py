@@ -11,7 +11,7 @@ import pytest
 from pytest_tarl.fleet import components as module
 from pytest_tarl.fleet.components import Component, components
 from pytest_tarl.fleet.decomposition import Decomposition, summed
-from pytest_tarl.fleet.decomposition_words import lines
+from pytest_tarl.fleet.decomposition_words import lines, lowest
 from pytest_tarl.learning.tables import Floats, Ints
 
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
@@ -101,6 +101,11 @@ def test_a_version_that_came_with_a_season_everywhere_cannot_be_told_apart() -> 
     ]
     assert said[1] == "  version         cannot be told apart from the others"
     assert "season (month)" in said[3]
+
+
+def test_missions_without_a_repair_are_named_among_the_lowest() -> None:
+    repair = module.Component("repair", 0.5, 0.1, 0.9, 2, effects=(-0.25, 0.25))
+    assert lowest(repair, ("", "guard-1")) == "no repair -0.25"
 
 
 def test_few_robots_give_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
