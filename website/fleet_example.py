@@ -1,0 +1,62 @@
+"""Write the fleet of the example in docs/howto/fleet-logs.md: its logs, its recording and its data set.
+
+    python -m website.fleet_example FOLDER && cd FOLDER && tarl fleet fleet --by site --since 2026-08-01
+
+Two of 32 robots drift from their 32nd mission on. At the second site, all robots earn less from their 41st mission on,
+and half of them run a repair in their last 15 missions.
+"""
+
+from __future__ import annotations
+
+import sys
+from datetime import datetime, timezone
+from pathlib import Path
+
+from pytest_tarl.commands.cli import main
+from pytest_tarl.observing.frames import LogFile
+from tests.plugin.monitoring.missions import Walk, fixture, records, start, walks
+
+BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
+APART = 7.5 * 3600  # s between two missions of a robot
+ROBOTS, DRIFTED = 32, (4, 9)
+SLIGHT = 0.4  # size of the drift of the second site, where that of single robots is 1
+
+
+def write(folder: Path) -> None:
+    """Write everything below a folder that does not exist yet."""
+    folder.mkdir(parents=True)
+    fixture(folder / "walk.npz", walks(120, 1))
+    for robot in range(ROBOTS):
+        south, alone = robot >= ROBOTS // 2, float(robot in DRIFTED)
+        repaired = south and robot % 2 == 0
+        late = SLIGHT if south else alone
+        before = walks(31, 100 + robot) + walks(9, 200 + robot, alone) + walks(5, 300 + robot, late)
+        last = walks(15, 400 + robot, 0.0 if repaired else late)
+        name, site, first = f"r{robot:02}.log", "south" if south else "north", BEGAN + robot
+        if repaired:
+            ingest(folder, log(folder / "logs" / name, before, first), site)
+            ingest(folder, log(folder / "new" / name, last, first + 45 * APART), site, "--repair", "guard-1")
+        else:
+            ingest(folder, log(folder / "logs" / name, before + last, first), site)
+
+
+def log(path: Path, missions: list[Walk], first: float) -> Path:
+    """Write a log; its first mission begins at `first`, in s since 1970."""
+    file = LogFile(path)
+    file.append(start())
+    for n, one in enumerate(missions):
+        for record in records(one, first + n * APART):
+            file.append(record)
+    file.close()
+    return path
+
+
+def ingest(folder: Path, path: Path, site: str, *more: str) -> None:
+    """Add a log to the data set."""
+    into = ("--to", str(folder / "fleet"), "--fixture", str(folder / "walk.npz"), "--robot", "{file}")
+    if main(["ingest", str(path), *into, "--version", "1.4", "--site", site, *more]):
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
