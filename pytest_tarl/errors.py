@@ -77,3 +77,9 @@ class SearchError(TarlError):
 
 class RefusedError(TarlError):
     """A command is valid but would cause harm in the current state, so it changed nothing."""
+
+
+def first_line(error: BaseException | None) -> str:
+    """Return the first line of what an error says, or the name of its class if it says nothing, as timeouts do."""
+    text = str(error).strip()
+    return text.splitlines()[0] if text else type(error).__name__

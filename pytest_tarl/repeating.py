@@ -28,6 +28,7 @@ from pytest_tarl.errors import (
     SimulatorLostError,
     StuckNodeError,
     TarlError,
+    first_line,
 )
 from pytest_tarl.formula_calls import said
 from pytest_tarl.printable import printable
@@ -361,7 +362,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         plan=episode.plan,
         trace=episode.trace,
         passed=not failed,
-        failure=_first_line(episode.error) if failed and mission else "",
+        failure=first_line(episode.error) if failed and mission else "",
         broken="\n".join(report.longreprtext for report in broken),
         topics=episode.topics,
         crashed=isinstance(episode.error, NodeError),
@@ -392,8 +393,3 @@ def _surprise(report: pytest.TestReport) -> bool:
 def _reason(report: pytest.TestReport) -> str:
     """Return why a test skipped itself."""
     return str(report.longrepr[2]) if isinstance(report.longrepr, tuple) else report.longreprtext
-
-
-def _first_line(error: BaseException | None) -> str:
-    text = str(error).strip()
-    return text.splitlines()[0] if text else type(error).__name__

@@ -19,7 +19,7 @@ import duckdb
 import numpy as np
 import pyarrow as pa
 
-from pytest_tarl.errors import FleetError
+from pytest_tarl.errors import FleetError, first_line
 from pytest_tarl.files import advice_on
 from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
@@ -101,7 +101,7 @@ def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter
             yield Database(connection, tuple(_wanted(connection, parts)))
         except duckdb.Error as problem:
             raise FleetError(
-                f"{where.shown('')} cannot be read ({str(problem).splitlines()[0]}): check the files and the free "
+                f"{where.shown('')} cannot be read ({first_line(problem)}): check the files and the free "
                 f"disk space of {SPILLED}, and run the command again."
             ) from problem
         finally:

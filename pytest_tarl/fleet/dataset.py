@@ -10,7 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pytest_tarl.errors import FleetError
+from pytest_tarl.errors import FleetError, first_line
 from pytest_tarl.fleet.schema import PREFIX, READABLE, Origin
 from pytest_tarl.fleet.store import ADVICE, Store
 
@@ -87,15 +87,8 @@ def _readable(where: Store, path: str) -> Iterator[None]:
         yield
     except (pa.ArrowInvalid, OSError) as problem:
         raise FleetError(
-            f"{where.shown(path)} is damaged or cannot be read ({_first_line(problem)}): delete it and ingest "
+            f"{where.shown(path)} is damaged or cannot be read ({first_line(problem)}): delete it and ingest "
             "its logs again."
         ) from problem
     except Exception as problem:  # each store has exceptions of its own, such as those of an HTTP client
-        raise FleetError(
-            f"{where.shown(path)} cannot be read ({_first_line(problem)}): {ADVICE}"
-        ) from problem
-
-
-def _first_line(problem: Exception) -> str:
-    """Return what an exception says, or its name if it says nothing, as timeouts do."""
-    return str(problem).partition("\n")[0] or type(problem).__name__
+        raise FleetError(f"{where.shown(path)} cannot be read ({first_line(problem)}): {ADVICE}") from problem

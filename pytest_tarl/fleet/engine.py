@@ -3,8 +3,8 @@
 Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so the number of
 workers, and workers that die, do not change a bit. A task names the files that it reads, and the workers read them: if
 one dies, the scheduler runs its tasks again elsewhere. Locally, nothing is started but threads, and none with one
-worker. Linear algebra takes one thread for each task: more would compete with the other tasks, and how many there are
-would change the order of a sum, and with it the last bits of a result.
+worker. Each task uses one thread for linear algebra: more threads would compete with the other tasks, and their number
+would change the order of sums, and so the last bits of a result.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Run tasks in this process; linear algebra outside of tasks takes one thread as well."""
+    """Run tasks in this process; outside of tasks, too, linear algebra uses one thread."""
     with threadpool_limits(1, user_api="blas"):
         if workers == 1:
             yield Local(1, None)

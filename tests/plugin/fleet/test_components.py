@@ -104,7 +104,7 @@ def test_a_version_that_came_with_a_season_everywhere_cannot_be_told_apart() -> 
 
 
 def test_missions_without_a_repair_are_named_among_the_lowest() -> None:
-    repair = module.Component("repair", 0.5, 0.1, 0.9, 2, effects=(-0.25, 0.25))
+    repair = Component("repair", 0.5, 0.1, 0.9, 2, effects=(-0.25, 0.25))
     assert lowest(repair, ("", "guard-1")) == "no repair -0.25"
 
 
