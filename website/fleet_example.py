@@ -13,8 +13,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from pytest_tarl.commands.cli import main
-from pytest_tarl.observing.frames import LogFile
-from tests.plugin.monitoring.missions import Walk, fixture, records, start, walks
+from tests.plugin.monitoring.missions import fixture, log, walks
 
 BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
 APART = 7.5 * 3600  # s between two missions of a robot
@@ -34,21 +33,16 @@ def write(folder: Path) -> None:
         last = walks(15, 400 + robot, 0.0 if repaired else late)
         name, site, first = f"r{robot:02}.log", "south" if south else "north", BEGAN + robot
         if repaired:
-            ingest(folder, log(folder / "logs" / name, before, first), site)
-            ingest(folder, log(folder / "new" / name, last, first + 45 * APART), site, "--repair", "guard-1")
+            ingest(folder, log(folder / "logs" / name, before, first, APART), site)
+            ingest(
+                folder,
+                log(folder / "new" / name, last, first + 45 * APART, APART),
+                site,
+                "--repair",
+                "guard-1",
+            )
         else:
-            ingest(folder, log(folder / "logs" / name, before + last, first), site)
-
-
-def log(path: Path, missions: list[Walk], first: float) -> Path:
-    """Write a log; its first mission begins at `first`, in s since 1970."""
-    file = LogFile(path)
-    file.append(start())
-    for n, one in enumerate(missions):
-        for record in records(one, first + n * APART):
-            file.append(record)
-    file.close()
-    return path
+            ingest(folder, log(folder / "logs" / name, before + last, first, APART), site)
 
 
 def ingest(folder: Path, path: Path, site: str, *more: str) -> None:

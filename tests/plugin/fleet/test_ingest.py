@@ -40,14 +40,7 @@ def world(folder: Path, robots: int = 3, each: int = 5) -> tuple[Path, list[Path
 
 
 def log(folder: Path, robot: str, walks: list[missions.Walk], first: float = 10 * DAY) -> Path:
-    path = folder / robot / "missions.log"
-    file = missions.LogFile(path)
-    file.append(missions.start())
-    for n, one in enumerate(walks):
-        for record in missions.records(one, first + n * DAY / 2):
-            file.append(record)
-    file.close()
-    return path
+    return missions.log(folder / robot / "missions.log", walks, first, apart=DAY / 2)
 
 
 def order(test: Path, logs: list[Path], to: Path) -> Order:

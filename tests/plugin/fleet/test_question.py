@@ -59,12 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     missions.fixture(folder / "test.npz", missions.walks(120, 1))
     for robot in range(ROBOTS):
         path = folder / f"r{robot}" / "missions.log"
-        file = missions.LogFile(path)
-        file.append(missions.start())
-        for n, one in enumerate(walks(robot)):
-            for record in missions.records(one, DAY * (20_000 + n / 4) + robot):
-                file.append(record)
-        file.close()
+        missions.log(path, walks(robot), 20_000 * DAY + robot, apart=DAY / 4)
     add(folder, range(ROBOTS), folder / "data")
     return folder
 
@@ -389,13 +384,8 @@ def test_two_runs_that_add_the_same_missions_at_once_count_them_once(
 ) -> None:
     """Let other runs add missions while a run, which has read what is there, writes its first file."""
     write, to = Store.write, tmp_path / "data"
-    log = tmp_path / "r0" / "missions.log"
-    file = missions.LogFile(log)
-    file.append(missions.start())
-    for n, one in enumerate(walks(0)[:30]):  # the log before it grew
-        for record in missions.records(one, DAY * (20_000 + n / 4)):
-            file.append(record)
-    file.close()
+    path = tmp_path / "r0" / "missions.log"
+    log = missions.log(path, walks(0)[:30], 20_000 * DAY, apart=DAY / 4)  # before it grew
     early = Order((log,), str(to), folder / "test.npz", "{folder}", "1.0", "s0")
 
     def meanwhile(self: Store, path: str, content: bytes) -> None:

@@ -111,12 +111,12 @@ def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, 
     return [{"kind": "mission", "time": time}, *steps, end]
 
 
-def log(path: Path, missions: list[Walk], first: float = 2000.0, **changes: Any) -> Path:
-    """Write a log, or append to one as a restarted observer does."""
+def log(path: Path, missions: list[Walk], first: float = 2000.0, apart: float = 1.0, **changes: Any) -> Path:
+    """Write a log, or append to one as a restarted observer does; missions begin `apart` seconds after each other."""
     file = LogFile(path)
     file.append(start(**changes))
     for n, one in enumerate(missions):
-        for record in records(one, first + n):
+        for record in records(one, first + n * apart):
             file.append(record)
     file.close()
     return path
