@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.charts import Chart
 from pytest_tarl.patching.definitions import Place
 from pytest_tarl.patching.definitions import edits as definition_edits
 from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits, document
@@ -43,6 +44,9 @@ class Mutation:
     form: Form | None = (
         None  # set for a structural repair, whose operand is an expression and whose value is a factor
     )
+    chart: Chart | None = field(
+        default=None, compare=False
+    )  # the scale on which the search moves the operand
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
@@ -65,6 +69,27 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
     if operand.literal and value is not None:
         return _literal(operand, value, value * factor, integral)
     return _moved(operand, factor, 1.0)
+
+
+def stepped(
+    operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
+) -> Mutation | None:
+    """Return the mutation of one step on a chart, or by a factor without one; None if there is none."""
+    if chart is None or operand.value is None:
+        return mutate(operand, step)
+    by = chart.factor(float(operand.value), step)
+    made = mutate(operand, by) if by is not None else None
+    return replace(made, chart=chart) if made is not None else None
+
+
+def step_of(mutation: Mutation) -> float | None:
+    """Return the step of a mutation on its chart; None if it has no chart or no step leads there."""
+    constant = mutation.operand.value
+    if mutation.chart is None or constant is None:
+        return None
+    by = float(mutation.value)
+    new = by if mutation.operand.literal or not constant else float(constant) * by
+    return mutation.chart.step(float(constant), new)
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import log
 
 from pytest_tarl.model import Reason
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.mutate import Mutation, step_of, stepped
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
@@ -59,7 +59,7 @@ class Between:
     def _moved(self, mutation: Mutation, by: float) -> Mutation | None:
         if mutation.form is not None:
             return replace(mutation, value=by)
-        return self.mutate(mutation.operand, by)
+        return stepped(mutation.operand, by, mutation.chart, self.mutate)
 
     def told(self, reason: Reason) -> bool:
         """Take the result for the last candidate; return whether it shows on which side to continue."""
@@ -83,7 +83,11 @@ def stronger(
         by = float(mutation.value) if searched else factor(mutation)
         if by is None or by <= 0.0 or by == 1.0:
             return None
-        made = replace(mutation, value=by**power) if searched else mutate(mutation.operand, by**power)
+        made = (
+            replace(mutation, value=by**power)
+            if searched
+            else stepped(mutation.operand, by**power, mutation.chart, mutate)
+        )
         if made is None:
             return None
         moved.append(made)
@@ -104,10 +108,12 @@ def _beyond(one: float, other: float) -> bool:
 
 
 def factor(mutation: Mutation) -> float | None:
-    """Return the positive factor by which a mutation moves its operand; None if there is none."""
+    """Return the positive factor, or step on a chart, by which a mutation moves its operand; None if there is none."""
     operand, value = mutation.operand, mutation.value
     if mutation.form is not None or isinstance(operand.value, bool) or isinstance(value, bool):
         return None
+    if mutation.chart is not None:
+        return step_of(mutation)
     if operand.value == 0:
         return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # as `mutations` steps away from zero
     moved = float(value) / operand.value if operand.literal and operand.value is not None else float(value)

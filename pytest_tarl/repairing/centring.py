@@ -11,13 +11,13 @@ from dataclasses import replace
 from statistics import fmean
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.mutate import Mutation, stepped
 from pytest_tarl.repairing.between import factor
 from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 
 THIN = 0.5  # share of the margin; candidates that lose less are not improved
-STEPS = (1.12, 1.04)  # ratios of neighbouring values
+STEPS = (1.3, 1.12, 1.04)  # ratios of neighbouring values
 SEEDS = 5  # seeds on which to compare values; a value that falls behind runs on fewer
 BEHIND = 2  # seeds after which a value that earned less is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio
@@ -77,7 +77,11 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
         by = float(one.value) if one.form is not None and one.form.parameter else factor(one)
         if by is None or one.operand.site != candidate.mutations[0].operand.site:
             return None
-        further = replace(one, value=by * ratio) if one.form is not None else mutate(one.operand, by * ratio)
+        further = (
+            replace(one, value=by * ratio)
+            if one.form is not None
+            else stepped(one.operand, by * ratio, one.chart, mutate)
+        )
         if further is None:
             return None
         made.append(further)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import copysign
 
 from pytest_tarl.model import Reason
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.mutate import Mutation, step_of
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
@@ -67,7 +67,7 @@ def operands(candidate: Candidate) -> frozenset[Operand]:
 
 
 def alike(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates have the same operands and guard, and values within 5 %."""
+    """Return whether two candidates have the same operands and guard, and values (or steps on a chart) within 5 %."""
     if one.guard != other.guard or operands(one) != operands(other):
         return False
     values = {mutation.operand: mutation for mutation in other.mutations}
@@ -79,6 +79,9 @@ def _near(one: Mutation, other: Mutation) -> bool:
     first, second = float(one.value), float(other.value)
     if first == second:
         return True
+    steps = step_of(one), step_of(other)
+    if steps[0] is not None and steps[1] is not None:
+        first, second = steps[0], steps[1]
     same_sign = copysign(1.0, first) == copysign(1.0, second)
     return same_sign and abs(first - second) <= ALIKE * max(abs(first), abs(second))
 

@@ -11,6 +11,7 @@ from pytest_tarl.repairing.labels import quantities
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.scales import charts
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
@@ -40,6 +41,7 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
             late=same,
             aside=aside_operands(order),
             structure_follows=order.options.structure,
+            charts=charts(order, moved),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

@@ -35,6 +35,10 @@ class TypicalSizes:
         """Return the usual size of an expression of a site: recorded, else estimated from its parts, else 1."""
         return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
 
+    def known(self, site: SiteId, node: ast.expr) -> float | None:
+        """Return the usual size of a part of a site's expression, estimated from its own parts; None if unknown."""
+        return self._estimated(site, node)
+
     def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
         """Return the size that follows from the sizes of the parts; of a sum, the largest; None if unknown."""
         if isinstance(node, ast.Constant):

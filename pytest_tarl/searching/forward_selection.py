@@ -36,7 +36,7 @@ class Joint:
 
     def with_part(self, unit: Unit, factor: float) -> Joint:
         """Return a copy with this part added or replaced."""
-        kept = tuple(part for part in self.parts if part[0] != unit)
+        kept = tuple(part for part in self.parts if part[0].operands != unit.operands)
         return Joint((*kept, (unit, factor)), self.guard)
 
     def without(self, unit: Unit) -> Joint:

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
@@ -23,7 +25,7 @@ from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, wr
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
+from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -70,9 +72,10 @@ class Sweep:
         aside: Sequence[Operand] = (),
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         structure_follows: bool = False,
+        charts: Mapping[Operand, Chart] = MappingProxyType({}),
     ) -> None:
         self.structure_follows = structure_follows
-        self.units = units(operands)
+        self.units = charted(units(operands), charts)
         self.late = units(late)
         self.aside = units(aside)
         self.weaker = weaker

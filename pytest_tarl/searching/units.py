@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from pytest_tarl.model import OperandEffect
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.charts import Chart
+from pytest_tarl.patching.mutate import Mutation, stepped
 from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
@@ -15,13 +16,17 @@ NEAR = (2.2, 0.4)  # the first factors to try on every unit
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Operands of one site that are mutated together: `max(-LIMIT, min(LIMIT, x))` has one limit, used twice."""
+    """Operands that are mutated together: `max(-LIMIT, min(LIMIT, x))` has one limit, used twice.
+
+    With a chart, a factor is a step on its scale.
+    """
 
     operands: tuple[Operand, ...]
+    chart: Chart | None = None
 
     def mutations(self, mutate: Mutate, factor: float) -> tuple[Mutation, ...]:
         """Return a mutation for every operand that the factor changes."""
-        tried = (mutate(operand, factor) for operand in self.operands)
+        tried = (stepped(operand, factor, self.chart, mutate) for operand in self.operands)
         return tuple(mutation for mutation in tried if mutation is not None)
 
 
@@ -35,6 +40,18 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
         else:
             alike.append(operand)
     return tuple(Unit(tuple(group)) for group in groups)
+
+
+def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
+    """Add a unit on its chart after each unit whose constant has one; a zero moves on its chart only."""
+    found: list[Unit] = []
+    for unit in plain:
+        chart = charts.get(unit.operands[0])
+        if chart is None or unit.operands[0].value != 0:
+            found.append(unit)
+        if chart is not None and all(charts.get(one) == chart for one in unit.operands):
+            found.append(Unit(unit.operands, chart))
+    return tuple(found)
 
 
 def best_effects(

@@ -1,0 +1,69 @@
+"""Which constants move on a scale of their own.
+
+They are shares close to 1, and offsets that are small beside the values that they are added to or compared with.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.charts import SHARE, Chart, offset
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.mutate import is_integral
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.repairing.typical_sizes import TypicalSizes
+from tarl_lint.model import Operand
+
+NEARLY_ALL = 0.8  # smallest share whose rest to 1 is the better scale
+
+
+def charts(order: Order, operands: Sequence[Operand]) -> Mapping[Operand, Chart]:
+    """Return the scales on which constants move beside factors on their values."""
+    sizes = TypicalSizes(order)
+    found: dict[Operand, Chart] = {}
+    for operand in operands:
+        chart = _chart(order, operand, sizes)
+        if chart is not None:
+            found[operand] = chart
+    return found
+
+
+def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
+    value = operand.value
+    if value is None or isinstance(value, bool):
+        return None
+    try:
+        source = document(operand.span.path, order.analysis.sources[operand.span.path])
+        node = source.find(operand.span)
+        if is_integral(order.analysis, operand):
+            return None
+    except (RepairError, KeyError):
+        return None
+    if NEARLY_ALL <= value < 1.0:
+        return SHARE
+    size = max(_beside(source, node, operand, sizes), default=0.0)
+    return offset(size) if size > abs(value) else None
+
+
+def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes) -> Iterator[float]:
+    """Yield the usual sizes of the values that a constant is added to or compared with, and of their sum.
+
+    Nothing if the constant is a factor, or stands alone.
+    """
+    inner: ast.AST = node
+    for around in source.ancestors(node):
+        if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add | ast.Sub):
+            other = around.right if around.left is inner else around.left
+            yield from filter(None, (sizes.known(operand.site, other),))
+        elif isinstance(around, ast.Compare):
+            sides = [side for side in (around.left, *around.comparators) if side is not inner]
+            yield from filter(None, (sizes.known(operand.site, side) for side in sides))
+            return
+        elif not (isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.USub)):
+            added = isinstance(around, ast.AugAssign) and isinstance(around.op, ast.Add | ast.Sub)
+            if inner is not node or added:
+                yield from filter(None, (sizes.by_site.get(str(operand.site)),))
+            return
+        inner = around
