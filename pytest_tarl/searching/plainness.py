@@ -43,9 +43,9 @@ def plainer(
     Units that gain at least `promising` are worth refining. Untried units come next, the plainest first: all of them
     if the candidate scales a variable or is an offset, the first `UNTRIED` named constants if it changes a literal.
     """
-    read = [unit for unit in units if _kind(unit) < odd]
+    read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
-    others = sorted((unit for unit in read if unit not in gains), key=_kind)
+    others = sorted((unit for unit in read if unit not in gains), key=kind)
     if odd < Oddness.VARIABLE:
         others = others[:UNTRIED]
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *others]
@@ -53,7 +53,7 @@ def plainer(
 
 def named(units: Iterable[Unit]) -> list[Unit]:
     """Return the units that are named constants."""
-    return [unit for unit in units if _kind(unit) is Oddness.NAMED]
+    return [unit for unit in units if kind(unit) is Oddness.NAMED]
 
 
 def writing(operand: Operand) -> Oddness:
@@ -87,7 +87,8 @@ def of_nature(operand: Operand) -> bool:
     return value in GRAVITY or any(isclose(value, times * pi, rel_tol=ROUNDED) for times in (1, 2))
 
 
-def _kind(unit: Unit) -> Oddness:
+def kind(unit: Unit) -> Oddness:
+    """Return the oddness of scaling the constant of a unit."""
     operand = unit.operands[0]
     if operand.value == 0 and not isinstance(operand.value, bool):
         return Oddness.OFFSET

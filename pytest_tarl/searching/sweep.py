@@ -21,11 +21,12 @@ from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, riv
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
+from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units
+from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -103,6 +104,7 @@ class Sweep:
         yield from self._in_large_steps(chief)
         gained = self._gains.anything()
         if gained:
+            yield from self._jointly(chief)
             yield from self._together()
         yield from self._finely(chief)
         if not gained:
@@ -378,6 +380,20 @@ class Sweep:
         ]
         joining = self._joining(self._gains.under(guard), among)
         yield from joining.candidates(Joint(((unit, factor),), guard))
+
+    def _jointly(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
+        """Search the constants jointly that change missions most, from the best points so far."""
+        if self.generator is None or self.proposed:
+            return
+        guard = max(chief, key=lambda one: max((gain for gain, _ in self._gains.leaders(one)), default=0.0))
+        united = whole_constants((*self.units, *self.late))
+        chosen = sensitive(united, self._gains, guard)
+        if len(chosen) < LEAST:
+            return
+        joining = self._joining({})
+        jointly = Jointly(chosen, joining, self.trials, self.goal, self.generator)
+        leaders = [part for _, part in self._gains.leaders(guard) if part[0] in chosen and part[1] > 0]
+        yield from jointly.candidates([Joint((part,), guard) for part in leaders[:LEADING]], guard)
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.

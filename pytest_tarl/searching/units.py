@@ -54,6 +54,29 @@ def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Uni
     return tuple(found)
 
 
+def whole_constants(apart: Sequence[Unit]) -> tuple[Unit, ...]:
+    """Unite the uses of a named constant in all statements of a file; keep the order."""
+    groups: list[list[Unit]] = []
+    for unit in apart:
+        alike = next((group for group in groups if _same_constant(group[0], unit)), None)
+        if alike is None:
+            groups.append([unit])
+        else:
+            alike.append(unit)
+    return tuple(
+        Unit(tuple(dict.fromkeys(one for unit in group for one in unit.operands)), group[0].chart)
+        for group in groups
+    )
+
+
+def _same_constant(unit: Unit, other: Unit) -> bool:
+    one, two = unit.operands[0], other.operands[0]
+    if one.literal or two.literal or one.definition is None or isinstance(one.value, bool):
+        return False
+    here = one.span.path == two.span.path and unit.chart == other.chart
+    return here and one.code == two.code and one.definition == two.definition
+
+
 def best_effects(
     gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
 ) -> dict[str, list[OperandEffect]]:

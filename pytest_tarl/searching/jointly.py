@@ -1,0 +1,235 @@
+"""Search a few constants jointly: Bayesian optimisation over the logarithms of their steps.
+
+Two constants that have to grow together lie on a ridge, where a step along either axis loses. A Gaussian process fits
+all joint trials of a seed; the next trial changes one to three constants of a good point where the expected improvement
+is largest (Regis & Shoemaker 2013; Jones, Schonlau & Welch 1998). Trials are judged by reward and by how far their
+missions are from the designed ones, because a mission that fails late is nearer to the goal than one that fails at
+once, whatever the two earn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
+from math import erf, exp, log, pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plainness import Oddness, kind
+from pytest_tarl.searching.search import Candidate, Goal, Trials
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+Floats = NDArray[np.float64]
+
+DIMENSIONS = 8  # most constants that move ...
+LEAST = 2  # ... and fewest
+EPISODES = 50  # most trials ...
+PATIENCE = 25  # ... and trials without a better one after which the search ends
+FARTHEST = 3.0  # largest |log step|, a factor of 20
+CHANGED = 3  # most constants that one trial changes beside the point it starts from
+SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
+PROPOSALS = 400  # among which the expected improvement chooses
+STARTS = 4  # best points to start from
+LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
+REFITTED = 4  # trials after which the length scales are chosen anew
+NOISE = 0.03
+WORST = 2.0  # largest deviation from the designed mission that counts
+SMALL = 0.02  # change of a log step that is none
+
+
+@dataclass
+class Surrogate:
+    """A Gaussian process with a Matérn kernel (ν = 5/2) and a length scale for each coordinate.
+
+    `points` has shape (n, k), `values` shape (n,). Without `lengths`, of shape (k,), the marginal likelihood chooses
+    them, coordinate by coordinate.
+    """
+
+    points: Floats
+    values: Floats
+    lengths: Floats | None = None
+
+    def __post_init__(self) -> None:
+        """Fit the process."""
+        self._level, self._size = float(self.values.mean()), float(self.values.std()) or 1.0
+        self._scaled = (self.values - self._level) / self._size
+        self._apart = (self.points[:, None, :] - self.points[None, :, :]) ** 2
+        self.fitted = self._likeliest() if self.lengths is None else self.lengths
+        self._factor = self._cholesky(self.fitted)
+        self._weights = self._solved(self._factor)
+
+    def predict(self, points: Floats) -> tuple[Floats, Floats]:
+        """Return the means and standard deviations at points of shape (m, k)."""
+        between = _kernel((points[:, None, :] - self.points[None, :, :]) ** 2, self.fitted)
+        mean = self._level + self._size * (between @ self._weights)
+        explained = np.linalg.solve(self._factor, between.T)
+        variance = np.maximum(1.0 - (explained**2).sum(axis=0), 1e-9)
+        return mean, self._size * np.sqrt(variance)
+
+    def _likeliest(self) -> Floats:
+        """Return the length scales of the highest marginal likelihood found."""
+        found = np.full(self.points.shape[1], 1.0)
+        best = self._likelihood(found)
+        for at in range(len(found)):
+            for length in LENGTHS:
+                other = found.copy()
+                other[at] = length
+                likelihood = self._likelihood(other)
+                if likelihood > best:
+                    best, found = likelihood, other
+        return found
+
+    def _likelihood(self, lengths: Floats) -> float:
+        factor = self._cholesky(lengths)
+        return float(-0.5 * self._scaled @ self._solved(factor) - np.log(np.diag(factor)).sum())
+
+    def _cholesky(self, lengths: Floats) -> Floats:
+        kernel = _kernel(self._apart, lengths) + NOISE**2 * np.eye(len(self.points))
+        return np.asarray(np.linalg.cholesky(kernel), np.float64)
+
+    def _solved(self, factor: Floats) -> Floats:
+        return np.asarray(np.linalg.solve(factor.T, np.linalg.solve(factor, self._scaled)), np.float64)
+
+
+def _kernel(apart: Floats, lengths: Floats) -> Floats:
+    """Return the correlations of points whose squared distances by coordinate are `apart`, shape (m, n, k)."""
+    scaled = np.sqrt(5.0 * (apart @ lengths**-2.0))
+    return np.asarray((1.0 + scaled + scaled**2 / 3.0) * np.exp(-scaled), np.float64)
+
+
+def expected_improvement(mean: Floats, deviation: Floats, best: float) -> Floats:
+    """Return how much more than `best` points earn in expectation."""
+    ahead = (mean - best) / deviation
+    normal = np.array([0.5 * (1.0 + erf(one / sqrt(2.0))) for one in ahead])
+    return np.asarray((mean - best) * normal + deviation * np.exp(-0.5 * ahead**2) / sqrt(2.0 * pi))
+
+
+class Jointly:
+    """Joint search of units from given points; `selection` runs and confirms combinations."""
+
+    def __init__(
+        self,
+        units: Sequence[Unit],
+        selection: ForwardSelection,
+        trials: Trials,
+        goal: Goal,
+        generator: np.random.Generator,
+    ) -> None:
+        self.units = tuple(units[:DIMENSIONS])
+        self.selection = selection
+        self.trials = trials
+        self.goal = goal
+        self.generator = generator
+        self._points: list[tuple[float, ...]] = []
+        self._values: list[float] = []
+        self._lengths: Floats | None = None
+
+    def candidates(self, starts: Sequence[Joint], guard: Guard) -> Iterator[Candidate]:
+        """Yield combinations that hold. Raises BudgetSpentError."""
+        begun, since, best = self.trials.spent, 0, -float("inf")
+        waiting = [(0.0,) * len(self.units), *(self._point(start) for start in starts)]
+        while self.trials.spent - begun < EPISODES and since < PATIENCE:
+            point = waiting.pop(0) if waiting else self._next()
+            joint = Joint(tuple((u, exp(x)) for u, x in zip(self.units, point, strict=True) if x), guard)
+            value = yield from self._value(self._rounded(joint))
+            since += 1
+            if value is None:
+                value = min(self._values, default=-WORST)
+            if value > best:
+                best, since = value, 0 if self._values else since
+            self._points.append(point)
+            self._values.append(value)
+
+    def _point(self, joint: Joint) -> tuple[float, ...]:
+        steps = dict(joint.parts)
+        return tuple(log(steps[unit]) if unit in steps else 0.0 for unit in self.units)
+
+    @staticmethod
+    def _rounded(joint: Joint) -> Joint:
+        return Joint(tuple((unit, float(f"{step:.3g}")) for unit, step in joint.parts), joint.guard)
+
+    def _value(self, joint: Joint) -> Generator[Candidate, None, float | None]:
+        """Run a combination; return the share of the wanted gain that it earns, less its missions' deviation."""
+        gain = yield from self.selection.gain(joint)
+        if gain is None:
+            return None
+        seed = self.goal.pairs[0].seed
+        try:
+            away = self.trials.deviation(joint.candidate(self.selection.mutate), [seed])
+        except RepairError:
+            return None
+        wanted = self.goal.wanted or 1.0
+        return float(np.clip(gain / wanted, -1.0, 1.0)) - min(away, WORST)
+
+    def _next(self) -> tuple[float, ...]:
+        """Return the proposal with the largest expected improvement over the best trial."""
+        points, values = np.array(self._points), np.array(self._values)
+        known = None if len(values) % REFITTED == 1 else self._lengths
+        surrogate = Surrogate(points, values, known)
+        self._lengths = surrogate.fitted
+        order = np.argsort(-values, kind="stable")[:STARTS]
+        proposals = self._proposals(points[order])
+        mean, deviation = surrogate.predict(proposals)
+        gains = expected_improvement(mean, deviation, float(values.max()))
+        return tuple(float(one) for one in proposals[int(np.argmax(gains))])
+
+    def _proposals(self, starts: Floats) -> Floats:
+        """Return starts with one to `CHANGED` coordinates moved, shape (m, k); small steps are taken back to none."""
+        draw, size = self.generator, (PROPOSALS, starts.shape[1])
+        many = draw.integers(1, CHANGED + 1, PROPOSALS)
+        chosen = draw.random(size).argsort(axis=1).argsort(axis=1) < many[:, None]
+        spreads = np.array(SPREADS)[draw.integers(len(SPREADS), size=PROPOSALS)]
+        moved = starts[np.arange(PROPOSALS) % len(starts)]
+        moved = np.clip(moved + chosen * draw.normal(0.0, 1.0, size) * spreads[:, None], -FARTHEST, FARTHEST)
+        return np.where(np.abs(moved) < SMALL, 0.0, moved)
+
+
+def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
+    """Return the units to move jointly: of each constant the scale that gained most, named constants first.
+
+    Then those that changed the reward most come first. Booleans, zeros and constants of nature are left out.
+    """
+    best: dict[tuple[Operand, ...], tuple[float, Unit]] = {}
+    for unit in among:
+        gained = max(
+            (
+                most
+                for each, most in _most(gains, guard)
+                if set(each.operands) <= set(unit.operands) and each.chart == unit.chart
+            ),
+            default=0.0,
+        )
+        if unit.operands not in best or gained > best[unit.operands][0]:
+            best[unit.operands] = gained, unit
+    chosen = [
+        unit
+        for _, unit in best.values()
+        if kind(unit) in (Oddness.NAMED, Oddness.INNER)
+        and unit.operands[0].value is not None
+        and not isinstance(unit.operands[0].value, bool)
+    ]
+    moved = _changes(gains, guard)
+
+    def rank(unit: Unit) -> tuple[bool, float]:
+        return kind(unit) != Oddness.NAMED, -max((moved.get(one, 0.0) for one in unit.operands), default=0.0)
+
+    return sorted(chosen, key=rank)[:DIMENSIONS]
+
+
+def _most(gains: Gains, guard: Guard) -> list[tuple[Unit, float]]:
+    return [(unit, max(found.values())) for unit, found in gains.under(guard).items()]
+
+
+def _changes(gains: Gains, guard: Guard) -> dict[Operand, float]:
+    """Return the largest change of the reward by each operand."""
+    found: dict[Operand, float] = {}
+    for unit, by_factor in gains.under(guard).items():
+        for operand in unit.operands:
+            found[operand] = max(found.get(operand, 0.0), *(abs(gain) for gain in by_factor.values()))
+    return found
