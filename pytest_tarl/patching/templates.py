@@ -19,12 +19,17 @@ else:  # pragma: no cover
 
 SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
-KINDS = ("value", "input", "comparison", "pair", "sensor")
+KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sensor")
+OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (
     "",
     "typical",
     "sensor",
-)  # a default as is, as a multiple of the value's usual size, or divided by the sensor's usual size
+    "usual",
+    "designed",
+)  # a default as is, as a multiple of the value's usual size, divided or multiplied by the sensor's usual size in the
+# drifted world, or multiplied by its usual size in the designed one (never searched, for sensors that are positive)
+FIXED = "designed"
 STRONGER = ("larger", "smaller")
 OPERATORS = (
     "op",
@@ -38,12 +43,16 @@ LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of a
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with the start value; `stronger` says which values change more."""
+    """A parameter to search, with the start value; `stronger` says which values change more.
+
+    With a `grid`, only its multiples are tried.
+    """
 
     name: str
     default: float
     of: str = ""
     stronger: str = "larger"
+    grid: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +88,13 @@ def template(path: Path) -> Template:
         raise SettingsError(f"{path}: a template has no {unknown[0]!r}; it has {', '.join(sorted(_KEYS))}.")
     try:
         parameters = tuple(
-            Parameter(name, float(one["default"]), one.get("of", ""), one.get("stronger", STRONGER[0]))
+            Parameter(
+                name,
+                float(one["default"]),
+                one.get("of", ""),
+                one.get("stronger", STRONGER[0]),
+                float(one.get("grid", 0.0)),
+            )
             for name, one in data.get("parameters", {}).items()
         )
         made = Template(
@@ -141,7 +156,9 @@ def _check_placeholders(path: Path, made: Template) -> None:
             )
     for one in made.parameters:
         if one.of not in SCALES:
-            raise SettingsError(f"{path}: of = {one.of!r} is unknown; use typical or sensor, or omit it.")
+            raise SettingsError(
+                f"{path}: of = {one.of!r} is unknown; use {', '.join(SCALES[1:])}, or omit it."
+            )
         if one.stronger not in STRONGER:
             raise SettingsError(f"{path}: stronger = {one.stronger!r} is unknown; use larger or smaller.")
 

@@ -6,19 +6,20 @@ Each parameter of a template at an expression is an operand like any other, so t
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
-from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.patching.templates import FIXED, OF_SENSORS, Template, templates
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.telling_sensors import continuous, telling, usual
 from pytest_tarl.repairing.template_places import Spot, pairs, spots
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.sensors import Sensor
 from tarl_lint.model import Operand, Span
 
 MOST = {
@@ -26,12 +27,14 @@ MOST = {
     "input": 3,
     "comparison": 5,
     "pair": 4,
+    "sent": 3,
     "sensor": 3,
+    "sent by sensor": 2,
 }  # expressions at which to try a template, by its kind
 FIRST = (
     2  # expressions that get all templates first: the slices' first one and the one next to the publish call
 )
-LEAST = 40  # episodes that templates with a sensor get at least if the sensor tells the drift
+LEAST = 50  # episodes that templates with a sensor get at least if the sensor tells the drift
 
 
 class Structures:
@@ -97,6 +100,12 @@ class Structures:
             return (
                 None  # unchanged, hence the same change for every parameter; only the first one proposes it
             )
+        grid = next((one.grid for one in form.template.parameters if one.name == form.parameter), 0.0)
+        if grid:  # the first parameter of its template, so that factor 1 has been proposed
+            start = dict(form.defaults)[form.parameter]
+            factor = round(start * factor / grid) * grid / start
+            if not factor:
+                return None
         return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
 
     def weaker(self, operand: Operand, factor: float) -> bool:
@@ -110,7 +119,7 @@ class Structures:
         sensors = telling(self.order)
         found: list[Operand] = []
         for made in known if sensors else ():
-            for forms in _forms(self.order, made, among) if made.on == "sensor" else ():
+            for forms in _forms(self.order, made, among) if made.on in OF_SENSORS else ():
                 for operand, form in forms:
                     if form.sensor in sensors:
                         self._found[operand] = form
@@ -147,35 +156,58 @@ def form_words(order: Order, mutation: Mutation) -> str:
 
 def _forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[list[tuple[Operand, Form]]]:
     """Yield, for every expression that a template fits, an operand for each of its parameters."""
-    kind = "value" if template.on == "sensor" else template.on
     if template.on == "pair":
         for one, other in pairs(among, MOST["pair"]):
             partner = _span(other.source, other.node)
-            yield list(_operands(template, one, Form(template, partner=partner), 1.0))
+            yield list(_operands(template, one, Form(template, partner=partner), {"typical": 1.0}))
         return
+    for spot in _fitting(template, among)[: MOST[template.on]]:
+        if template.on not in OF_SENSORS:
+            yield list(_operands(template, spot, Form(template), {"typical": spot.typical}))
+            continue
+        by_sensor: list[tuple[Operand, Form]] = []
+        for sensor in order.comparison.sensors:
+            if continuous(sensor):
+                by_sensor += _operands(template, spot, Form(template, sensor=sensor), _scales(order, sensor))
+        yield by_sensor
+
+
+def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
+    """Return the expressions that a template fits, those to try first at the beginning."""
+    if template.on.startswith("sent"):
+        return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
+    kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":  # a sensor is read where messages arrive, and corrects what is sent
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
-    for spot in fitting[: MOST[template.on]]:
-        if template.on != "sensor":
-            yield list(_operands(template, spot, Form(template), spot.typical))
-            continue
-        by_sensor: list[tuple[Operand, Form]] = []
-        for sensor in order.comparison.sensors:
-            if continuous(sensor):
-                scale = 1.0 / usual(order, sensor)
-                by_sensor += _operands(template, spot, Form(template, sensor=sensor), scale)
-        yield by_sensor
+    return fitting
 
 
-def _operands(template: Template, spot: Spot, bare: Form, scale: float) -> Iterator[tuple[Operand, Form]]:
+def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
+    """Return what defaults are multiplied by, by the key that says what they are of."""
+    drifted = usual(order, sensor)
+    scales = {"sensor": 1.0 / drifted, "usual": drifted}
+    if sensor.low is not None and sensor.low >= 0.0:
+        scales["designed"] = usual(order, sensor, order.fixture.sample)
+    return scales
+
+
+def _operands(
+    template: Template, spot: Spot, bare: Form, scales: Mapping[str, float]
+) -> Iterator[tuple[Operand, Form]]:
+    """Yield an operand for each parameter to search; nothing if a default cannot be known."""
+    if any(one.of and one.of not in scales for one in template.parameters):
+        return
     defaults = tuple(
-        (one.name, float(f"{one.default * (scale if one.of else 1.0):.4g}")) for one in template.parameters
+        (one.name, float(f"{one.default * scales.get(one.of, 1.0):.4g}")) for one in template.parameters
     )
     code = _folded(spot.source, spot.node)
+    fixed = {one.name for one in template.parameters if one.of == FIXED}
     for name, value in defaults or (("", None),):
+        if name in fixed:
+            continue
         form = Form(template, name, defaults, bare.partner, bare.sensor)
         by = f" by {bare.sensor.name}" if bare.sensor else ""
         text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"

@@ -22,11 +22,14 @@ def continuous(sensor: Sensor) -> bool:
     return sensor.numeric and not sensor.angle and sensor.guardable
 
 
-def usual(order: Order, sensor: Sensor) -> float:
-    """Return a sensor's mean absolute value in the drifted world, from the middles of its bins; 1 if that is 0."""
+def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
+    """Return a sensor's mean absolute value in a world, from the middles of its bins; 1 if that is 0.
+
+    Without `world`, it is that of the drifted world.
+    """
     seen = [
         (abs(low + high) / 2, count)
-        for low, high, count in bins(order, order.online.recorded.sample, sensor)
+        for low, high, count in bins(order, world or order.online.recorded.sample, sensor)
         if isfinite(high - low)
     ]
     steps = sum(count for _, count in seen)

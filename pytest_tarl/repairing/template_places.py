@@ -97,7 +97,9 @@ def _expressions(
             elif isinstance(value, ast.Attribute):
                 yield value, "input"
         elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
-            yield from ((each, "value") for each in _passed(statement.value, returned))
+            numbers = list(_passed(statement.value, returned))
+            yield from ((each, "value") for each in numbers)
+            yield from ((each, "sent") for each in _sent(statement.value) if each not in numbers)
 
 
 def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
@@ -110,6 +112,16 @@ def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
             yield each
         elif isinstance(each, ast.Call) and _makes_an_object(each):
             yield from _passed(each, returned)
+
+
+def _sent(call: ast.Call) -> Iterator[ast.expr]:
+    """Yield the names and attributes that a published message is made of."""
+    if ast.unparse(call.func).rpartition(".")[2] != "publish":
+        return
+    for each in ast.walk(call):
+        if isinstance(each, ast.Call):
+            passed = (*each.args, *(keyword.value for keyword in each.keywords))
+            yield from (one for one in passed if isinstance(one, ast.Name | ast.Attribute | ast.Compare))
 
 
 def _computes(node: ast.expr) -> bool:

@@ -53,6 +53,44 @@ def test_the_usual_size_is_that_in_the_drifted_world(low: float, high: float, me
     assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
 
 
+def test_the_usual_size_in_the_designed_world_is_known_too() -> None:
+    sensor = Sensor("tool", topic="/tool", field="data", low=0, high=1, bins=10)
+    asked = order(0, 5, sensor)
+    assert usual(asked, sensor, asked.fixture.sample) == pytest.approx(0.05)
+
+
+SENDING = """\
+import rospy
+from std_msgs.msg import Bool, Float32
+
+
+class Sprayer:
+    def __init__(self):
+        self.open = False
+        self.nozzle = rospy.Publisher("/nozzle", Bool, queue_size=1)
+        rospy.Subscriber("/green", Float32, self.on_green)
+
+    def on_green(self, msg):
+        self.open = msg.data > 0.3
+        self.nozzle.publish(Bool(data=self.open))
+
+
+if __name__ == "__main__":
+    rospy.init_node("sprayer")
+    Sprayer()
+    rospy.spin()
+"""
+
+
+def test_what_is_published_is_a_place_for_a_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "sprayer.py").write_text(SENDING)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: {})
+    asked: Any = order(0, 5)
+    asked.analysis, asked.comparison.culprits = analyse([tmp_path / "sprayer.py"], root=tmp_path), ()
+    found = [(spot.source.source(spot.node), spot.kind) for spot in spots(asked)]
+    assert ("self.open", "sent") in found
+
+
 def test_a_call_that_returns_a_number_is_a_place_for_templates(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

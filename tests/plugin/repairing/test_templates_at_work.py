@@ -73,6 +73,29 @@ BOUNDS = {"comparison": 1.0, "hysteresis": 0.0}  # thresholds that the templates
 Command = Callable[[float, float], float]  # command of the repaired node for a value and a slope
 
 
+def delayed() -> Command:
+    """Return a command that sends each value three calls later."""
+    values: list[float] = []
+
+    def command(value: float, _: float) -> float:
+        values.append(value)
+        return values[max(len(values) - 4, 0)]
+
+    return command
+
+
+def delayed_by_travel() -> Command:
+    """Return a command that sends each value once the second sensor has summed up to 6 since."""
+    values: list[tuple[float, float]] = []
+
+    def command(value: float, speed: float) -> float:
+        values.append(((values[-1][0] if values else 0.0) + speed, value))
+        due = [told for at, told in values if at <= values[-1][0] - 6.0]
+        return due[-1] if due else values[0][1]
+
+    return command
+
+
 def kept(step: Callable[[dict[str, float], float], float]) -> Command:
     """Return a command that stores state between calls."""
     state: dict[str, float] = {}
@@ -118,11 +141,14 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "at_most": (VALUE, lambda: lambda value, _: min(0.7, 2 * value)),
     "comparison": (COMPARED, lambda: lambda value, _: value if value <= 1.0 else -value),
     "dead_band": (VALUE, lambda: lambda value, _: 2 * value if abs(2 * value) > 1.2 else 0.0),
+    "delay": (INPUT, delayed),
+    "delay_by_travel": (INPUT, delayed_by_travel),
     "derivative": (VALUE, lambda: kept(derivative)),
     "hysteresis": (COMPARED, lambda: kept(hysteresis)),
     "integral": (VALUE, lambda: kept(integral)),
     "limit": (VALUE, lambda: lambda value, _: max(-0.9, min(0.9, 2 * value))),
     "low_pass": (VALUE, lambda: kept(low_pass)),
+    "power": (VALUE, lambda: lambda value, slope: 2 * value * slope**2),
     "prediction": (INPUT, lambda: kept(prediction)),
     "rate_limit": (VALUE, lambda: kept(rate_limit)),
     "scale": (VALUE, lambda: lambda value, slope: 2 * value * (1.0 + 0.6 * slope)),
