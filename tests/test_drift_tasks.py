@@ -20,6 +20,7 @@ JUDGING = (
     "drift_judging_4",
     "drift_judging_5",
     "drift_judging_6",
+    "drift_judging_7",
     "drift_structure",
 )
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
@@ -154,6 +155,24 @@ def test_the_sixth_set_has_every_kind_and_says_where_drifts_occur() -> None:
     assert all(known["practice"] for known in sixth)
 
 
+def test_the_seventh_set_has_every_kind_and_says_where_drifts_occur() -> None:
+    seventh = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_7"]
+    assert sorted(known["kind"] for known in seventh) == [
+        "helper",
+        "narrow window",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
+        "structure",
+        "two constants",
+        "unrepairable",
+    ]
+    assert all(known["practice"] for known in seventh)
+
+
 Rates = dict[str, tuple[float, float]]
 
 
@@ -182,7 +201,9 @@ def test_worlds_of_the_fourth_set_are_deterministic() -> None:
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-@pytest.mark.parametrize("folder", ["drift_judging_3", "drift_judging_4", "drift_judging_6"])
+@pytest.mark.parametrize(
+    "folder", ["drift_judging_3", "drift_judging_4", "drift_judging_6", "drift_judging_7"]
+)
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
     tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == folder]
     before, after = worlds(folder)[0], worlds(folder, "--by-hand")[0]
