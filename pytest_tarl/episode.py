@@ -148,7 +148,7 @@ class Tarl:
         `file` is a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
         `arguments` are its launch arguments, `only` the names of the nodes to start. A function in `replace` stands
         for the node of that name; it is called with a `StandIn`, by which it publishes and subscribes under the names
-        in the node's code. Nodes that are no Python and not replaced are named in a note. `parameters` are added to
+        in the node's code. Nodes that are neither Python nor replaced are named in a note. `parameters` are added to
         those of all nodes and take precedence.
 
         Raise SettingsError for an unknown file, argument or node, NodeError if a node fails.
@@ -171,7 +171,7 @@ class Tarl:
     ) -> Simulator:
         """Start a simulator, a program on a real ROS, as the world of this episode; call it before `start`.
 
-        Nodes hear what the simulator publishes, and it hears what they publish. `tarl.step` runs both.
+        Nodes receive what the simulator publishes, and the simulator receives what they publish. `tarl.step` runs both.
 
         Args:
             command: The program, run in the test's folder. It gets TARL_SEED, and a ROS domain or master of its own.
@@ -312,8 +312,8 @@ class Tarl:
         late = self._ros.shutdown_errors if self._ros is not None else ()
         ended = [f"{error} The node was being shut down, so the episode still counts." for error in late]
         missing = [
-            f"nothing can be recorded at {path.name}:{', '.join(map(str, sorted({line for line, _ in positions})))}: "
-            "their slices stay empty."
+            f"cannot record {path.name}:{', '.join(map(str, sorted({line for line, _ in positions})))}: "
+            "slices of these lines stay empty."
             for path, positions in self._imports.unrecorded.items()
         ]
         started = self._ros.notes if self._ros is not None else ()

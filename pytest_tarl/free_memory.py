@@ -55,6 +55,6 @@ def _left(folder: Path, limit: str, usage: str, droppable: str) -> int | None:
     try:
         most, used = int((folder / limit).read_text()), int((folder / usage).read_text())
         found = re.search(rf"^{droppable} (\d+)$", (folder / "memory.stat").read_text(), re.MULTILINE)
-    except (OSError, ValueError):  # "max" is no limit
+    except (OSError, ValueError):  # "max" means unlimited
         return None
     return most - used + (int(found[1]) if found else 0)

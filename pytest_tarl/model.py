@@ -218,7 +218,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but is no repair: reward gained per episode over the unchanged program, on fresh seeds.
+    """A change that helps but is not a repair: reward gained per episode over the unchanged program, on fresh seeds.
 
     `low` and `designed_low` are lower bounds; `patch` is a path below the root.
     """

@@ -31,7 +31,9 @@ def must_hold(where: str, value: Any, drifts: Mapping[str, Drift]) -> Mapping[st
 def _limits(where: str, name: str, limits: Any, extents: Mapping[str, Span | Choice]) -> tuple[Any, ...]:
     if name not in extents:
         known = ", ".join(extents) or "none is declared"
-        raise SettingsError(f"{where}: must_hold names {name!r}, which is no direction of a space ({known}).")
+        raise SettingsError(
+            f"{where}: must_hold names {name!r}, which is not a direction of a space ({known})."
+        )
     extent = extents[name]
     given = tuple(limits) if isinstance(limits, Sequence) and not isinstance(limits, str) else ()
     if isinstance(extent, Choice):

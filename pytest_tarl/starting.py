@@ -98,7 +98,7 @@ def _check_names(only: Sequence[str] | None) -> None:
 
 
 def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str]) -> list[str]:
-    """Return one note that names the nodes that are no Python and not replaced."""
+    """Return one note that names the nodes that are neither Python nor replaced."""
     from pytest_tarl.ros.launch_plan import named
 
     foreign = [one for one in chosen if one.path is None and not named(one, replaced)]

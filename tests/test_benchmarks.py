@@ -30,6 +30,7 @@ SMALLEST = {
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
     "observe": ["--cycles", "20", "--blocks", "2"],
     "observe_day": ["--hours", "0.02", "--growth", "50"],
+    "readers_sample": ["--sentences", "20"],
     "recording": ["--quick"],
     "ros": ["--seconds", "0.05"],
     "same_world": ["--comparisons", "1", "--workers", "1", "--found", "{tmp}/found.json"],

@@ -191,7 +191,7 @@ class _Elsewhere:
 
     @property
     def entries(self) -> list[Any]:
-        """Return a list that nobody reads."""
+        """Return a list that is discarded."""
         return []
 
 

@@ -115,6 +115,6 @@ def factor(mutation: Mutation) -> float | None:
     if mutation.chart is not None:
         return step_of(mutation)
     if operand.value == 0:
-        return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # as `mutations` steps away from zero
+        return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # the steps of `mutations` from 0
     moved = float(value) / operand.value if operand.literal and operand.value is not None else float(value)
     return moved if moved > 0.0 else None

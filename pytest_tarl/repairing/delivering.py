@@ -99,7 +99,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 
 
 def partial(mutants: Mutants, found: Best) -> Partial | None:
-    """Write a change that helps but is no repair to a quoted file; return None if it cannot be written."""
+    """Write a change that helps but is not a repair to a quoted file; return None if it cannot be written."""
     order, candidate = mutants.order, found.candidate
     what = repair_words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(

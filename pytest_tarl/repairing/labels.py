@@ -1,4 +1,4 @@
-"""Constants that are no quantities: members of an enumeration, values of which only the truth is asked, and exponents.
+"""Constants that are not quantities: members of an enumeration, values of which only the truth is asked, and exponents.
 
 A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
 nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, no choice of the author. No search moves these. Booleans

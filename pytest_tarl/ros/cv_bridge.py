@@ -118,7 +118,7 @@ def _depth_of(dtype: Any) -> str:
     for depth, name in _DEPTHS.items():
         if dtype.name == name:
             return depth
-    raise CvBridgeError(f"arrays of {dtype.name} are no images")
+    raise CvBridgeError(f"arrays of {dtype.name} cannot be images")
 
 
 def _converted(image: Any, origin: str, wanted: str) -> Any:

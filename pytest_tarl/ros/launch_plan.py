@@ -1,4 +1,4 @@
-"""What a launch file starts: Python nodes with names, command lines and parameters, and nodes that are no Python."""
+"""What a launch file starts: Python nodes with names, command lines and parameters, and nodes that are not Python."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class LaunchPlan:
                 raise SettingsError(one.problem)
             if only is not None and one.foreign:
                 raise SettingsError(
-                    f"tarl.launch: only names {one.name}, which is no Python node of the workspace ({one.foreign}). "
+                    f"tarl.launch: only names {one.name}, which is not a Python node of the workspace ({one.foreign}). "
                     f'Replace it by a function of the test: replace={{"{one.name.rpartition("/")[2]}": function}}.'
                 )
         return tuple(wanted)

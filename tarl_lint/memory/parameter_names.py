@@ -11,7 +11,7 @@ from tarl_lint.parameter_names import MARK, ParameterName
 
 
 def text_of_parameter(known: list[ParameterName] | None, name: str, default: Value) -> Consts:
-    """Return the text that stands for a parameter; None if `known` is None, or if its default is no text."""
+    """Return the text that stands for a parameter; None if `known` is None, or if its default is not a string."""
     if known is None or not name.strip("~/") or default.pts:
         return None
     texts = default.names()

@@ -25,7 +25,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Part:
-    """The publish calls of one file that the same topics reach: every input reaches every output, by `kind`.
+    """Publish calls of one file that are reached from the same topics, in the same way (`kind`).
 
     One box thus represents many flows, and every path through a box is a flow.
     """

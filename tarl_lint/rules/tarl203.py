@@ -2,7 +2,7 @@
 
 The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
 what it stores. The subscription wastes bandwidth and time, and often a line is missing that its author believes to be
-there. Not reported are callbacks that ignore the message but do something when it arrives, and callbacks that
+there. Callbacks that ignore the message but do something when it arrives are not reported, nor are callbacks that
 intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
 """
 

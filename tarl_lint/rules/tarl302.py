@@ -2,7 +2,7 @@
 
 ROS refuses the connection: rospy logs a warning, rclpy mostly nothing, and no message arrives. This happens where
 some nodes use `Twist` and others `TwistStamped` (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39).
-Types are compared by the last part of their names, both must be constant.
+The rule compares the last part of the types' names; both types must be constant.
 """
 
 from __future__ import annotations

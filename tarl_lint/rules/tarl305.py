@@ -1,11 +1,11 @@
 """TARL305: two nodes publish commands on the same topic.
 
-Whoever publishes last wins, so the robot follows both in turn, and jerks. A multiplexer such as `twist_mux` with a
-topic for each of them decides. Clearpath's robots had this defect: the game controller and the autonomous control
-published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
+The last message wins, so the robot follows both nodes in turn, and jerks. Give each node a topic of its own, and let
+a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
+control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
-Reported are messages such as `Twist`, where a subscribed topic decides in both nodes when they are published. Nodes
-whose condition is known only on the robot are left out: one may replace the other.
+The rule covers messages such as `Twist` if, in both nodes, a subscribed topic decides when they are published. It
+leaves out nodes whose condition is known only on the robot, because one may replace the other.
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@ It has no effect, so the two ends that it was meant to connect stay apart. In th
 `cmd_vel_mux/output` and the launch file renamed `cmd_vel_mux/mux_cmd_vel`: the robot ignored all velocity commands
 (https://github.com/aliasrobotics/RVD/issues/582).
 
-Reported are remappings for which every node that has them was read with all that it imports, and uses only constant
-names of topics, and no string in its code ends in that name. A remapping of a group is only reported if it matches
-nothing in any of its nodes.
+A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant
+topic names, and contains no string that ends in the remapped name. A remapping of a group is reported only if it
+matches nothing in any of the group's nodes.
 """
 
 from __future__ import annotations

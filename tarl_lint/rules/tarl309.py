@@ -3,8 +3,8 @@
 The callback raises AttributeError at its first message; rospy logs this and goes on, so the rest of the robot runs
 without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-Reported are messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs` of which the fields are known,
-where a callback receives them or a function makes them, and the variable holds nothing else.
+The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. A
+callback must receive the message or a function must create it, and the variable must hold nothing else.
 """
 
 from __future__ import annotations

@@ -136,4 +136,4 @@ def test_positions_that_cannot_be_recorded_become_a_note(tmp_path):
     tarl = Tarl(1, SENSORS, tmp_path, recorder, imports)
     tarl.start("node.py")
     tarl.close()
-    assert tarl.notes() == ("nothing can be recorded at node.py:9, 12: their slices stay empty.",)
+    assert tarl.notes() == ("cannot record node.py:9, 12: slices of these lines stay empty.",)

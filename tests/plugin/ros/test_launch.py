@@ -1,4 +1,4 @@
-"""Whole launch files under test: names, parameters, what is no Python node, and mistakes as sentences."""
+"""Whole launch files under test: names, parameters, nodes that are not Python, and mistakes as sentences."""
 
 from __future__ import annotations
 
@@ -236,7 +236,7 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("robot.launch", {"only": ["frist"]}, (r"only names 'frist', but robot\.launch starts no such node\. "
          r"Did you mean 'first'\? It starts /r1/first, /r1/second, /r1/laser\.")),
         ("robot.launch", {"replace": {"lidar": print}}, r"replace names 'lidar', but robot\.launch starts no such"),
-        ("robot.launch", {"only": ["laser"]}, r"only names /r1/laser, which is no Python node of the workspace \("),
+        ("robot.launch", {"only": ["laser"]}, r"only names /r1/laser, which is not a Python node of the workspace \("),
         ("robot.launch", {"only": "first"}, r'only takes a list of node names, such as only=\["first"\]'),
         ("robot.launch", {"arguments": {"camera": True}}, (r"the node /\$\(arg camera_ns\)/camera .*depends on "
          r"'/\$\(arg camera_ns\)', which has no value here: pass arguments=\{\"camera_ns\": …\}")),

@@ -208,7 +208,7 @@ def test_a_clear_failure_is_confirmed_although_four_episodes_misled_the_search_n
     ("value", "told"),
     [
         (3, "must_hold maps directions"),
-        ({"mdu": (0.4, 1.0)}, r"'mdu', which is no direction of a space \(mud, camera, late\)"),
+        ({"mdu": (0.4, 1.0)}, r"'mdu', which is not a direction of a space \(mud, camera, late\)"),
         ({"mud": (0.4, 0.9)}, "around the nominal 1"),
         ({"mud": 0.4}, "two numbers from 0 to 1"),
         ({"mud": (-1, 1)}, "two numbers from 0 to 1"),

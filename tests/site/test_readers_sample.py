@@ -1,0 +1,43 @@
+"""The sample of sentences for readers: all kinds of text are drawn, code and labels are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from benchmarks.readers_sample import sample
+
+MODULE = '''"""A module with a first sentence. And with a second one."""
+
+LIMIT = 3  # steps that a search may take
+
+
+def f(path: str) -> None:
+    raise ValueError(f"{path} is not a file: check the path")
+'''
+
+
+def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_path: Path) -> None:
+    for folder in ("docs/rules", "tarl_lint", "pytest_tarl", "tests"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "docs" / "a.md").write_text(
+        "# Title\n\nThis is a sentence\nof two lines.\n\n```sh\nnot a sentence of prose\n```\n"
+    )
+    (tmp_path / "docs" / "rules" / "TARL1.md").write_text("The rule reports what is wrong.\n")
+    (tmp_path / "tarl_lint" / "a.py").write_text(MODULE)
+    (tmp_path / "pytest_tarl" / "page.html").write_text(
+        "<p>The page shows a figure.</p><style>a b c d e {}</style>"
+    )
+    (tmp_path / "tests" / "test_a.py").write_text("def test_it_has_a_long_name() -> None: ...\n")
+    drawn = sample(tmp_path, 100, seed=1)
+    assert sorted(drawn) == [
+        ("comment", "tarl_lint/a.py", "steps that a search may take"),
+        ("docs", "docs/a.md", "This is a sentence of two lines."),
+        ("docstring", "tarl_lint/a.py", "A module with a first sentence."),
+        ("docstring", "tarl_lint/a.py", "And with a second one."),
+        ("message", "tarl_lint/a.py", "{path} is not a file: check the path"),
+        ("page", "pytest_tarl/page.html", "The page shows a figure."),
+        ("rule page", "docs/rules/TARL1.md", "The rule reports what is wrong."),
+        ("test name", "tests/test_a.py", "test_it_has_a_long_name"),
+    ]
+    assert sample(tmp_path, 100, seed=1) == drawn
+    assert sample(tmp_path, 3, seed=1) == drawn[:3]
