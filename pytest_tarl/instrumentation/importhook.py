@@ -71,7 +71,7 @@ class NodeImports:
         self._imported: set[str] = set()  # names of this episode's modules
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
-        self._before: set[str] = set()  # names of modules imported before the episode
+        self._before: set[str] = set()  # names of modules that were imported before the episode
         self.older: tuple[Path, ...] = ()  # edited files whose old text ran; set on exit
 
     def __enter__(self) -> NodeImports:

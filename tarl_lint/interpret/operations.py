@@ -65,7 +65,7 @@ class Operations(Protocol[Ctx]):
     def call_library(
         self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        """Call a library function or class; those that iterate over analysed objects call their iterators."""
+        """Call a library function or class. If it iterates over analysed objects, call their iterators."""
         ...
 
     def call_method(

@@ -97,7 +97,7 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
 
 
 def _absent(node: ast.Attribute, held: Mapping[str, str]) -> tuple[str, str] | None:
-    """Return the type and the field of an attribute that its type does not have."""
+    """Return (message type, field name) of an attribute that names no field of its type."""
     kind = _kind(node.value, held)
     fields = FIELDS.get(kind)
     name = node.attr
