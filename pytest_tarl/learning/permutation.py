@@ -5,15 +5,19 @@ Corrected over many columns by the distribution of the largest statistic, step b
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from math import ceil, comb
 
 import numpy as np
 
-from pytest_tarl.learning.tables import Floats
+from pytest_tarl.learning.tables import Floats, Ints
 
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # error of a few sums of floats, relative to the largest of them
+SETTLED = (
+    0.2  # a p-value that is at least this large after PERMUTATIONS shuffles is not refined by further ones
+)
 AT_ONCE = 64  # shuffles drawn together, so that they stay in the processor's cache
 
 
@@ -36,14 +40,19 @@ def permuted_loss(
 ) -> float:
     """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ by at most rounding errors are ties, and count against a loss.
+    Sums that differ by at most rounding errors are ties, and count against a loss. The p-value is exact at levels
+    below SETTLED.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
-    shuffled = shuffled_sums(pooled, online.size, generator, permutations)
     tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of a sum changes its rounding
-    return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
+    observed = _observed(pooled, online.size) + tie
+
+    def reached(shuffled: Floats) -> Ints:
+        return np.count_nonzero(shuffled <= observed, axis=0, keepdims=True)
+
+    return float(_p_values(reached, pooled, online.size, generator, permutations)[0])
 
 
 def max_statistic(
@@ -68,30 +77,59 @@ def max_statistic(
         return p_values
     relative = deviation[:, alive] / extent[alive]  # scaled, so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
-    statistic = np.abs(shuffled_sums(standard, first, generator, permutations))
-    order = np.argsort(statistic[0], kind="stable")
-    largest = np.maximum.accumulate(statistic[:, order], axis=1)
-    reached = (largest[1:] >= largest[0] - 1e-9).sum(axis=0)
-    stepped = (1 + reached) / statistic.shape[0]
+    observed = np.abs(_observed(standard, first))
+    order = np.argsort(observed, kind="stable")
+    limit = np.maximum.accumulate(observed[order]) - 1e-9
+
+    def reached(shuffled: Floats) -> Ints:
+        largest = np.maximum.accumulate(np.abs(shuffled)[:, order], axis=1)
+        return np.asarray(np.count_nonzero(largest >= limit, axis=0))
+
+    stepped = _p_values(reached, standard, first, generator, permutations)
     p_values[alive[order]] = np.maximum.accumulate(stepped[::-1])[::-1]
     return p_values
 
 
+def _p_values(
+    reached: Callable[[Floats], Ints],
+    values: Floats,
+    first: int,
+    generator: np.random.Generator,
+    permutations: int,
+) -> Floats:
+    """Return a p-value for each count that `reached` returns for the sums of some shuffles, shape (counts,).
+
+    Further shuffles than PERMUTATIONS serve to find p-values that remain small after correcting for many comparisons.
+    They are left out if the smallest p-value is then at least SETTLED: whether a p-value is below a smaller level is
+    decided by all shuffles or is a no, so it is at most as often as with all shuffles.
+    """
+    counts, done = None, 0
+    for shuffled in shuffled_sums(values, first, generator, permutations):
+        more = reached(shuffled)
+        counts = more if counts is None else counts + more
+        done += len(shuffled)
+        if done >= PERMUTATIONS and (1 + counts.min()) / (1 + done) >= SETTLED:
+            break
+    return np.ones(1) if counts is None else (1 + counts) / (1 + done)
+
+
+def _observed(values: Floats, first: int) -> Floats:
+    """Return the sum over the first rows, shape (...), of values of shape (rows, ...)."""
+    picked = np.zeros((1, len(values)))
+    picked[0, :first] = 1.0
+    return np.asarray((picked @ values)[0])
+
+
 def shuffled_sums(
     values: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
-) -> Floats:
-    """Return the sums over a group of `first` rows, shape (1 + permutations, ...): the first rows, then random ones.
+) -> Iterator[Floats]:
+    """Yield the sums over random groups of `first` rows, some shuffles at once, each shape (shuffles, ...).
 
     `values` have shape (rows, ...). A shuffle draws a number for each row and picks the rows with the smallest.
     """
-    rows = len(values)
-    observed = np.zeros((1, rows))
-    observed[0, :first] = 1.0
-    sums = [observed @ values]
     for done in range(0, permutations, AT_ONCE):
-        draws = generator.random((min(AT_ONCE, permutations - done), rows))
-        sums.append(_smallest(draws, first) @ values)
-    return np.concatenate(sums)
+        draws = generator.random((min(AT_ONCE, permutations - done), len(values)))
+        yield _smallest(draws, first) @ values
 
 
 def _smallest(draws: Floats, first: int) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from pytest_tarl.learning import permutation
 from pytest_tarl.learning import shifts as shifting
 from pytest_tarl.learning.permutation import max_statistic, permuted_loss, shuffled_sums
 from pytest_tarl.seeds import generator
@@ -25,14 +26,13 @@ def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
     for seed, (rows, first) in enumerate([(2, 1), (9, 4), (70, 69), (40, 3)]):
         draws = Tied(seed) if kind == "tied" else generator(seed, "draws")
         values = np.stack([np.ones(rows), np.arange(rows, dtype=float)], axis=1)
-        sums = shuffled_sums(values, first, draws, 150)  # type: ignore[arg-type]
-        assert sums.shape == (151, 2)
+        sums = np.concatenate([*shuffled_sums(values, first, draws, 150)])  # type: ignore[arg-type]
+        assert sums.shape == (150, 2)
         assert (sums[:, 0] == first).all()
-        assert sums[0, 1] == first * (first - 1) / 2
         if kind == "distinct":
             drawn = generator(seed, "draws").random((150, rows))
             expected = [np.argsort(one)[:first].sum() for one in drawn]
-            assert sums[1:, 1].tolist() == expected
+            assert sums[:, 1].tolist() == expected
 
 
 def test_the_p_values_are_those_of_whole_tables_of_labels() -> None:
@@ -51,6 +51,29 @@ def test_the_p_values_are_those_of_whole_tables_of_labels() -> None:
         corrected = float((each.max(axis=1) >= each[0, largest] - 1e-9).mean())
         found = max_statistic(columns, 20, generator(seed, "labels"))
         assert found[largest] == pytest.approx(corrected)
+
+
+def test_p_values_below_a_level_do_not_depend_on_shuffles_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    def each(settled: float) -> list[list[float]]:
+        monkeypatch.setattr(permutation, "SETTLED", settled)
+        found = []
+        for seed in range(30):
+            rng = generator(seed, "worlds")
+            one, other = rng.normal(0.0, 1.0, (40, 3)), rng.normal(-0.1 * (seed % 6), 1.0, (20, 3))
+            loss = permuted_loss(one[:, 0], other[:, 0], rng, 4000)
+            columns = np.concatenate((other, one))
+            found.append([loss, *max_statistic(columns, 20, generator(seed, "labels"), 4000)])
+        return found
+
+    sooner, all_of_them = each(permutation.SETTLED), each(2.0)
+    left_out = 0
+    for few, every in zip(sooner, all_of_them, strict=True):
+        if few[0] < 0.2:
+            assert few[0] == every[0]
+        left_out += few != every
+        if min(few[1:]) < 0.2:
+            assert few[1:] == every[1:]
+    assert 5 < left_out < 30
 
 
 @pytest.mark.parametrize("kind", ["normal", "binary", "skewed", "rounded"])
