@@ -1,6 +1,6 @@
 """Run every node script of checked-out repositories in the in-process ROS, without any adaptation.
 
-    python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--keep SCRATCH] [--json FILE]
+    python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--counted N --seed N] [--keep SCRATCH] [--json FILE]
 
 Each FOLDER contains checkouts, one folder per repository. They are copied to a scratch folder. Each script gets a
 minimal simulation test: start it, then publish messages on the topics that it subscribes to, for a few virtual
@@ -15,6 +15,7 @@ import argparse
 import json
 import multiprocessing
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -191,6 +192,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("folders", type=Path, nargs="+", help="folders of checkouts, one folder a repository")
     parser.add_argument("--only", default="", help="run the scripts whose path contains this")
+    parser.add_argument("--counted", type=int, help="run scripts in random order until this many are counted")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random order")
     parser.add_argument("--keep", type=Path, help="scratch folder to keep, with the generated tests")
     parser.add_argument("--json", type=Path, help="file for the results of all scripts")
     options = parser.parse_args()
@@ -200,8 +203,12 @@ def main() -> None:
         scratch.mkdir(parents=True, exist_ok=True)
         found = [one for copy in checkouts(options.folders, scratch) for one in scripts(copy)]
         chosen = [one for one in found if options.only in one.name]
+        if options.counted is not None:
+            random.Random(options.seed).shuffle(chosen)
         began, outcomes = time.perf_counter(), []
         for number, script in enumerate(chosen):
+            if sum(not one.apart for one in outcomes) == options.counted:
+                break
             outcomes.append(run(script, number))
             one = outcomes[-1]
             print(f"{one.name}: {one.verdict}{f': {one.missing}' if one.fails else one.apart and f': {one.apart}'}",

@@ -252,6 +252,13 @@ class Tarl:
             )
         self._situation.hear(topic, message)
 
+    def type(self, text: str, node: str | None = None) -> None:
+        """Type text on the terminal of one running node, by the name of its file or node, or of all nodes.
+
+        Raise SettingsError if no such node runs.
+        """
+        self.ros.type(text, node)
+
     def observe(self, **values: Any) -> None:
         """Set the values of sensors without a topic and of signals used in formulas."""
         self._situation.observe(values)

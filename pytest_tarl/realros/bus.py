@@ -13,6 +13,7 @@ from pytest_tarl.realros.lockstep import WireScheduler
 from pytest_tarl.ros.bus import Bus, Channel, Topic
 from pytest_tarl.ros.episode import Ros
 from pytest_tarl.ros.hosttime import virtual_host_time
+from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.launched import Given
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.definitions import Kind
@@ -126,7 +127,7 @@ class RealRos(Ros):
         interval = sys.getswitchinterval()
         sys.setswitchinterval(_SWITCH_INTERVAL)
         try:
-            with virtual_host_time(self.scheduler), threads_as_tasks():
+            with virtual_host_time(self.scheduler), threads_as_tasks(), terminals(self.processes):
                 yield
         finally:
             sys.setswitchinterval(interval)

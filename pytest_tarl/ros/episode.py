@@ -8,10 +8,11 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.errors import NodeError
+from pytest_tarl.errors import NodeError, SettingsError
 from pytest_tarl.ros.argv import command_line
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
+from pytest_tarl.ros.keyboard import Terminal
 from pytest_tarl.ros.launched import NOTHING, Given
 from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.process import Network, Process
@@ -68,7 +69,25 @@ class Ros(Network):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences for the user on how the nodes were started."""
-        return (*self._launch_notes, *self.uninstalled.notes())
+        return (*self._launch_notes, *self.uninstalled.notes(), *self._silent_terminals())
+
+    def type(self, text: str, node: str | None = None) -> None:
+        """Type text on the terminal of one running node, by its file or name, or of all. Raises SettingsError."""
+        running = [one for one in self.processes if not one.ended and node in (None, one.name, one.label)]
+        if not running:
+            which = "no node is running" if node is None else f"no running node is called {node!r}"
+            raise SettingsError(f"tarl.type: {which}. Start it first; the name is that of tarl.start or of the node.")
+        for process in running:
+            process.part(Terminal).type(text)
+
+    def _silent_terminals(self) -> list[str]:
+        """Return sentences about nodes that waited for keys in vain."""
+        terminals = [(one.label, one.part(Terminal)) for one in self.processes]
+        return [
+            f"Node {label!r} waits for the keyboard, but the test types nothing: call tarl.type(text)."
+            for label, terminal in terminals
+            if terminal.waited and not terminal.used
+        ]
 
     def give(self, parameters: Mapping[str, Any]) -> None:
         """Add parameters for every node that is started from now on."""
@@ -139,7 +158,7 @@ class Ros(Network):
 
     def installed(self) -> AbstractContextManager[None]:
         """Make rospy, rclpy and the message packages importable; restore the former modules on exit."""
-        return standins_installed(self.scheduler, self.uninstalled)
+        return standins_installed(self.scheduler, self.uninstalled, self.processes)
 
     def close(self) -> None:
         """End every node as ROS does, then discard all state. Raises NodeError for a node that refuses to end."""

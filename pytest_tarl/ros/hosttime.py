@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from pytest_tarl.ros import keyboard
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
@@ -61,8 +62,11 @@ def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any
         if task is None:
             return real(rlist, wlist, xlist, timeout)
         until = None if timeout is None else scheduler.time + nanoseconds(timeout)
+        typed, others, terminal = keyboard.split(rlist)
         while True:
-            ready = real(rlist, wlist, xlist, 0)
+            ready = real(others, wlist, xlist, 0) if others or wlist or xlist else ([], [], [])
+            if terminal is not None and terminal.look():
+                ready = ([*typed, *ready[0]], *ready[1:])
             if any(ready) or (until is not None and scheduler.time >= until):
                 return ready
             if task.process.ending:

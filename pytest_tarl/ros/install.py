@@ -12,6 +12,7 @@ from types import CodeType, FrameType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.hosttime import virtual_host_time
+from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
@@ -22,6 +23,7 @@ from pytest_tarl.ros.threads import threads_as_tasks
 from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:
+    from pytest_tarl.ros.process import Process
     from pytest_tarl.ros.scheduler import Scheduler
     from pytest_tarl.ros.uninstalled import UninstalledFinder
 
@@ -310,14 +312,16 @@ def _imports(code: CodeType) -> set[str]:
 
 
 @contextmanager
-def standins_installed(scheduler: Scheduler, uninstalled: UninstalledFinder) -> Iterator[None]:
-    """Install the stand-ins and the virtual host clock; undo both on exit."""
+def standins_installed(
+    scheduler: Scheduler, uninstalled: UninstalledFinder, processes: Sequence[Process]
+) -> Iterator[None]:
+    """Install the stand-ins, the virtual host clock and the terminals of `processes`; undo all on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
     sys.meta_path.append(uninstalled)
     try:
-        with virtual_host_time(scheduler), threads_as_tasks():
+        with virtual_host_time(scheduler), threads_as_tasks(), terminals(processes):
             yield
     finally:
         sys.meta_path.remove(finder)
