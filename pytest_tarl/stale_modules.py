@@ -7,11 +7,14 @@ import gc
 import sys
 from collections import deque
 from collections.abc import Collection, Iterable, Iterator
+from functools import cached_property
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import resolve_name
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
+from typing import cast
 
+_IMPORT = dis.opmap["IMPORT_NAME"]
 _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
 
@@ -22,11 +25,12 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
     """
     going = {id(module): module for module in gone}
     left = [name for name in among if _renewable(sys.modules.get(name))]
+    imports = {name: _Imports(sys.modules[name]) for name in left}
     found: list[str] = []
     grew = True
     while grew:
         names = {str(module.__dict__.get("__name__")) for module in going.values()}
-        more = [name for name in left if _holds(sys.modules[name], going, names)]
+        more = [name for name in left if _holds(sys.modules[name], going, names, imports[name])]
         going.update((id(sys.modules[name]), sys.modules[name]) for name in more)
         left = [name for name in left if name not in more]
         found += more
@@ -47,15 +51,29 @@ def of_tests(file: Path) -> bool:
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
 
 
-def _imported(module: ModuleType) -> Iterator[str]:
-    """Yield the dotted names imported anywhere in a module; a constant taken from a module keeps no reference to it.
+class _Imports:
+    """The dotted names imported anywhere in a module; a constant taken from a module keeps no reference to it.
 
     Imports in functions count, because a function called at module level may return such a constant.
     """
-    spec = module.__dict__["__spec__"]
-    code = spec.loader.get_code(spec.name)
-    for one in _nested(code) if code is not None else ():
-        yield from _imported_by(one, spec)
+
+    def __init__(self, module: ModuleType) -> None:
+        self._spec: ModuleSpec = module.__dict__["__spec__"]
+
+    def any_of(self, names: Collection[str]) -> bool:
+        """Return whether the module imports one of the names. Only code that uses its last part is decoded."""
+        last = {name.rpartition(".")[2] for name in names}
+        return any(
+            not last.isdisjoint(one.rpartition(".")[2] for one in code.co_names)
+            and any(name in names for name in _imported_by(code, self._spec))
+            for code in self._importing
+        )
+
+    @cached_property
+    def _importing(self) -> list[CodeType]:
+        """The module's code objects that may import; cached values between instructions may look like an import."""
+        code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
+        return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 
 
 def _nested(code: CodeType) -> Iterator[CodeType]:
@@ -86,10 +104,10 @@ def _renewable(module: ModuleType | None) -> bool:
     return spec.name.partition(".")[0] not in _OURS and not of_tests(Path(spec.origin))
 
 
-def _holds(module: ModuleType, going: Collection[int], names: set[str]) -> bool:
+def _holds(module: ModuleType, going: Collection[int], names: set[str], imports: _Imports) -> bool:
     if id(module) in going:
         return False
-    if not names.isdisjoint(_imported(module)):
+    if imports.any_of(names):
         return True
     for value in list(module.__dict__.values()):
         if id(value) in going:
