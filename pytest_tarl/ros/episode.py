@@ -76,7 +76,9 @@ class Ros(Network):
         running = [one for one in self.processes if not one.ended and node in (None, one.name, one.label)]
         if not running:
             which = "no node is running" if node is None else f"no running node is called {node!r}"
-            raise SettingsError(f"tarl.type: {which}. Start it first; the name is that of tarl.start or of the node.")
+            raise SettingsError(
+                f"tarl.type: {which}. Start it first; the name is that of tarl.start or of the node."
+            )
         for process in running:
             process.part(Terminal).type(text)
 

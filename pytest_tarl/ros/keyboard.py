@@ -26,7 +26,7 @@ class NodeInterruptedError(KeyboardInterrupt):
 class Terminal(io.TextIOBase):
     """The standard input of one node.
 
-    Until the node switches to raw or cbreak mode, it can read typed text from the first newline on, as in a real terminal.
+    Until the node switches to raw or cbreak mode, it can read whole lines only, as in a real terminal.
     """
 
     encoding = "utf-8"
@@ -179,7 +179,7 @@ def own_terminal() -> Terminal | None:
 
 
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
-    """Return the streams of a `select` that are the node's terminal, the others, and the terminal if it is among them."""
+    """Return the streams of a `select` that are the node's terminal, the others, and the terminal if among them."""
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]
     return own, [one for one in streams if one not in own], terminal if own else None
@@ -189,11 +189,11 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
     """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end."""
     mine, real_input, real_read = _StandardInput(sys.stdin), builtins.input, os.read
-    sys.stdin, builtins.input, os.read = mine, _input(real_input, mine), _read(real_read)  # type: ignore[assignment]
+    sys.stdin, builtins.input, os.read = mine, _input(real_input, mine), _read(real_read)
     try:
         yield
     finally:
-        if sys.stdin is mine:  # type: ignore[comparison-overlap]
+        if sys.stdin is mine:
             sys.stdin = mine.real
         builtins.input, os.read = real_input, real_read
         with ExitStack() as all_of_them:
@@ -216,6 +216,8 @@ def _input(real: Callable[..., str], replaced: _StandardInput) -> Callable[..., 
 def _read(real: Callable[[int, int], bytes]) -> Callable[[int, int], bytes]:
     def read(fd: int, length: int, /) -> bytes:
         terminal = own_terminal()
-        return terminal.buffer.read(length) if terminal is not None and terminal.owns(fd) else real(fd, length)
+        return (
+            terminal.buffer.read(length) if terminal is not None and terminal.owns(fd) else real(fd, length)
+        )
 
     return read

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 
 import pytest
-from tests.plugin.ros.conftest import Start, heard
 
 from pytest_tarl.errors import SettingsError
+from tests.plugin.ros.conftest import Start, heard
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="termios")
 
