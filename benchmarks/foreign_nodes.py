@@ -205,7 +205,8 @@ def main() -> None:
         chosen = [one for one in found if options.only in one.name]
         if options.counted is not None:
             random.Random(options.seed).shuffle(chosen)
-        began, outcomes = time.perf_counter(), []
+        began = time.perf_counter()
+        outcomes: list[Outcome] = []
         for number, script in enumerate(chosen):
             if sum(not one.apart for one in outcomes) == options.counted:
                 break
