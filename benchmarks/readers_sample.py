@@ -94,11 +94,12 @@ def _of_code(place: str, text: str) -> Iterator[tuple[str, str, str]]:
     last = 0
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
-            if token.start[0] != last + 1 and block:
+            beside = bool(token.line[: token.start[1]].strip())  # a comment behind code stands alone
+            if block and (beside or token.start[0] != last + 1):
                 yield from _of("comment", place, [" ".join(block)])
                 block = []
             block.append(token.string.lstrip("#: "))
-            last = token.start[0]
+            last = -1 if beside else token.start[0]
     yield from _of("comment", place, [" ".join(block)])
 
 

@@ -9,6 +9,9 @@ from benchmarks.readers_sample import sample
 MODULE = '''"""A module with a first sentence. And with a second one."""
 
 LIMIT = 3  # steps that a search may take
+MORE = 4  # further steps after the limit
+# A comment of two lines
+# is one sentence.
 
 
 def f(path: str) -> None:
@@ -30,6 +33,8 @@ def test_each_kind_of_text_is_drawn_once_and_equal_seeds_give_equal_samples(tmp_
     (tmp_path / "tests" / "test_a.py").write_text("def test_it_has_a_long_name() -> None: ...\n")
     drawn = sample(tmp_path, 100, seed=1)
     assert sorted(drawn) == [
+        ("comment", "tarl_lint/a.py", "A comment of two lines is one sentence."),
+        ("comment", "tarl_lint/a.py", "further steps after the limit"),
         ("comment", "tarl_lint/a.py", "steps that a search may take"),
         ("docs", "docs/a.md", "This is a sentence of two lines."),
         ("docstring", "tarl_lint/a.py", "A module with a first sentence."),
