@@ -97,22 +97,27 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 
 
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
-    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order."""
+    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
+
+    The few with enough evidence for a status are judged once more, with their onsets.
+    """
     found: dict[int, Robot] = {}
-    for some in side_by_side.watched(first, scores, ends):
+    for some in side_by_side.watched(first, scores, ends, onsets=False):
         both = zip(some.robots.tolist(), some.peaks(), some.latest(), strict=True)
-        for place, (number, peak, latest) in enumerate(both):
+        for number, peak, latest in both:
             low, high = int(ends[number - 1]) if number else 0, int(ends[number])
-            world, bound = evidence(first, peak, latest)
-            status = None
-            if max(world, bound) >= -np.log2(q):
-                monitor = fresh(first)
-                monitor.processes, monitor.pool = some.state(place)
-                own = scores.between(low, high)
-                monitor.told(own.passed, own.total, own.steps, own.time, own.new())
-                status = status_of(monitor)
             passed = int(np.count_nonzero(scores.passed[low:high]))
-            found[number] = Robot(names[number], high - low, passed, world, bound, status)
+            found[number] = Robot(
+                names[number], high - low, passed, *evidence(first, peak, latest), status=None
+            )
+    reached = [number for number, one in found.items() if max(one.world, one.bound) >= -np.log2(q)]
+    for some in side_by_side.watched(first, scores, ends, np.array(sorted(reached), np.int64)):
+        for place, number in enumerate(some.robots.tolist()):
+            monitor = fresh(first)
+            monitor.processes, monitor.pool = some.state(place)
+            own = scores.between(int(ends[number - 1]) if number else 0, int(ends[number]))
+            monitor.told(own.passed, own.total, own.steps, own.time, own.new())
+            found[number] = replace(found[number], status=status_of(monitor))
     return [found[number] for number in range(len(ends))]
 
 

@@ -54,21 +54,27 @@ class Watched:
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
 
 
-def watched(first: Monitor, scores: Scores, ends: Ints) -> Iterator[Watched]:
+def watched(
+    first: Monitor, scores: Scores, ends: Ints, some: Ints | None = None, onsets: bool = True
+) -> Iterator[Watched]:
     """Judge the missions of robots; those of robot n end before `ends[n]`. Yield robots with similar numbers together.
 
-    `first` is a monitor without missions.
+    `first` is a monitor without missions; `some` are the numbers of the robots to judge (default: all). Without
+    `onsets`, it is not kept since when missions differ, which is faster.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins
     together = max(1, COLUMNS // first.processes.count)
-    order = np.argsort(counts, kind="stable")
+    chosen = np.arange(counts.size) if some is None else some
+    order = chosen[np.argsort(counts[chosen], kind="stable")]
     for begin in range(0, order.size, together):
         robots = order[begin : begin + together]
-        yield _judged(first, scores, robots, begins[robots], counts[robots])
+        yield _judged(first, scores, robots, begins[robots], counts[robots], onsets)
 
 
-def _judged(first: Monitor, scores: Scores, robots: Ints, begins: Ints, counts: Ints) -> Watched:
+def _judged(
+    first: Monitor, scores: Scores, robots: Ints, begins: Ints, counts: Ints, onsets: bool
+) -> Watched:
     bounds, size = len(first.bounds), len(robots)
     processes = judging.begun(first.processes.threshold, bounds, size)
     pool = np.tile(first.pool, (size, 1))
@@ -86,5 +92,6 @@ def _judged(first: Monitor, scores: Scores, robots: Ints, begins: Ints, counts: 
             first.draws(begin, number.size),
             begin,
             np.clip(counts - begin, 0, number.size),
+            onsets,
         )
     return Watched(robots, processes, pool, bounds)

@@ -29,12 +29,14 @@ def judged(
     draws: Floats,
     first: int,
     ends: Ints | None = None,
+    onsets: bool = True,
 ) -> Ints:
     """Update the processes with consecutive missions of each robot, and return the pool with them.
 
     `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), the pool
     (robots · scores, BINS); `first` is the number of the first mission. At most conformal.TOGETHER missions. `ends`,
     shape (robots,), is each robot's number of missions, if some have fewer; bins of the missing ones are -1.
+    Without `onsets`, it is not kept since when missions differ, which is faster.
     """
     count, robots, scores = bins.shape
     flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
@@ -47,7 +49,7 @@ def judged(
     conformal.factors(low, high, factors[:, :, split:])
     np.copyto(factors, 1.0, where=~taken[:, None, :])
     last = None if ends is None else np.concatenate((np.tile(ends, len(bounds)), np.repeat(ends, scores)))
-    restarts.advance(processes, taken, factors, first, last)
+    restarts.advance(processes, taken, factors, first, last, onsets)
     return conformal.joined(pool, flat)
 
 
