@@ -2,12 +2,15 @@
 
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from website.other_plugins import BLOCKED
 
 pytest_plugins = ["pytester"]
 
@@ -27,6 +30,14 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_other_plugins() -> Iterator[None]:
+    """Block other plugins in the pytest processes that tests start, but not in those of xdist that run the tests."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("PYTEST_ADDOPTS", BLOCKED)
+        yield
+
+
 class _Imported:
     """Notes the modules that a pytest run in this process has imported, before pytester forgets them."""
 
@@ -39,7 +50,10 @@ class _Imported:
 
 @pytest.fixture
 def pytester(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
-    """Keep the libraries that a run in this process imports: imported again, their classes would be others."""
+    """Run pytest without other plugins, and keep the libraries that a run in this process imports.
+
+    Imported again, the classes of these libraries would be others.
+    """
     run = pytester.inline_run
 
     def inline_run(*args: Any, plugins: Any = (), **more: Any) -> Any:
@@ -52,4 +66,5 @@ def pytester(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pyte
         return result
 
     monkeypatch.setattr(pytester, "inline_run", inline_run)
+    monkeypatch.setenv("PYTEST_ADDOPTS", BLOCKED)
     return pytester

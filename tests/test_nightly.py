@@ -18,7 +18,7 @@ ROOT = Path(__file__).parent.parent
 NIGHTLY = (ROOT / ".github" / "workflows" / "nightly.yml").read_text()
 INSTALLED = re.compile(r'pip install .*-e "?\.\[([\w,]+)\]"?(.*)$', re.MULTILINE)
 TESTED = re.compile(r"-m pytest -q (--noconftest )?((?:tests\S* ?)+)$", re.MULTILINE)
-OWN = {"pytest_tarl", "tarl_lint", "tests"}
+OWN = {"pytest_tarl", "tarl_lint", "tests", "website"}
 JOBS = {
     name: body
     for name, body in re.findall(r"^  ([\w-]+):.*\n((?:    .*\n)+)", NIGHTLY, re.MULTILINE)

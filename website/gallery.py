@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from website.other_plugins import BLOCKED
 from website.pages import ROOT
 
 KEPT = ROOT / "build" / "gallery"
@@ -72,7 +73,7 @@ def _made(shown: Shown, work: Path, folder: Path) -> None:
     shutil.copytree(
         ROOT / "examples" / shown.example, work, ignore=shutil.ignore_patterns(".tarl", "__pycache__")
     )
-    environment = {**os.environ, "PYTEST_ADDOPTS": "-p no:asyncio -p no:randomly -p no:rerunfailures"}
+    environment = {**os.environ, "PYTEST_ADDOPTS": BLOCKED}
     for flags in (["--tarl-record"], ["--tarl-online", "--tarl-repair"]):
         command = [sys.executable, "-m", "pytest", "-q", shown.test, *flags]
         print(f"gallery: {shown.example}: pytest {' '.join(command[3:])}", flush=True)

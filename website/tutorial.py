@@ -23,6 +23,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
+from website.other_plugins import BLOCKED
 from website.pages import ROOT
 
 TUTORIAL = ROOT / "docs" / "tutorial.md"
@@ -141,7 +142,7 @@ def _environment(folder: Path) -> dict[str, str]:
         "COLUMNS": "80",
         "LC_ALL": "C.UTF-8",
         "NO_COLOR": "1",
-        "PYTEST_ADDOPTS": "-p no:asyncio -p no:randomly -p no:rerunfailures",  # plugins of the development extra
+        "PYTEST_ADDOPTS": BLOCKED,
     }
 
 

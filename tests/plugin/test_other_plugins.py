@@ -38,6 +38,13 @@ def plain() -> dict[str, bytes]:
 
 
 @pytest.fixture
+def tank(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
+    """The project with every plugin that is installed, as for a user."""
+    monkeypatch.delenv("PYTEST_ADDOPTS")
+    return tank
+
+
+@pytest.fixture
 def expected(tank: pytest.Pytester, plain: dict[str, bytes]) -> bytes:
     """The recording made without other plugins, once for all tests."""
     if not plain:
