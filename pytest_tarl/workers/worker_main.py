@@ -22,8 +22,9 @@ def main() -> None:
         if "arguments" in start:  # of a command line, which no run of pytest has read yet
             config = _prepareconfig(start["arguments"])
             vars(config.option).update(start["options"])
-        else:
-            config = Config.fromdictargs(start["options"], [start["target"]])
+        else:  # pytest heeds the blocked plugins among the options too late, when it has imported them
+            blocked = [f"-p{name}" for name in start["options"]["plugins"] if name.startswith("no:")]
+            config = Config.fromdictargs(start["options"], [start["target"], *blocked])
     except (Exception, SystemExit) as refused:
         problem = f"{type(refused).__name__}: {refused}"
     from pytest_tarl.workers.worker import serve

@@ -120,6 +120,19 @@ def test_a_worker_has_the_fixtures_and_options_of_the_run_and_tears_down_at_the_
     assert "test_fills" in (tank.path / "out.xml").read_text()
 
 
+def test_a_plugin_that_the_run_blocks_is_not_imported_by_a_worker(
+    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tank.makepyfile(noisy="raise SystemExit('the blocked plugin was imported')")
+    noisy = tank.mkdir("noisy-1.dist-info")
+    (noisy / "METADATA").write_text("Metadata-Version: 2.1\nName: noisy\nVersion: 1\n")
+    (noisy / "entry_points.txt").write_text("[pytest11]\nnoisy = noisy\n")
+    monkeypatch.setenv("PYTHONPATH", str(tank.path))
+    blocked = ("-p", "no:noisy")
+    assert tank.runpytest_subprocess(*RECORD).ret != pytest.ExitCode.OK
+    tank.runpytest_subprocess(*RECORD, *blocked, TWO).assert_outcomes(passed=1, deselected=1)
+
+
 def test_each_xdist_worker_has_its_own_workers(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     fixture_file(tank).unlink()
