@@ -108,6 +108,7 @@ class Examiner:
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # this guard is as wide as in the search, so narrower guards cannot gain more
         for others in (
+            *(self.others.inward(edge, trials) for edge in edges),
             *(self.others.beyond(edge) for edge in edges),
             *(
                 self.others.milder(replace(candidate, guard=guard))

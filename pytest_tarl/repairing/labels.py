@@ -1,8 +1,9 @@
-"""Constants that are not quantities: members of an enumeration, values of which only the truth is asked, and exponents.
+"""Constants that are not quantities: members of enumerations, values of which only the truth is asked, and notation.
 
 A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
-nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, no choice of the author. No search moves these. Booleans
-and zeros stay, since their truth can change.
+nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, the `1e-9` in `stamp.nanosec * 1e-9` is a unit, and the
+`1.0` in `1.0 - alpha` says that shares sum to 1; none is a choice of the author. No search moves these. Booleans and
+zeros stay, since their truth can change.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
 GEOMETRIC = (0.5, 2, 3)  # exponents of roots, areas and volumes
+UNITS = (1e-9, 1e-6, 1e6, 1e9)  # factors between units of time
 _ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
 
 
@@ -50,7 +52,7 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
         return False
     if not isinstance(operand.value, bool) and is_member(source, node, analysis.sources.values()):
         return True
-    if _is_exponent(source, node):
+    if _is_exponent(source, node) or _is_unit(source, node) or _is_whole(source, node):
         return True
     changeable = isinstance(operand.value, bool) or operand.value == 0
     return not changeable and _only_truth(source, node)
@@ -61,6 +63,29 @@ def _is_exponent(source: Document, node: ast.expr) -> bool:
     around = source.parents.get(node)
     power = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Pow) and around.right is node
     return power and isinstance(node, ast.Constant) and node.value in GEOMETRIC
+
+
+def _is_unit(source: Document, node: ast.expr) -> bool:
+    """Return whether an expression is a literal factor or divisor that converts a unit."""
+    around = source.parents.get(node)
+    scales = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult | ast.Div)
+    return scales and isinstance(node, ast.Constant) and node.value in UNITS
+
+
+def _is_whole(source: Document, node: ast.expr) -> bool:
+    """Return whether an expression is the 1 in a weighted mean, such as `alpha * x + (1.0 - alpha) * y`."""
+    around = source.parents.get(node)
+    if not isinstance(around, ast.BinOp) or not isinstance(around.op, ast.Sub) or around.left is not node:
+        return False
+    if (
+        not isinstance(node, ast.Constant)
+        or node.value != 1
+        or not isinstance(around.right, ast.Name | ast.Attribute)
+    ):
+        return False
+    share = ast.unparse(around.right)
+    uses = [each for each in ast.walk(source.statement(node)) if isinstance(each, ast.Name | ast.Attribute)]
+    return sum(ast.unparse(each) == share for each in uses) > 1
 
 
 def _only_truth(source: Document, node: ast.expr) -> bool:

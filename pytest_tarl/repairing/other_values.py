@@ -39,6 +39,7 @@ class Others:
         self.missed = missed
         self._pushed: set[Place] = set()
         self._bisected: set[Place] = set()
+        self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
         self.chosen: set[Candidate] = set()  # values that missions of a test prefer to the value tested
@@ -59,6 +60,34 @@ class Others:
             examined = yield moved
             if not examined.fresh or examined.reason not in (*WEAK, *TOO_LITTLE):
                 return
+
+    def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
+        """Propose a value between the original and one that lost few missions in its test, perhaps by going too far.
+
+        Bisect: a value that fails on the first mission that the search wanted goes too little, one that passes it may
+        go too far. Of those that also mend the missions lost in the test, the middle one is proposed.
+        Raises BudgetSpentError.
+        """
+        place = (operands(refused), refused.guard)
+        if not self.missed.few.get(refused) or place in self._inward:
+            return
+        self._inward.add(place)
+        between, good = Between(in_place(refused), self.mutants.mutate), list[Candidate]()
+        while (middle := between.middle()) is not None:
+            enough = self._reaches(middle, trials)
+            if enough and self._mends(middle, refused, trials):
+                good.append(middle)
+            between.told(STRONG[0] if enough else WEAK[0])
+        if good and self.ledger.alike(good[len(good) // 2]) is None:
+            yield good[len(good) // 2]
+
+    def _reaches(self, candidate: Candidate, trials: Trials) -> bool:
+        goal = self.mutants.order.goal
+        seed = goal.pairs[0].seed
+        try:
+            return goal.reached(trials(candidate, seed), seed)
+        except RepairError:
+            return False
 
     def beside(self, trials: Trials) -> OtherValues:
         """Move a candidate that lost few missions in its test to a value that loses none of them.

@@ -1,6 +1,6 @@
 """Which constants move on a scale of their own.
 
-They are shares close to 1, and offsets that are small beside the values that they are added to or compared with.
+They are shares close to 1, named offsets that are small beside the values that they are added to, and zeros.
 """
 
 from __future__ import annotations
@@ -43,12 +43,14 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
         return None
     if NEARLY_ALL <= value < 1.0:
         return SHARE
+    if operand.literal and value:
+        return None  # a number inside a line is rarely an offset of a wrong size, and there are many
     size = max(_beside(source, node, operand, sizes), default=0.0)
     return offset(size) if size > abs(value) else None
 
 
 def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes) -> Iterator[float]:
-    """Yield the usual sizes of the values that a constant is added to or compared with, and of their sum.
+    """Yield the usual sizes of the values that a constant is added to, and of their sum; for a zero, of what it meets.
 
     Nothing if the constant is a factor, or stands alone.
     """
@@ -57,6 +59,8 @@ def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSi
         if isinstance(around, ast.BinOp) and isinstance(around.op, ast.Add | ast.Sub):
             other = around.right if around.left is inner else around.left
             yield from filter(None, (sizes.known(operand.site, other),))
+        elif isinstance(around, ast.Compare) and operand.value != 0:
+            return
         elif isinstance(around, ast.Compare):
             sides = [side for side in (around.left, *around.comparators) if side is not inner]
             yield from filter(None, (sizes.known(operand.site, side) for side in sides))

@@ -34,6 +34,7 @@ MOST = {
 FIRST = (
     2  # expressions that get all templates first: the slices' first one and the one next to the publish call
 )
+CLAMPS = ("clamp", "clip", "saturate", "constrain")
 LEAST = 50  # episodes that templates with a sensor get at least if the sensor tells the drift
 
 
@@ -179,10 +180,20 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":  # a sensor is read where messages arrive, and corrects what is sent
-        fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, spot.away))
+        # ... before it is limited, so that the limits still hold
+        fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
     return fitting
+
+
+def _limited(node: ast.expr) -> bool:
+    """Return whether an expression limits a value between two bounds, by `max(low, min(high, x))` or `clamp(x)`."""
+    if not isinstance(node, ast.Call):
+        return False
+    name = ast.unparse(node.func).rpartition(".")[2]
+    inner = [ast.unparse(each.func) for each in node.args if isinstance(each, ast.Call)]
+    return name in CLAMPS or (name in ("max", "min") and {"max", "min"} - {name} <= set(inner))
 
 
 def _scales(order: Order, sensor: Sensor) -> dict[str, float]:

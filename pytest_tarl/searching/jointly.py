@@ -40,6 +40,7 @@ LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
 REFITTED = 4  # trials after which the length scales are chosen anew
 NOISE = 0.03
 WORST = 2.0  # largest deviation from the designed mission that counts
+REFUSED = 0.5  # taken off where a point that is good on this seed was refused on others
 SMALL = 0.02  # change of a log step that is none
 
 
@@ -165,7 +166,8 @@ class Jointly:
         except RepairError:
             return None
         wanted = self.goal.wanted or 1.0
-        return float(np.clip(gain / wanted, -1.0, 1.0)) - min(away, WORST)
+        refused = REFUSED if joint.candidate(self.selection.mutate) in self.selection.settled.tried else 0.0
+        return float(np.clip(gain / wanted, -1.0, 1.0)) - min(away, WORST) - refused
 
     def _next(self) -> tuple[float, ...]:
         """Return the proposal with the largest expected improvement over the best trial."""
