@@ -119,7 +119,7 @@ def _sent(call: ast.Call) -> Iterator[ast.expr]:
     if ast.unparse(call.func).rpartition(".")[2] != "publish":
         return
     for each in ast.walk(call):
-        if isinstance(each, ast.Call):
+        if each is call or (isinstance(each, ast.Call) and _makes_an_object(each)):
             passed = (*each.args, *(keyword.value for keyword in each.keywords))
             yield from (one for one in passed if isinstance(one, ast.Name | ast.Attribute | ast.Compare))
 
