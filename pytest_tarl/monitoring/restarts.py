@@ -34,8 +34,9 @@ class Processes:
     """The state of several e-processes, one per column; `stake`, `best` and `since` have shape (bets, processes).
 
     `stake` is Σ_τ w_τ ∏f and `best` the largest term of that sum, both divided by 2^exponent; `since` is the mission
-    before which the largest term started. `age` counts the observations of a process; `peak` is the largest
-    log2 of its evidence so far, `alarm` the mission at which it reached `threshold`, -1 for none.
+    before which the largest term started. `age` counts the observations of a process; `peak` is the largest log2 of its
+    evidence so far, `onset` the mission before which the largest term at that moment had started, `alarm` the mission
+    at which the evidence reached `threshold`, -1 for none.
     """
 
     stake: Floats
@@ -44,6 +45,7 @@ class Processes:
     exponent: Ints
     age: Ints
     peak: Floats
+    onset: Ints
     alarm: Ints
     threshold: Floats  # log2 of the evidence that raises an alarm
 
@@ -63,6 +65,7 @@ def begun(threshold: Floats) -> Processes:
         exponent=np.zeros(count, np.int64),
         age=np.zeros(count, np.int64),
         peak=np.zeros(count),
+        onset=np.zeros(count, np.int64),
         alarm=np.full(count, -1, np.int64),
         threshold=threshold,
     )
@@ -87,7 +90,7 @@ def advance(
     `taken`, shape (missions, processes), is true if a mission has an observation for a process. `factors`, shape
     (missions, bets, processes), multiply the stakes; they are 1 without an observation. `ends`, shape (processes,), is
     the number of these missions that belong to each process; the rest fills up the table (default: all belong).
-    Without `onsets`, `best` and `since` are left as they are, which takes half the time.
+    Without `onsets`, `best`, `since` and `onset` are left as they are, which takes half the time.
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
@@ -98,8 +101,11 @@ def advance(
     age = processes.age[rows] + np.cumsum(taken, axis=0)
     left = reserve(age)
     weight = np.where(taken, reserve(age - taken) - left, 0.0)
-    worth, exponent = _multiplied(processes, rows, weight, factors, first, ends, onsets)
-    evidence = np.log2(worth / BETS + np.ldexp(left, -exponent)) + exponent
+    products = _multiplied(processes, rows, weight, factors, first, ends)
+    exponent = products.exponents
+    evidence: Floats = np.log2(products.sums / BETS + np.ldexp(left, -exponent)) + exponent
+    if onsets:
+        _started(processes, rows, products, first, evidence)
     processes.age[rows] = age[-1]
     processes.peak[rows] = np.maximum(processes.peak[rows], evidence.max(axis=0))
     above = evidence >= processes.threshold[rows]
@@ -107,18 +113,26 @@ def advance(
     processes.alarm[rows] = np.where(processes.alarm[rows] < 0, raised, processes.alarm[rows])
 
 
-def _multiplied(
-    processes: Processes,
-    rows: Ints,
-    weight: Floats,
-    factors: Floats,
-    first: int,
-    ends: Ints | None,
-    onsets: bool,
-) -> tuple[Floats, Ints]:
-    """Update stakes mission by mission; return their sums and exponents after each, shape (missions, rows).
+@dataclass(frozen=True)
+class _Products:
+    """What the stakes of some rows became: sums over the bets and exponents after each mission, shape (missions, rows).
 
-    A row of `stake` and `best` is the state of all bets of all processes, before a mission or after the last one.
+    `added`, `multiplied` and `shrinks` are what was done at each mission, in this order, for all bets of all rows.
+    """
+
+    sums: Floats
+    exponents: Ints
+    added: Floats
+    multiplied: Floats
+    shrinks: Mapping[int, Floats]
+
+
+def _multiplied(
+    processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int, ends: Ints | None
+) -> _Products:
+    """Update stakes mission by mission.
+
+    A row of `stake` is the state of all bets of all processes, before a mission or after the last one.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
@@ -140,36 +154,41 @@ def _multiplied(
             after *= shrinks[index]
             exponents[index:] += shrunk
             added[index + 1 :] = np.tile(np.ldexp(weight[index + 1 :], -exponents[index + 1 :]), BETS)
-    if onsets:
-        _started(processes, rows, added, multiplied, shrinks, first)
     processes.stake[:, rows] = stake[-1].reshape(BETS, -1)
     processes.exponent[rows] = exponents[-1]
-    return _summed(stake[1:].reshape(shape)), exponents
+    return _Products(_summed(stake[1:].reshape(shape)), exponents, added, multiplied, shrinks)
 
 
-def _started(
-    processes: Processes,
-    rows: Ints,
-    added: Floats,
-    multiplied: Floats,
-    shrinks: Mapping[int, Floats],
-    first: int,
-) -> None:
-    """Update the largest terms of the stakes and the missions before which they started."""
-    count = len(added)
+def _started(processes: Processes, rows: Ints, products: _Products, first: int, evidence: Floats) -> None:
+    """Update the largest terms of the stakes and the missions before which they started, now and at the peak.
+
+    `evidence`, shape (missions, rows), is log2 of it after each mission.
+    """
+    added, count = products.added, len(products.added)
     best = np.empty((count + 1, BETS * len(rows)))
     best[0] = processes.best[:, rows].ravel()
     for index, (before, after, more, factor) in enumerate(
-        zip(best, best[1:], added, multiplied, strict=False)
+        zip(best, best[1:], added, products.multiplied, strict=False)
     ):
         np.maximum(before, more, out=after)
         np.multiply(after, factor, out=after)
-        if index in shrinks:
-            after *= shrinks[index]
+        if index in products.shrinks:
+            after *= products.shrinks[index]
     fresh = best[:-1] < added
-    latest = first + count - 1 - fresh[::-1].argmax(axis=0).reshape(BETS, -1)
-    since = np.where(fresh.any(axis=0).reshape(BETS, -1), latest, processes.since[:, rows])
-    processes.best[:, rows], processes.since[:, rows] = best[-1].reshape(BETS, -1), since
+    earlier = processes.since[:, rows]
+    higher = np.flatnonzero(evidence.max(axis=0) > processes.peak[rows])
+    at = evidence[:, higher].argmax(axis=0)
+    bet = best.reshape(count + 1, BETS, -1)[at + 1, :, higher].argmax(axis=1)
+    until = fresh.reshape(count, BETS, -1)[:, bet, higher] & (np.arange(count)[:, None] <= at)
+    processes.onset[rows[higher]] = _latest(until, earlier[bet, higher], first)
+    processes.since[:, rows] = _latest(fresh.reshape(count, BETS, -1), earlier, first)
+    processes.best[:, rows] = best[-1].reshape(BETS, -1)
+
+
+def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
+    """Return the number of the last mission at which a term was `fresh`, along the first axis; `earlier` without."""
+    last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
+    return np.where(fresh.any(axis=0), last, earlier)
 
 
 def _summed(stake: Floats) -> Floats:
@@ -185,8 +204,3 @@ def log_evidence(processes: Processes) -> Floats:
     left = np.ldexp(reserve(processes.age), -processes.exponent)
     found: Floats = np.log2(_summed(processes.stake[None])[0] / BETS + left) + processes.exponent
     return found
-
-
-def onset(processes: Processes, row: int) -> int:
-    """Return the mission before which the restart with most of a process's evidence was made."""
-    return int(processes.since[int(np.argmax(processes.best[:, row])), row])

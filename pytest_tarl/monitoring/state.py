@@ -4,6 +4,7 @@ A `.npz` without pickle, like a recording: a JSON header with a digest, and the 
 
 FORMAT history:
 1  First version.
+2  The onset of each process at its largest evidence.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun
 from pytest_tarl.monitoring.restarts import Processes
 
-FORMAT = 1
+FORMAT = 2
 HEADER = "header"
 KIND = "state of a watch"  # distinguishes the file from a recording
 _UNREADABLE = (

@@ -124,7 +124,7 @@ def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
     return Evidence(
         now=float(now.max() * np.log10(2.0)),
         highest=float(peak.max() * np.log10(2.0)),
-        since=_moment(monitor, restarts.onset(processes, row)) if known else None,
+        since=_moment(monitor, int(processes.onset[row])) if known else None,
         alarm=_moment(monitor, int(raised.min())) if raised.size else None,
     )
 

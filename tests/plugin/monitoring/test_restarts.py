@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytest_tarl.monitoring import e_process, restarts
-from pytest_tarl.monitoring.restarts import BETS, advance, begun, log_evidence, onset, reserve
+from pytest_tarl.monitoring.restarts import BETS, advance, begun, log_evidence, reserve
 
 
 def watched(
@@ -90,8 +90,24 @@ def test_evidence_beyond_the_largest_float_is_kept() -> None:
 def test_the_onset_is_the_change_of_the_factors() -> None:
     factors = np.concatenate([np.full((300, BETS, 1), 0.8), np.full((30, BETS, 1), 2.0)])
     processes = watched(factors)
-    assert onset(processes, 0) == 300
+    assert processes.onset.tolist() == [300]
     assert 300 < processes.alarm[0] < 330
+
+
+def test_the_onset_stays_that_of_the_largest_evidence_when_the_evidence_falls_again() -> None:
+    parts = [(300, 0.8), (30, 2.0), (200, 0.8), (4, 2.0)]
+    factors = np.concatenate([np.full((count, BETS, 1), factor) for count, factor in parts])
+    for portions in ([534], [320, 7, 207], [64] * 8 + [22]):
+        processes = watched(factors, portions)
+        assert processes.onset.tolist() == [300]
+        assert processes.since[0, 0] == 530
+
+
+def test_the_onset_is_that_of_the_bet_with_the_largest_term() -> None:
+    factors = np.full((60, BETS, 2), 0.3)
+    factors[20:40, 3, 0] = 3.0
+    factors[10:50, 5, 1] = 1.8
+    assert watched(factors).onset.tolist() == [20, 10]
 
 
 def test_a_process_without_observations_is_unchanged() -> None:
