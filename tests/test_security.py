@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from tests.plugin.tank import NODE, TEST
+from tests.slow import slow
 
 ROOT = Path(__file__).parent.parent
 WATCH = """
@@ -105,7 +106,7 @@ def test_nobody_unpickles() -> None:
                 assert node.value.value is False, path
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
+@pytest.mark.parametrize("workers", [pytest.param("1", marks=slow), "2"])
 def test_a_run_opens_no_connection_and_writes_below_tarl_only(tmp_path: Path, workers: str) -> None:
     project = tmp_path / "project"
     project.mkdir()

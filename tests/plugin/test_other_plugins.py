@@ -13,6 +13,7 @@ import pytest
 from pytest_tarl.learning.fixture import load
 from tests.plugin.learning.test_statistics import same
 from tests.plugin.tank import NODE, changed, fixture_file
+from tests.slow import slow
 
 MARK = "@pytest.mark.tarl("
 FEW = ("--tarl-record", "--tarl-episodes=6")
@@ -85,6 +86,7 @@ def test_another_plugin_does_not_change_the_recording(
     told.stdout.fnmatch_lines(["*wrote .tarl/utility/*", "*1 passed*"])
 
 
+@slow
 def test_an_xdist_process_writes_the_same_recording(tank: pytest.Pytester, expected: bytes) -> None:
     told = tank.runpytest_subprocess(*FEW, "-n", "2")
     assert told.ret == pytest.ExitCode.OK

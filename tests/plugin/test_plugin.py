@@ -12,6 +12,7 @@ import pytest
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.report import json_result
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file, result
+from tests.slow import slow
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ def test_without_a_drift_the_scenario_is_called_online(tank: pytest.Pytester) ->
     tank.runpytest(*ONLINE, "-v").stdout.fnmatch_lines(["*test_fills?online?*PASSED*"])
 
 
-@pytest.mark.parametrize("search", ["sweep", "epsilon-greedy"])
+@pytest.mark.parametrize("search", ["sweep", pytest.param("epsilon-greedy", marks=slow)])
 def test_a_repair_is_found_and_applying_it_fixes_the_test(recorded: pytest.Pytester, search: str) -> None:
     result = recorded.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
     result.assert_outcomes(failed=1, deselected=1)

@@ -17,6 +17,7 @@ from pytest_tarl.printable import printable, printable_line
 from tests.plugin.commands.test_confined import PATCH, robot, sealed
 from tests.plugin.learning.test_fixture import example as sound_fixture
 from tests.plugin.tank import RECORD, changed
+from tests.slow import slow
 
 HOSTILE = "\x1b]0;owned\x07\x1b[2J\x9b31m\u202egnp.exe\u2066\x00\x08\r"
 COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufeff]")
@@ -74,6 +75,7 @@ def test_names_of_missing_files_are_printed_safely(capsys: pytest.CaptureFixture
         assert not COMMANDS.search(text)
 
 
+@slow
 def test_errors_of_nodes_are_printed_safely(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "            flow = GAIN * missing", "            flow = GAIN * missing / FACTOR")
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 2.0\nFACTOR = 1.0\n")

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.slow import slow
+
 MODULES = [
     "textwrap",
     "fractions",
@@ -73,6 +75,7 @@ def assert_lawful(*modules: str) -> None:
         assert events > sites, module
 
 
+@slow
 @needs_tests
 def test_the_standard_library_passes_its_tests_with_every_statement_recorded():
     assert_lawful(*MODULES)

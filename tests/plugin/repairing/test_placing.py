@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.plugin.tank import ONLINE, RECORD, changed, result
+from tests.slow import slow
 
 REPAIR = (*ONLINE, "--tarl-repair", "--tarl-drift=worn", "-p", "no:cacheprovider")
 pytestmark = pytest.mark.usefixtures("quick_acceptance")
@@ -255,6 +256,7 @@ def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) ->
     )
 
 
+@slow
 def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> None:
     node(worn, before="from settings import GAIN\n", use="GAIN")
     (worn.path / "settings.py").write_text("GAIN = 2.0\n")

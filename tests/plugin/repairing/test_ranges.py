@@ -16,6 +16,7 @@ from pytest_tarl.model import Sizes
 from pytest_tarl.repairing.ranges import STRATA, spread_seeds
 from pytest_tarl.repairing.request import spread
 from tests.plugin.tank import ONLINE, RECORD, changed, result
+from tests.slow import slow
 
 REPAIR = (*ONLINE, "--tarl-repair")
 BURST = """\
@@ -74,6 +75,7 @@ def test_the_parts_of_a_dictionary_have_ranges_of_their_own(ranged: pytest.Pytes
     assert all(one["repaired"] is None for one in found["sizes"])
 
 
+@slow
 def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: pytest.Pytester) -> None:
     changed(ranged, "test_tank", "Drift.range(0.1, 0.3)", "Drift.range(0.1, 0.3, permanent=True)")
     changed(ranged, "test_tank", "        tarl.reward(", BURST)
@@ -84,6 +86,7 @@ def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: 
     assert "it works for sizes from" in told or "a part of the drift's range" in told
 
 
+@slow
 @pytest.mark.usefixtures("quick_acceptance")
 def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
     ranged.runpytest(*RECORD)

@@ -11,6 +11,7 @@ import pytest
 
 from pytest_tarl.repairing import accepting
 from tests.plugin.tank import ONLINE, RECORD, TEST, changed, result
+from tests.slow import slow
 
 REPAIR = (*ONLINE, "--tarl-repair")
 INTERRUPT = """
@@ -27,7 +28,7 @@ INTERRUPT = """
     "breaking",
     [
         "        assert level == level\n        if level > 1.5:\n            raise ValueError('burst')\n",
-        "        if level > 1.5:\n            tarl.reward(float('nan'))\n",
+        pytest.param("        if level > 1.5:\n            tarl.reward(float('nan'))\n", marks=slow),
     ],
 )
 def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
@@ -39,6 +40,7 @@ def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
     assert result(tank)["repair"]["accepted"]
 
 
+@slow
 def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", "if level is not None and 0.5 < 1.0 - 0.1 * level:")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
@@ -46,6 +48,7 @@ def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: py
     assert result(tank)["repair"]["accepted"]
 
 
+@slow
 def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*REPAIR, "--tarl-search=epsilon-greedy")
@@ -54,6 +57,7 @@ def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None
     assert "epsilon-greedy" in methods
 
 
+@slow
 def test_a_site_added_after_the_recording_can_be_the_culprit(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     changed(tank, "keeper", "flow = GAIN * missing", "flow = 2.0 * missing")
@@ -217,6 +221,7 @@ class Draws:
 """
 
 
+@slow
 def test_a_plugged_in_search_is_reproducible(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine=OWN)
     tank.runpytest(*RECORD)
@@ -245,6 +250,7 @@ def test_a_search_that_raises_fails_the_test_with_one_sentence(tank: pytest.Pyte
     done.stdout.fnmatch_lines(["*the factory returned Silent, which has no method ask and no tell*"])
 
 
+@slow
 def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR)

@@ -23,6 +23,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome, examined, refute
 from pytest_tarl.stressing.rays import distance, rays
 from pytest_tarl.stressing.search import explore
 from tests.plugin.stressing.worlds import Simulated, evaluator_of, space_of, stressed
+from tests.slow import slow
 
 MUD = Drift.range(0.0, 1.0, nominal=1.0)
 SLOPE = Drift.range(-0.5, 0.5, nominal=0.0)
@@ -151,6 +152,7 @@ def test_a_corner_of_four_directions_is_found_and_shrunk() -> None:
     assert nearest.point["d"] < 0.2
 
 
+@slow
 def test_a_spent_budget_keeps_the_findings_so_far() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(point["mud"] > 0.5), 1.0

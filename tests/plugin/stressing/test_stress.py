@@ -25,6 +25,7 @@ from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import along_rays
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
 from tests.plugin.tank import RECORD, changed
+from tests.slow import slow
 
 STRESS = ("--tarl-stress", "--tarl-stress-budget=150")
 SPACE = '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0))}'
@@ -74,6 +75,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     assert written(spaced) == first
 
 
+@slow
 def test_kept_failures_and_workers_leave_a_search_in_two_directions_as_it_is(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", "import Drift, Sensor", "import Drift, Sensor, faults")
     changed(spaced, "test_tank", "nominal=1.0)", 'nominal=1.0), high=faults.bias("/level", "data", 0.0, 0.2)')
