@@ -51,8 +51,10 @@ $(INSTALLED): pyproject.toml
 		{ echo "tarl needs Python 3.10 or newer; name one: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
 	@$(PYTHON) -m venv $(VENV) || \
 		{ echo "$(PYTHON) cannot make a virtual environment; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[dev]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip uv
+	@$(BIN)/uv pip install --quiet --python $(BIN)/python --editable ".[dev]" || \
+		{ echo "uv could not install the packages; pip tries, which takes a minute longer"; \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[dev]"; }
 	@touch $@
 
 # The same test bodies on a real ROS, each in an environment of its own; see docs/real-ros.md
