@@ -99,7 +99,7 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
     """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
 
-    The few with enough evidence for a status are judged once more, with their onsets.
+    Those with enough evidence for a status are judged a second time, which finds their onsets.
     """
     found: dict[int, Robot] = {}
     for some in side_by_side.watched(first, scores, ends, onsets=False):

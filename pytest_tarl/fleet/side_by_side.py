@@ -60,7 +60,7 @@ def watched(
     """Judge the missions of robots; those of robot n end before `ends[n]`. Yield robots with similar numbers together.
 
     `first` is a monitor without missions; `some` are the numbers of the robots to judge (default: all). Without
-    `onsets`, it is not kept since when missions differ, which is faster.
+    `onsets`, the start of a difference is not kept, which is faster.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins

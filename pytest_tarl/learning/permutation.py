@@ -47,7 +47,7 @@ def permuted_loss(
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
     tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of a sum changes its rounding
-    observed = _observed(pooled, online.size) + tie
+    observed = observed_sum(pooled, online.size) + tie
 
     def reached(shuffled: Floats) -> Ints:
         return np.count_nonzero(shuffled <= observed, axis=0, keepdims=True)
@@ -77,7 +77,7 @@ def max_statistic(
         return p_values
     relative = deviation[:, alive] / extent[alive]  # scaled, so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
-    observed = np.abs(_observed(standard, first))
+    observed = np.abs(observed_sum(standard, first))
     order = np.argsort(observed, kind="stable")
     limit = np.maximum.accumulate(observed[order]) - 1e-9
 
@@ -99,9 +99,9 @@ def _p_values(
 ) -> Floats:
     """Return a p-value for each count that `reached` returns for the sums of some shuffles, shape (counts,).
 
-    Further shuffles than PERMUTATIONS serve to find p-values that remain small after correcting for many comparisons.
-    They are left out if the smallest p-value is then at least SETTLED: whether a p-value is below a smaller level is
-    decided by all shuffles or is a no, so it is at most as often as with all shuffles.
+    More than PERMUTATIONS shuffles are needed only for p-values that must stay small after correcting for many
+    comparisons. So the rest is left out if the smallest p-value is then at least SETTLED. A p-value below SETTLED comes
+    from all shuffles; leaving some out never adds one.
     """
     counts, done = None, 0
     for shuffled in shuffled_sums(values, first, generator, permutations):
@@ -113,7 +113,7 @@ def _p_values(
     return np.ones(1) if counts is None else (1 + counts) / (1 + done)
 
 
-def _observed(values: Floats, first: int) -> Floats:
+def observed_sum(values: Floats, first: int) -> Floats:
     """Return the sum over the first rows, shape (...), of values of shape (rows, ...)."""
     picked = np.zeros((1, len(values)))
     picked[0, :first] = 1.0

@@ -36,7 +36,7 @@ def judged(
     `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), the pool
     (robots · scores, BINS); `first` is the number of the first mission. At most conformal.TOGETHER missions. `ends`,
     shape (robots,), is each robot's number of missions, if some have fewer; bins of the missing ones are -1.
-    Without `onsets`, it is not kept since when missions differ, which is faster.
+    Without `onsets`, the start of a difference is not kept, which is faster.
     """
     count, robots, scores = bins.shape
     flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
