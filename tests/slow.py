@@ -1,4 +1,4 @@
-"""A mark for tests that take tens of seconds: they run with TARL_SLOW=1, each night."""
+"""Tests and campaigns that take tens of seconds run with TARL_SLOW=1, each night."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ import os
 
 import pytest
 
-slow = pytest.mark.skipif(
-    os.environ.get("TARL_SLOW", "") in ("", "0"), reason="tens of seconds of CPU time: set TARL_SLOW=1"
-)
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
+
+slow = pytest.mark.skipif(not SLOW, reason="tens of seconds of CPU time: set TARL_SLOW=1")

@@ -10,9 +10,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tests.slow import SLOW
+
 ROOT = Path(__file__).parent.parent
 SYSTEM = Path("/usr/bin/python3")
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 THERE = shutil.which("cmake") is not None and all(
     Path("/usr/share", name).is_dir() for name in ("ament_cmake", "ament_cmake_test", "ament_lint_auto")
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
 import subprocess
 import sys
@@ -13,12 +12,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.slow import SLOW
+
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 SCRIPTS = sorted(
     path for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")] if "__main__" in path.read_text()
 )
 ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable within a node only
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 # Arguments with which each script does as little as possible; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],

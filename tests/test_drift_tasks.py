@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests.slow import SLOW
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
 JUDGING = (
@@ -23,7 +24,6 @@ JUDGING = (
     "drift_judging_7",
     "drift_structure",
 )
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 TASKS = sorted(
     test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
 )
@@ -120,9 +120,8 @@ def test_the_third_set_has_every_kind_and_says_where_drifts_occur() -> None:
     assert all(known["practice"] for known in third)
 
 
-def test_the_fourth_set_has_every_kind_and_says_where_drifts_occur() -> None:
-    fourth = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_4"]
-    assert sorted(known["kind"] for known in fourth) == [
+KINDS = {  # of the tasks of each set
+    "drift_judging_4": [
         "helper",
         "narrow window",
         "one constant",
@@ -133,13 +132,8 @@ def test_the_fourth_set_has_every_kind_and_says_where_drifts_occur() -> None:
         "structure",
         "two constants",
         "unrepairable",
-    ]
-    assert all(known["practice"] for known in fourth)
-
-
-def test_the_sixth_set_has_every_kind_and_says_where_drifts_occur() -> None:
-    sixth = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_6"]
-    assert sorted(known["kind"] for known in sixth) == [
+    ],
+    "drift_judging_6": [
         "helper",
         "narrow window",
         "one constant",
@@ -151,13 +145,8 @@ def test_the_sixth_set_has_every_kind_and_says_where_drifts_occur() -> None:
         "two constants",
         "two constants",
         "unrepairable",
-    ]
-    assert all(known["practice"] for known in sixth)
-
-
-def test_the_seventh_set_has_every_kind_and_says_where_drifts_occur() -> None:
-    seventh = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_7"]
-    assert sorted(known["kind"] for known in seventh) == [
+    ],
+    "drift_judging_7": [
         "helper",
         "narrow window",
         "one constant",
@@ -169,8 +158,15 @@ def test_the_seventh_set_has_every_kind_and_says_where_drifts_occur() -> None:
         "structure",
         "two constants",
         "unrepairable",
-    ]
-    assert all(known["practice"] for known in seventh)
+    ],
+}
+
+
+@pytest.mark.parametrize("folder", KINDS)
+def test_a_set_has_every_kind_and_says_where_drifts_occur(folder: str) -> None:
+    known = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == folder]
+    assert sorted(one["kind"] for one in known) == KINDS[folder]
+    assert all(one["practice"] for one in known)
 
 
 Rates = dict[str, tuple[float, float]]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import json
-import os
 import re
 import subprocess
 import sys
@@ -18,6 +17,8 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 
+from tests.slow import SLOW
+
 try:
     import tomllib
 except ImportError:
@@ -27,7 +28,6 @@ from pytest_tarl import extras
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCKS = (ROOT / "requirements-dev.txt", ROOT / "requirements-simulators.txt")
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 ALLOWED = {
     *(
         "MIT",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import subprocess
 import sys
@@ -12,8 +11,9 @@ import pytest
 
 from pytest_tarl.learning.fixture import load
 from tests.plugin.tank import RECORD, fixture_file
+from tests.slow import SLOW
 
-TIMES = 20 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 3
+TIMES = 20 if SLOW else 3
 
 
 def recording(tank: pytest.Pytester, seed: int) -> subprocess.Popen[bytes]:

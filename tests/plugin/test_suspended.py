@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests.plugin.tank import RECORD, fixture_file
+from tests.slow import SLOW
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 IMPATIENT = """
 import pytest_tarl.ros.watchdog as watchdog
 import pytest_tarl.workers.pool as pool

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +12,8 @@ from pytest_tarl.fleet.components import Component, components
 from pytest_tarl.fleet.decomposition import Decomposition, summed
 from pytest_tarl.fleet.decomposition_words import lines, lowest
 from pytest_tarl.learning.tables import Floats, Ints
+from tests.slow import SLOW
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 NAMES = ("version", "site", "season")
 SIZES = (3, 8, 5)
 

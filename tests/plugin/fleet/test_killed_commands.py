@@ -6,7 +6,6 @@ a data set that was never interrupted, to the last bit. TARL_SLOW=1 takes many m
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -17,8 +16,8 @@ from random import Random
 import duckdb
 
 from tests.plugin.fleet.test_ingest import world
+from tests.slow import SLOW
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 TIMES = 40 if SLOW else 2
 ROBOTS, EACH = (12, 40) if SLOW else (3, 6)
 CTRL_C = 130  # exit status

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import jsonschema
@@ -15,8 +14,8 @@ from pytest_tarl.fleet import document
 from pytest_tarl.fleet.repairs import Effect, effect, strata
 from pytest_tarl.patching.patch import TITLE, unified_diff, write
 from tests.plugin.monitoring import missions
+from tests.slow import SLOW
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 WEEK = 7 * 86_400.0
 
 

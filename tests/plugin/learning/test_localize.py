@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 from typing import Any
@@ -33,11 +32,10 @@ from pytest_tarl.model import (
 from pytest_tarl.report import json_result, terminal
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
+from tests.slow import SLOW
 
 LENGTH = 6
-TIMES = (
-    200 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 25
-)  # number of random worlds and of random reports
+TIMES = 200 if SLOW else 25  # number of random worlds and of random reports
 
 
 def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:

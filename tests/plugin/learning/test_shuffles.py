@@ -7,7 +7,7 @@ import pytest
 
 from pytest_tarl.learning import permutation
 from pytest_tarl.learning import shifts as shifting
-from pytest_tarl.learning.permutation import max_statistic, permuted_loss, shuffled_sums
+from pytest_tarl.learning.permutation import max_statistic, observed_sum, permuted_loss, shuffled_sums
 from pytest_tarl.seeds import generator
 
 
@@ -29,6 +29,7 @@ def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
         sums = np.concatenate([*shuffled_sums(values, first, draws, 150)])  # type: ignore[arg-type]
         assert sums.shape == (150, 2)
         assert (sums[:, 0] == first).all()
+        assert observed_sum(values, first)[1] == first * (first - 1) / 2
         if kind == "distinct":
             drawn = generator(seed, "draws").random((150, rows))
             expected = [np.argsort(one)[:first].sum() for one in drawn]

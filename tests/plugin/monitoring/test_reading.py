@@ -24,6 +24,7 @@ from pytest_tarl.observing.frames import MAGIC, Record, encoded
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.sensors import binning_digest
 from tests.plugin.monitoring.missions import SENSORS, TEST, content, log, records, start, walks
+from tests.slow import SLOW
 
 CELLS = sorted({cell for one in walks(30, 0) for cell in one.cells})
 EXPECTED = Expected(
@@ -34,7 +35,6 @@ EXPECTED = Expected(
 )
 
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 OPEN: list[Reading] = []
 
 

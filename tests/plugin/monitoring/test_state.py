@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import subprocess
 import sys
@@ -19,8 +18,9 @@ from pytest_tarl.errors import MonitorError, TarlError
 from pytest_tarl.monitoring import state, watch
 from pytest_tarl.monitoring.watch import Watch
 from tests.plugin.monitoring.missions import fixture, log, walks
+from tests.slow import SLOW
 
-TIMES = 30 if os.environ.get("TARL_SLOW", "") not in ("", "0") else 4
+TIMES = 30 if SLOW else 4
 
 
 @pytest.fixture(scope="module")

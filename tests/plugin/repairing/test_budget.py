@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +16,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
 from tests.plugin.searching.test_search import GAIN
 from tests.plugin.tank import ONLINE, RECORD, changed, result
+from tests.slow import SLOW
 
 
 @settings(max_examples=200, deadline=None)
@@ -62,7 +62,6 @@ def test_promising_constants_get_a_reserve(gained: float, episodes: int) -> None
     assert len(trials.totals) == episodes
 
 
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 FLAGS = ((), ("--tarl-constants",), ("--tarl-search=halving",), ("--tarl-search=epsilon-greedy",))
 
 

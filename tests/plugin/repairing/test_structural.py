@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import sys
 
 import pytest
 
 from tests.plugin.tank import RECORD, result
+from tests.slow import SLOW
 
 REPAIR = ("--tarl-online", "--tarl-episodes=10", "--tarl-repair")
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 NODE = """\
 import rospy
 from std_msgs.msg import Float64

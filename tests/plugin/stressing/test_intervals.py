@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from contextlib import suppress
 from math import comb, exp, log
@@ -21,12 +20,12 @@ from pytest_tarl.stressing.holding import SHARES, holds, least
 from pytest_tarl.stressing.rays import rays
 from pytest_tarl.stressing.search import along_rays, near_ends
 from tests.plugin.stressing.worlds import World, evaluator_of, space_of, stressed
+from tests.slow import SLOW
 
 SIZE = Drift.range(0.0, 1.0, nominal=0.0)
 SPACE = space_of(size=SIZE)
 GUARANTEED = 0.95  # success rate of the worlds' guarantee
 CONFIRMED_AT = 0.01
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 RUNS = 200 if SLOW else 4
 
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 from tests.plugin.tank import ONLINE, RECORD, changed, columns_of, fixture_file, result
+from tests.slow import SLOW
 
 TWO = "--tarl-workers=2"
-SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 
 
 def recorded(tank: pytest.Pytester, *flags: str) -> bytes:
