@@ -1,7 +1,7 @@
 """Scales on which a constant moves, beside factors on its value.
 
-A share of 0.95 that should be 0.994 is wrong by a factor of 8 in what it leaves; an offset of -0.012 that should be
-0.055 is wrong by as much as the angles that it is added to. On either scale a search makes the same steps as for a
+A share of 0.95 that should be 0.994 is wrong by a factor of 8 in its distance from 1. An offset of -0.012 that should
+be 0.055 is wrong by as much as the angles that it is added to. On either scale, a search makes the same steps as for a
 gain.
 """
 
@@ -13,7 +13,7 @@ from math import copysign
 
 
 class Scale(Enum):
-    """`REST` moves what a share leaves to 1, `SHIFT` adds to an offset."""
+    """`REST` moves the distance of a share from 1, `SHIFT` adds to an offset."""
 
     REST = "rest"
     SHIFT = "shift"
@@ -36,17 +36,24 @@ class Chart:
             return None
         if self.scale is Scale.REST:
             return (1.0 - (1.0 - value) / step) / value if value else None
-        by = self.size * (step - 1.0 if step >= 1.0 else 1.0 - 1.0 / step)
-        if value:
-            return 1.0 + by / value
-        return 1.0 + by if by >= 0.0 else 1.0 / (1.0 - by)
+        by = self.size * distance(step)
+        return 1.0 + by / value if value else step_to(by)
 
     def step(self, value: float, new: float) -> float | None:
         """Return the step that moves a constant from `value` to `new`; None if there is none."""
         if self.scale is Scale.REST:
             return (1.0 - value) / (1.0 - new) if new < 1.0 else None
-        by = (new - value) / self.size
-        return 1.0 + by if by >= 0.0 else 1.0 / (1.0 - by)
+        return step_to((new - value) / self.size)
+
+
+def distance(step: float) -> float:
+    """Return how far a step from zero goes, in units of its size: 5 goes by 4, 0.2 by -4."""
+    return step - 1.0 if step >= 1.0 else 1.0 - 1.0 / step
+
+
+def step_to(distance: float) -> float:
+    """Return the step from zero that goes this far; the inverse of `distance`."""
+    return 1.0 + distance if distance >= 0.0 else 1.0 / (1.0 - distance)
 
 
 def offset(size: float) -> Chart:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.charts import Chart
+from pytest_tarl.patching.charts import Chart, distance
 from pytest_tarl.patching.definitions import Place
 from pytest_tarl.patching.definitions import edits as definition_edits
 from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits, document
@@ -44,9 +44,8 @@ class Mutation:
     form: Form | None = (
         None  # set for a structural repair, whose operand is an expression and whose value is a factor
     )
-    chart: Chart | None = field(
-        default=None, compare=False
-    )  # the scale on which the search moves the operand
+    # the scale on which the search moves the operand
+    chart: Chart | None = field(default=None, compare=False)
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
@@ -80,6 +79,15 @@ def stepped(
     by = chart.factor(float(operand.value), step)
     made = mutate(operand, by) if by is not None else None
     return replace(made, chart=chart) if made is not None else None
+
+
+def to_step(
+    mutation: Mutation, step: float, mutate: Callable[[Operand, float], Mutation | None]
+) -> Mutation | None:
+    """Return a mutation of the same operand by another step; None if there is none."""
+    if mutation.form is not None:
+        return replace(mutation, value=step)
+    return stepped(mutation.operand, step, mutation.chart, mutate)
 
 
 def step_of(mutation: Mutation) -> float | None:
@@ -342,7 +350,7 @@ def _step(factor: float) -> float:
     size = abs(factor)
     if size < 1e-9:
         return 0.0
-    return math.copysign(1.0, factor) * (size - 1.0 if size >= 1 else 1.0 - 1.0 / size)
+    return math.copysign(1.0, factor) * distance(size)
 
 
 def _document(analysis: Analysis, path: str) -> Document:

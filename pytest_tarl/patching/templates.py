@@ -21,15 +21,14 @@ SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
 KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sensor")
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
-SCALES = (
-    "",
-    "typical",
-    "sensor",
-    "usual",
-    "designed",
-)  # a default as is, as a multiple of the value's usual size, divided or multiplied by the sensor's usual size in the
-# drifted world, or multiplied by its usual size in the designed one (never searched, for sensors that are positive)
-FIXED = "designed"
+SCALES = (  # what a default is a multiple of
+    "",  # 1
+    "typical",  # the usual size of the value
+    "sensor",  # 1 divided by the sensor's usual size in the drifted world
+    "usual",  # the sensor's usual size in the drifted world
+    "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
+)
+FIXED = "designed"  # parameters of this scale are not searched
 STRONGER = ("larger", "smaller")
 OPERATORS = (
     "op",

@@ -7,7 +7,8 @@ from dataclasses import replace
 from math import log
 
 from pytest_tarl.model import Reason
-from pytest_tarl.patching.mutate import Mutation, step_of, stepped
+from pytest_tarl.patching.charts import step_to
+from pytest_tarl.patching.mutate import Mutation, step_of, to_step
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
@@ -50,16 +51,11 @@ class Between:
         self.steps += 1
         share = (self.weak + self.strong) / 2
         tried = (
-            self._moved(mutation, one**share)
+            to_step(mutation, one**share, self.mutate)
             for mutation, one in zip(self.candidate.mutations, factors, strict=True)
         )
         moved = tuple(mutation for mutation in tried if mutation is not None)
         return replace(self.candidate, mutations=moved) if moved else None
-
-    def _moved(self, mutation: Mutation, by: float) -> Mutation | None:
-        if mutation.form is not None:
-            return replace(mutation, value=by)
-        return stepped(mutation.operand, by, mutation.chart, self.mutate)
 
     def told(self, reason: Reason) -> bool:
         """Take the result for the last candidate; return whether it shows on which side to continue."""
@@ -79,15 +75,10 @@ def stronger(
     """Return a candidate with its factors raised to a power; None if one has no positive factor other than 1."""
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
-        searched = mutation.form is not None and bool(mutation.form.parameter)
-        by = float(mutation.value) if searched else factor(mutation)
+        by = searched_step(mutation)
         if by is None or by <= 0.0 or by == 1.0:
             return None
-        made = (
-            replace(mutation, value=by**power)
-            if searched
-            else stepped(mutation.operand, by**power, mutation.chart, mutate)
-        )
+        made = to_step(mutation, by**power, mutate)
         if made is None:
             return None
         moved.append(made)
@@ -107,6 +98,12 @@ def _beyond(one: float, other: float) -> bool:
     return one >= other > 1.0 or one <= other < 1.0
 
 
+def searched_step(mutation: Mutation) -> float | None:
+    """Return the factor of a structural repair's parameter, or that of a constant; None if there is none."""
+    searched = mutation.form is not None and mutation.form.parameter
+    return float(mutation.value) if searched else factor(mutation)
+
+
 def factor(mutation: Mutation) -> float | None:
     """Return the positive factor, or step on a chart, by which a mutation moves its operand; None if there is none."""
     operand, value = mutation.operand, mutation.value
@@ -115,6 +112,6 @@ def factor(mutation: Mutation) -> float | None:
     if mutation.chart is not None:
         return step_of(mutation)
     if operand.value == 0:
-        return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # the steps of `mutations` from 0
+        return step_to(value)
     moved = float(value) / operand.value if operand.literal and operand.value is not None else float(value)
     return moved if moved > 0.0 else None

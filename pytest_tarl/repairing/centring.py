@@ -11,8 +11,8 @@ from dataclasses import replace
 from statistics import fmean
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.mutate import Mutation, stepped
-from pytest_tarl.repairing.between import factor
+from pytest_tarl.patching.mutate import Mutation, to_step
+from pytest_tarl.repairing.between import searched_step
 from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 
@@ -74,14 +74,10 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
     """Return a candidate with its value scaled by `ratio`; None for several sites or an operand without a factor."""
     made: list[Mutation] = []
     for one in candidate.mutations:
-        by = float(one.value) if one.form is not None and one.form.parameter else factor(one)
+        by = searched_step(one)
         if by is None or one.operand.site != candidate.mutations[0].operand.site:
             return None
-        further = (
-            replace(one, value=by * ratio)
-            if one.form is not None
-            else stepped(one.operand, by * ratio, one.chart, mutate)
-        )
+        further = to_step(one, by * ratio, mutate)
         if further is None:
             return None
         made.append(further)

@@ -74,18 +74,14 @@ def _is_unit(source: Document, node: ast.expr) -> bool:
 
 def _is_whole(source: Document, node: ast.expr) -> bool:
     """Return whether an expression is the 1 in a weighted mean, such as `alpha * x + (1.0 - alpha) * y`."""
-    around = source.parents.get(node)
-    if not isinstance(around, ast.BinOp) or not isinstance(around.op, ast.Sub) or around.left is not node:
-        return False
-    if (
-        not isinstance(node, ast.Constant)
-        or node.value != 1
-        or not isinstance(around.right, ast.Name | ast.Attribute)
-    ):
-        return False
-    share = ast.unparse(around.right)
-    uses = [each for each in ast.walk(source.statement(node)) if isinstance(each, ast.Name | ast.Attribute)]
-    return sum(ast.unparse(each) == share for each in uses) > 1
+    match source.parents.get(node):
+        case ast.BinOp(
+            left=ast.Constant(value=1) as left, op=ast.Sub(), right=ast.Name() | ast.Attribute() as right
+        ):
+            share, parts = ast.unparse(right), ast.walk(source.statement(node))
+            uses = [each for each in parts if isinstance(each, ast.Name | ast.Attribute)]
+            return left is node and sum(ast.unparse(each) == share for each in uses) > 1
+    return False
 
 
 def _only_truth(source: Document, node: ast.expr) -> bool:

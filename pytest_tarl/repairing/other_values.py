@@ -64,8 +64,8 @@ class Others:
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose a value between the original and one that lost few missions in its test, perhaps by going too far.
 
-        Bisect: a value that fails on the first mission that the search wanted goes too little, one that passes it may
-        go too far. Of those that also mend the missions lost in the test, the middle one is proposed.
+        Bisect: a value that fails on the first seed of the search is too small a change, and one that passes may be too
+        large. Of the values that also pass the missions lost in the test, the middle one is proposed.
         Raises BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
