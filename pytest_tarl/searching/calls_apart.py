@@ -14,12 +14,15 @@ from tarl_lint.model import Operand
 
 
 def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
-    """Return the units that are calls of the function whose returned value this unit changes."""
+    """Return the units that are calls of the function whose returned value this unit changes, each once.
+
+    Units on a chart are other scales of the same calls, on which the factor of the returned value means nothing.
+    """
     operand = unit.operands[0]
     function = operand.site.qualname.rpartition(".")[2]
     if not operand.site.text.startswith("return ") or not function:
         return []
-    return [other for other in among if _called(other.operands[0]) == function]
+    return [other for other in among if other.chart is None and _called(other.operands[0]) == function]
 
 
 def _called(operand: Operand) -> str:

@@ -23,7 +23,8 @@ RIVALS = 8  # runs after which no further constant is tried beside a candidate t
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
     """Yield other named constants of the same function, with the factor found and its reciprocal, then weaker ones.
 
-    A constant that divides needs the reciprocal. Constants that never changed a mission are left out.
+    A constant that divides needs the reciprocal. Constants that never changed a mission are left out, and scales other
+    than that of the constant found, on which its factor means nothing.
     """
     at = found.operands[0].site
     tried = gains.under(guard)
@@ -31,7 +32,7 @@ def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guar
     for unit in named(units) if factor > 0 else ():
         site = unit.operands[0].site
         same = (site.module, site.qualname) == (at.module, at.qualname)
-        if unit != found and same and (unit not in tried or gains.moves(unit)):
+        if unit != found and unit.chart == found.chart and same and (unit not in tried or gains.moves(unit)):
             others.append(unit)
     for power in POWERS:
         yield from ((unit, round(factor**to, 3)) for unit in others for to in (-power, power))

@@ -35,10 +35,13 @@ FARTHEST = 3.0  # largest |log step|, a factor of 20
 CHANGED = 3  # most constants that one trial changes beside the point it starts from
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
 PROPOSALS = 400  # among which the expected improvement chooses
-STARTS = 4  # best points to start from
+STARTS = 4  # best points to start from ...
+ASUNDER = 0.2  # ... that differ by this much in a log step at least
+HIDDEN = 2  # most constants that never changed the reward much alone ...
+SELDOM = 0.25  # ... and how often they move, as a share of the others
 LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
 REFITTED = 4  # trials after which the length scales are chosen anew
-NOISE = 0.03
+NOISES = (0.05, 0.2)  # standard deviations of a trial, as shares of that of all trials
 WORST = 2.0  # largest deviation from the designed mission that counts
 REFUSED = 0.5  # taken off where a point that is good on this seed was refused on others
 SMALL = 0.02  # change of a log step that is none
@@ -62,7 +65,8 @@ class Surrogate:
         self._scaled = (self.values - self._level) / self._size
         self._apart = (self.points[:, None, :] - self.points[None, :, :]) ** 2
         self.fitted = self._likeliest() if self.lengths is None else self.lengths
-        self._factor = self._cholesky(self.fitted)
+        noise = max(NOISES, key=lambda one: self._likelihood(self.fitted, one))
+        self._factor = self._cholesky(self.fitted, noise)
         self._weights = self._solved(self._factor)
 
     def predict(self, points: Floats) -> tuple[Floats, Floats]:
@@ -76,22 +80,22 @@ class Surrogate:
     def _likeliest(self) -> Floats:
         """Return the length scales of the highest marginal likelihood found."""
         found = np.full(self.points.shape[1], 1.0)
-        best = self._likelihood(found)
+        best = self._likelihood(found, NOISES[-1])
         for at in range(len(found)):
             for length in LENGTHS:
                 other = found.copy()
                 other[at] = length
-                likelihood = self._likelihood(other)
+                likelihood = self._likelihood(other, NOISES[-1])
                 if likelihood > best:
                     best, found = likelihood, other
         return found
 
-    def _likelihood(self, lengths: Floats) -> float:
-        factor = self._cholesky(lengths)
+    def _likelihood(self, lengths: Floats, noise: float) -> float:
+        factor = self._cholesky(lengths, noise)
         return float(-0.5 * self._scaled @ self._solved(factor) - np.log(np.diag(factor)).sum())
 
-    def _cholesky(self, lengths: Floats) -> Floats:
-        kernel = _kernel(self._apart, lengths) + NOISE**2 * np.eye(len(self.points))
+    def _cholesky(self, lengths: Floats, noise: float) -> Floats:
+        kernel = _kernel(self._apart, lengths) + noise**2 * np.eye(len(self.points))
         return np.asarray(np.linalg.cholesky(kernel), np.float64)
 
     def _solved(self, factor: Floats) -> Floats:
@@ -112,7 +116,10 @@ def expected_improvement(mean: Floats, deviation: Floats, best: float) -> Floats
 
 
 class Jointly:
-    """Joint search of units from given points; `selection` runs and confirms combinations."""
+    """Joint search of units from given points; `selection` runs and confirms combinations.
+
+    The last `hidden` units move less often.
+    """
 
     def __init__(
         self,
@@ -121,8 +128,10 @@ class Jointly:
         trials: Trials,
         goal: Goal,
         generator: np.random.Generator,
+        hidden: int = 0,
     ) -> None:
-        self.units = tuple(units[:DIMENSIONS])
+        self.units = tuple(units)
+        self._often = np.array([1.0] * (len(units) - hidden) + [SELDOM] * hidden)
         self.selection = selection
         self.trials = trials
         self.goal = goal
@@ -138,7 +147,7 @@ class Jointly:
         while self.trials.spent - begun < EPISODES and since < PATIENCE:
             point = waiting.pop(0) if waiting else self._next()
             joint = Joint(tuple((u, exp(x)) for u, x in zip(self.units, point, strict=True) if x), guard)
-            value = yield from self._value(self._rounded(joint))
+            value = yield from self._value(self._rounded(joint), best)
             since += 1
             if value is None:
                 value = min(self._values, default=-WORST)
@@ -155,19 +164,26 @@ class Jointly:
     def _rounded(joint: Joint) -> Joint:
         return Joint(tuple((unit, float(f"{step:.3g}")) for unit, step in joint.parts), joint.guard)
 
-    def _value(self, joint: Joint) -> Generator[Candidate, None, float | None]:
-        """Run a combination; return the share of the wanted gain that it earns, less its missions' deviation."""
+    def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
+        """Run a combination; return the share of the wanted gain that it earns, less its missions' deviation.
+
+        One that would be the best so far runs on a second seed, too, and has the mean: a peak may be that of one seed.
+        """
         gain = yield from self.selection.gain(joint)
         if gain is None:
             return None
-        seed = self.goal.pairs[0].seed
+        candidate, pairs = joint.candidate(self.selection.mutate), self.goal.pairs
         try:
-            away = self.trials.deviation(joint.candidate(self.selection.mutate), [seed])
+            away = self.trials.deviation(candidate, [pairs[0].seed])
+            if self._valued(gain, away) > best and joint.parts:
+                self.trials(candidate, pairs[1 % len(pairs)].seed)
         except RepairError:
             return None
-        wanted = self.goal.wanted or 1.0
-        refused = REFUSED if joint.candidate(self.selection.mutate) in self.selection.settled.tried else 0.0
-        return float(np.clip(gain / wanted, -1.0, 1.0)) - min(away, WORST) - refused
+        refused = REFUSED if candidate in self.selection.settled.tried else 0.0
+        return self._valued(self.trials.gain(candidate, pairs), away) - refused
+
+    def _valued(self, gain: float, away: float) -> float:
+        return float(np.clip(gain / (self.goal.wanted or 1.0), -1.0, 1.0)) - min(away, WORST)
 
     def _next(self) -> tuple[float, ...]:
         """Return the proposal with the largest expected improvement over the best trial."""
@@ -175,8 +191,7 @@ class Jointly:
         known = None if len(values) % REFITTED == 1 else self._lengths
         surrogate = Surrogate(points, values, known)
         self._lengths = surrogate.fitted
-        order = np.argsort(-values, kind="stable")[:STARTS]
-        proposals = self._proposals(points[order])
+        proposals = self._proposals(_best_apart(points, values))
         mean, deviation = surrogate.predict(proposals)
         gains = expected_improvement(mean, deviation, float(values.max()))
         return tuple(float(one) for one in proposals[int(np.argmax(gains))])
@@ -185,17 +200,28 @@ class Jointly:
         """Return starts with one to `CHANGED` coordinates moved, shape (m, k); small steps are taken back to none."""
         draw, size = self.generator, (PROPOSALS, starts.shape[1])
         many = draw.integers(1, CHANGED + 1, PROPOSALS)
-        chosen = draw.random(size).argsort(axis=1).argsort(axis=1) < many[:, None]
+        ranks = (draw.random(size) ** (1.0 / self._often)).argsort(axis=1)[:, ::-1].argsort(axis=1)
+        chosen = ranks < many[:, None]
         spreads = np.array(SPREADS)[draw.integers(len(SPREADS), size=PROPOSALS)]
         moved = starts[np.arange(PROPOSALS) % len(starts)]
         moved = np.clip(moved + chosen * draw.normal(0.0, 1.0, size) * spreads[:, None], -FARTHEST, FARTHEST)
         return np.where(np.abs(moved) < SMALL, 0.0, moved)
 
 
-def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
-    """Return the units to move jointly: of each constant the scale that gained most, named constants first.
+def _best_apart(points: Floats, values: Floats) -> Floats:
+    """Return the best points of which no two are close to each other, shape (m, k)."""
+    found: list[Floats] = []
+    for at in np.argsort(-values, kind="stable"):
+        if len(found) < STARTS and all(np.abs(points[at] - one).max() >= ASUNDER for one in found):
+            found.append(points[at])
+    return np.array(found)
 
-    Then those that changed the reward most come first. Booleans, zeros and constants of nature are left out.
+
+def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
+    """Return the units to move jointly, and how many at the end may be hidden by others.
+
+    Of each constant, the scale that gained most is moved. Named constants come first, then those that changed the
+    reward most; those that changed it little come last. Booleans, zeros and constants of nature are left out.
     """
     best: dict[tuple[Operand, ...], tuple[float, Unit]] = {}
     for unit in among:
@@ -218,10 +244,14 @@ def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
     ]
     moved = _changes(gains, guard)
 
-    def rank(unit: Unit) -> tuple[bool, float]:
-        return kind(unit) != Oddness.NAMED, -max((moved.get(one, 0.0) for one in unit.operands), default=0.0)
+    def change(unit: Unit) -> float:
+        return max((moved.get(one, 0.0) for one in unit.operands), default=0.0)
 
-    return sorted(chosen, key=rank)[:DIMENSIONS]
+    chosen.sort(key=lambda unit: (kind(unit) != Oddness.NAMED, -change(unit)))
+    seen = [unit for unit in chosen if change(unit) > gains.slack][:DIMENSIONS]
+    hidden = [unit for unit in chosen if change(unit) <= gains.slack and kind(unit) == Oddness.NAMED]
+    hidden = hidden[: min(HIDDEN, DIMENSIONS - len(seen))]
+    return [*seen, *hidden], len(hidden)
 
 
 def _most(gains: Gains, guard: Guard) -> list[tuple[Unit, float]]:

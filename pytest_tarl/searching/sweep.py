@@ -387,11 +387,11 @@ class Sweep:
             return
         guard = max(chief, key=lambda one: max((gain for gain, _ in self._gains.leaders(one)), default=0.0))
         united = whole_constants((*self.units, *self.late))
-        chosen = sensitive(united, self._gains, guard)
+        chosen, hidden = sensitive(united, self._gains, guard)
         if len(chosen) < LEAST:
             return
         joining = self._joining({})
-        jointly = Jointly(chosen, joining, self.trials, self.goal, self.generator)
+        jointly = Jointly(chosen, joining, self.trials, self.goal, self.generator, hidden)
         leaders = [part for _, part in self._gains.leaders(guard) if part[0] in chosen and part[1] > 0]
         yield from jointly.candidates([Joint((part,), guard) for part in leaders[:LEADING]], guard)
 

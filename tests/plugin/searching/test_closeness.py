@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import pytest
 
+from pytest_tarl.patching.charts import SHARE
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import rivals
 from pytest_tarl.searching.course import deviation
@@ -40,6 +42,15 @@ def test_a_mission_deviates_by_when_it_earns() -> None:
     assert deviation((), STEADY) == pytest.approx(0.55)
     assert deviation(STEADY, (*STEADY, 0.0)) == 0.0
     assert deviation(STEADY, (0.0, 0.0)) == 0.0
+
+
+def test_rivals_and_calls_are_those_on_the_same_scale() -> None:
+    units = [Unit((LEAK,)), Unit((POWER,)), Unit((POWER,), SHARE)]
+    tried = {unit for unit, _ in rivals(units[0], 2.0, units, Gains(0.1), ALWAYS)}
+    assert tried == {units[1]}
+    getter = Unit((replace(LEAK, site=replace(LEAK.site, qualname="Kiln.p", text="return self.value")),))
+    call = operand(9, 'self.p("power")', 0.9)
+    assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
 def test_rivals_are_named_constants_of_the_same_function_that_matter() -> None:

@@ -89,4 +89,4 @@ def test_named_constants_that_change_missions_most_come_first() -> None:
     zero, flag = Unit((operand(20, "ZERO", 0.0),)), Unit((operand(21, "FLAG", True),))
     for unit, gain in ((weak, 0.1), (strong, -3.0), (zero, 5.0), (flag, 5.0)):
         gains.enter((unit, ALWAYS), 2.2, gain)
-    assert sensitive([weak, zero, flag, strong], gains, ALWAYS) == [strong, weak]
+    assert sensitive([weak, zero, flag, strong], gains, ALWAYS) == ([strong, weak], 1)
