@@ -3,8 +3,9 @@
 `make mutants` inserts ten faults in each package of pytest_tarl, `make mutants OF=tarl_lint` in each of tarl_lint.
 Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a
 copy of the checkout without the caches of TARL. It is caught if a test fails or the tests take far longer than without
-it. A fault that no test reaches is not caught.
-The tests run from the fastest to the slowest, until the next one exceeds `--budget`; a fault that survives these could
+it; a test that fails without the fault, too, catches nothing. A fault that no test reaches is not caught.
+The tests of the file that is named after the module run first, then the others, each from the fastest to the slowest,
+until the next one exceeds `--budget`; a fault that survives these could
 still be caught by slower ones, so the share is a lower bound.
 The script prints the share of caught faults with its exact 95 % interval, and the surviving faults.
 """
@@ -24,7 +25,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from py_compile import PycInvalidationMode
-from time import monotonic
 
 from reached_lines import Reached, from_coverage, read
 from scipy.stats import beta
@@ -47,7 +47,7 @@ data_file = {data}
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a fault: caught, survived, timeout or unreached."""
+    """Result of a fault: caught, survived, timeout, unreached, or unclear if the tests fail without it."""
 
     fault: Fault
     word: str
@@ -98,7 +98,7 @@ def main() -> None:
             if fault.name in proven:
                 print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
                 continue
-            tests = reached.within(given.budget, reached.at(fault.path, fault.lines))
+            tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
             outcomes.append(tried(fault, copy, tests, reached.seconds))
             print(
                 f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
@@ -208,34 +208,43 @@ def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, 
     file.write_bytes(fault.sown(text))
     limit = PATIENCE + 3 * sum(seconds[test] for test in tests)
     try:
-        word = "caught" if fails(copy, tests, limit) else "survived"
+        status, failed = run(copy, tests, limit)
     except subprocess.TimeoutExpired:
-        word = "timeout"
+        return Outcome(fault, "timeout", len(tests))
     finally:
         file.write_bytes(text)
         for cache in copy.rglob(".tarl"):
             shutil.rmtree(cache, ignore_errors=True)
-    return Outcome(fault, word, len(tests))
+    if status and run(copy, [failed] if failed else tests, limit)[0] != 0:
+        return Outcome(fault, "unclear", len(tests))
+    return Outcome(fault, "caught" if status else "survived", len(tests))
 
 
-def fails(copy: Path, tests: Sequence[str], limit: float) -> bool:
-    """Return whether one of the tests fails. Raises TimeoutExpired if they exceed the limit in seconds."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", *tests]
+def run(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
+    """Return pytest's exit status, and which test failed first, or nothing if pytest itself failed.
+
+    Raises TimeoutExpired if the tests exceed the limit in seconds.
+    """
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header"]
     with subprocess.Popen(
-        command,
+        [*command, *tests],
         cwd=copy,
         env=environment(copy),
-        stdout=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        text=True,
+        errors="replace",
         start_new_session=True,
     ) as running:
-        begun = monotonic()
         try:
-            status = running.wait(limit - (monotonic() - begun))
+            told, _ = running.communicate(timeout=limit)
         except subprocess.TimeoutExpired:
             os.killpg(running.pid, 9)
             raise
-    return status != 0
+    named = (line.split(" ", 1)[1] for line in told.splitlines() if line.startswith(("FAILED ", "ERROR ")))
+    first = next(named, "")
+    failed = [test for test in tests if first == test or first.startswith(f"{test} - ")]
+    return running.returncode, max(failed, key=len, default="")
 
 
 def environment(copy: Path) -> dict[str, str]:
@@ -250,9 +259,9 @@ def environment(copy: Path) -> dict[str, str]:
 
 def report(outcomes: Sequence[Outcome]) -> None:
     """Print the shares by package and in total, and the survivors."""
-    words = ("caught", "timeout", "survived", "unreached")
+    words = ("caught", "timeout", "survived", "unreached", "unclear")
     packages = sorted({home(one) for one in outcomes})
-    print(f"\n| package | {' | '.join(words)} |\n|---|---|---|---|---|")
+    print(f"\n| package | {' | '.join(words)} |\n|---|---|---|---|---|---|")
     for name in [*packages, "all"]:
         counts = [sum(one.word == word and name in (home(one), "all") for one in outcomes) for word in words]
         print(f"| {name} | {' | '.join(map(str, counts))} |")
@@ -261,7 +270,7 @@ def report(outcomes: Sequence[Outcome]) -> None:
     high = beta.ppf(0.975, good + 1, total - good) if good < total else 1.0
     print(f"\n{good} of {total} caught: {good / max(1, total):.0%} (95 % interval {low:.0%} to {high:.0%})")
     for one in outcomes:
-        if one.word in ("survived", "unreached"):
+        if one.word in ("survived", "unreached", "unclear"):
             print(f"{one.word}: {one.fault.name} (line {one.fault.line}, {one.tests} tests)")
 
 

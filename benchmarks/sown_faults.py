@@ -25,7 +25,10 @@ _SIGNS: dict[type[ast.operator], str] = {
     ast.Mult: "/",
     ast.Div: "*",
     ast.FloorDiv: "*",
+    ast.Mod: "*",
+    ast.Pow: "*",
 }
+_EXTREMES = {"min": "max", "max": "min", "any": "all", "all": "any"}
 _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.Lt: "<",
     ast.LtE: "<=",
@@ -42,6 +45,8 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.Mult: "*",
     ast.Div: "/",
     ast.FloorDiv: "//",
+    ast.Mod: "%",
+    ast.Pow: "**",
     ast.And: "and",
     ast.Or: "or",
 }
@@ -78,6 +83,14 @@ def faults(path: Path, name: str) -> list[Fault]:
     return [one for one in found if one.was != one.now and _compiles(one.sown(data))]
 
 
+def _last_line(statement: ast.stmt) -> int:
+    """Return the last line of a statement without the statements in it."""
+    if isinstance(statement, ast.Match):
+        return statement.subject.end_lineno or statement.lineno
+    inside: list[ast.stmt] = getattr(statement, "body", [])
+    return max(statement.lineno, inside[0].lineno - 1 if inside else statement.end_lineno or statement.lineno)
+
+
 def _compiles(data: bytes) -> bool:
     try:
         compile(data, "<mutant>", "exec", dont_inherit=True)
@@ -108,9 +121,7 @@ class _Finder:
         for statement in body:
             if isinstance(statement, (*_UNSEEN, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 continue
-            inside: list[ast.stmt] = getattr(statement, "body", [])
-            last_line = inside[0].lineno - 1 if inside else statement.end_lineno or statement.lineno
-            lines = tuple(range(statement.lineno, max(statement.lineno, last_line) + 1))
+            lines = tuple(range(statement.lineno, _last_line(statement) + 1))
             for fault in self._statement(statement, alone=len(body) == 1):
                 yield replace(fault, lines=lines)
             for inner in (getattr(statement, name, []) for name in ("body", "orelse", "finalbody")):
@@ -118,6 +129,18 @@ class _Finder:
                     yield from self._block(inner)
             for handler in getattr(statement, "handlers", []):
                 yield from self._block(handler.body)
+            for case in getattr(statement, "cases", []):
+                if case.guard is not None:
+                    yield from self._guard(case)
+                yield from self._block(case.body)
+
+    def _guard(self, case: ast.match_case) -> Iterator[Fault]:
+        """Yield the faults of what follows the pattern of a case after `if`."""
+        assert case.guard is not None
+        lines = tuple(range(case.pattern.lineno, (case.guard.end_lineno or case.guard.lineno) + 1))
+        turned = self._fault(case.guard, "condition turned", f"not ({self._text(case.guard)})")
+        for fault in (turned, *(one for inner in ast.walk(case.guard) for one in self._expression(inner))):
+            yield replace(fault, lines=lines)
 
     def _statement(self, node: ast.stmt, *, alone: bool) -> Iterator[Fault]:
         called = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call | ast.Await)
@@ -134,17 +157,22 @@ class _Finder:
             and isinstance(node.value.value, bool)
         ):
             yield self._fault(node.value, "answer turned", str(not node.value.value))
+        if isinstance(node, ast.AugAssign) and type(node.op) in _SIGNS:
+            yield from self._between(
+                node.target, node.value, type(node.op), _SIGNS[type(node.op)], "arithmetic in place"
+            )
         for child in ast.iter_child_nodes(node):
-            if isinstance(child, ast.expr) and child is not getattr(node, "annotation", None):
+            if isinstance(child, ast.expr | ast.withitem) and child is not getattr(node, "annotation", None):
                 for inner in ast.walk(child):
                     yield from self._expression(inner)
 
     def _expression(self, node: ast.AST) -> Iterator[Fault]:
-        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARED:
-            operator = type(node.ops[0])
-            yield from self._between(
-                node.left, node.comparators[0], operator, _COMPARED[operator], "comparison"
-            )
+        if isinstance(node, ast.Compare):
+            for left, compared, right in zip(
+                (node.left, *node.comparators), node.ops, node.comparators, strict=False
+            ):
+                operator = type(compared)
+                yield from self._between(left, right, operator, _COMPARED[operator], "comparison")
         elif isinstance(node, ast.BinOp) and type(node.op) in _SIGNS and not _of_texts(node):
             yield from self._between(
                 node.left, node.right, type(node.op), _SIGNS[type(node.op)], "arithmetic"
@@ -154,6 +182,11 @@ class _Finder:
             yield from self._between(node.values[0], node.values[1], type(node.op), other, "connective")
         elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
             yield self._fault(node, "negation dropped", self._text(node.operand))
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            yield self._fault(node, f"sign dropped in {self._line(node)}", self._text(node.operand))
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _EXTREMES:
+            kind = f"extreme in {self._line(node)}"
+            yield self._fault(node.func, kind, _EXTREMES[node.func.id])
         elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
             yield self._fault(node, f"truth in {self._line(node)}", repr(not node.value))
         elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):

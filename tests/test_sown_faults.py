@@ -1,0 +1,114 @@
+"""The faults of `make mutants`: each kind is found wherever its code stands; only a failing test catches one."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
+PIECES = {  # code → the code with a fault
+    "a < b < c": "a < b <= c",
+    "-a": "a",
+    "a % b": "a * b",
+    "a ** b": "a * b",
+    "min(a, b)": "max(a, b)",
+    "any(c)": "all(c)",
+    "a and b": "a or b",
+    "not a": "a",
+    "2": "3",
+}
+PLACES = (
+    "    return {}\n",
+    "    with f({}):\n        pass\n",
+    "    match a:\n        case 1 if {}:\n            pass\n",
+    "    match a:\n        case 1:\n            return {}\n",
+    "    for x in {}:\n        pass\n",
+    "    try:\n        pass\n    except E:\n        x = [{} for _ in y]\n",
+    "    x += {}\n",
+)
+
+
+@pytest.fixture
+def sown(monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    return importlib.import_module("sown_faults")
+
+
+@pytest.fixture
+def mutants(monkeypatch: pytest.MonkeyPatch, sown: Any) -> Any:
+    return importlib.import_module("mutants")
+
+
+def mutated(sown: Any, folder: Path, code: str) -> set[str]:
+    file = folder / "module.py"
+    file.write_text(code)
+    return {ast.unparse(ast.parse(one.sown(code.encode()))) for one in sown.faults(file, "module.py")}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize(("piece", "faulty"), PIECES.items())
+def test_a_fault_is_found_wherever_its_code_stands(
+    sown: Any, tmp_path: Path, place: str, piece: str, faulty: str
+) -> None:
+    text = "def f(a, b, c, x, y):\n" + place
+    expected = ast.unparse(ast.parse(text.format(faulty)))
+    assert expected in mutated(sown, tmp_path, text.format(piece))
+
+
+@pytest.mark.parametrize("operator", ["+", "-", "*", "/", "//"])
+def test_arithmetic_in_place_is_a_place_for_a_fault(sown: Any, tmp_path: Path, operator: str) -> None:
+    text = f"def f(x, y):\n    x {operator}= y\n    return x\n"
+    assert mutated(sown, tmp_path, text)
+
+
+def test_the_lines_of_a_match_statement_are_those_of_its_subject(sown: Any, tmp_path: Path) -> None:
+    file = tmp_path / "module.py"
+    file.write_text("def f(a):\n    match a + 1:\n        case 1:\n            return a < 2\n")
+    assert {(one.kind.split()[0], one.lines) for one in sown.faults(file, "module.py")} == {
+        ("arithmetic", (2,)),
+        ("number", (2,)),
+        ("comparison", (4,)),
+        ("number", (4,)),
+    }
+
+
+FAILS_ALWAYS = "def test_other(): assert False\n"
+TESTS = {
+    "from half import half\ndef test_half(): assert half(4) == 2\n": "caught",
+    "from half import half\ndef test_half(): half(4)\n": "survived",
+    FAILS_ALWAYS: "unclear",
+    FAILS_ALWAYS.replace("assert False", "import os; os.abort()"): "unclear",
+    "def another(): pass\n": "unclear",
+    "import half\nassert half.half(4) == 2\ndef test_half(): pass\n": "caught",
+}
+
+
+@pytest.mark.parametrize(("tests", "word"), TESTS.items(), ids=range(len(TESTS)))
+def test_only_a_test_that_passes_without_the_fault_catches_it(
+    mutants: Any, sown: Any, tmp_path: Path, tests: str, word: str
+) -> None:
+    file = tmp_path / "half.py"
+    file.write_text("def half(x):\n    return x / 2\n")
+    (tmp_path / "test_half.py").write_text(tests)
+    (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
+    name = "test_half.py::test_half" if "test_half()" in tests else "test_half.py"
+    outcome = mutants.tried(fault, tmp_path, [name], {name: 1.0})
+    assert outcome.word == word
+    assert file.read_text() == "def half(x):\n    return x / 2\n"
+
+
+def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
+    own, other, slow = (
+        "tests/test_half.py::test_a[x/y::z]",
+        "tests/test_one.py::test_b",
+        "tests/test_two.py::test_c",
+    )
+    reached = mutants.Reached(seconds={own: 5.0, other: 1.0, slow: 2.0})
+    order = [own, other, slow]
+    assert reached.within(100.0, reversed([*order, "tests/test_half.py::failed"]), "package/half.py") == order
+    assert reached.within(6.0, order, "package/half.py") == order[:2]
+    assert reached.within(0.1, order, "package/half.py") == order[:1]
