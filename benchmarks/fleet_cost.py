@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MEASURED = ("100000:24.9:570", "400000:42.2:816", "1000000:84.0:1252")
+MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
 BYTES = 193  # a mission without taint lists, stored
 INGESTED = 2000  # missions a CPU second
 SCORES = 26 + 16  # bytes that a worker returns for a mission: a byte a score, and its number

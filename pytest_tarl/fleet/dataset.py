@@ -78,7 +78,7 @@ def _opened(where: Store, path: str) -> Any:
 def columns(where: Store, path: str, names: Sequence[str]) -> Any:
     """Return columns of a file as an Arrow table. Raise FleetError if it cannot be read."""
     with _readable(where, path), where.opened(path) as file:
-        return pq.read_table(file, columns=list(names), use_threads=False)
+        return pq.ParquetFile(file).read(columns=list(names), use_threads=False)
 
 
 @contextmanager

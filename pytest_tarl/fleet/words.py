@@ -184,6 +184,9 @@ def notes(answer: Answer) -> Iterator[str]:
         f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for {len(answer.groups)} "
         "groups (Holm)."
     )
+    yield (
+        "note: the false discovery rates assume that the number of a robot's missions does not depend on how they went."
+    )
     if any(one.compared < one.missions for one in answer.groups):
         yield f"note: verdicts compare {MOST:,} missions of a larger group, chosen by their digests."
     if any(one.outside for one in answer.groups):
