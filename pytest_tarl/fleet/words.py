@@ -22,7 +22,7 @@ def lines(answer: Answer) -> Iterator[str]:
     words = Vocabulary(answer.fixture.sensors, answer.cells)
     since = f" since {question.since}" if question.since else ""
     yield (
-        f"{question.data}: {answer.missions:,} missions of {_robots(len(found.every))}{since}, compared with "
+        f"{question.data}: {answer.missions:,} missions of {_counted(len(found.every), 'robot')}{since}, compared with "
         f"{answer.fixture.sample.episodes} episodes of {answer.fixture.test}"
     )
     yield ""
@@ -85,9 +85,9 @@ def _clusters(answer: Answer, words: Vocabulary) -> Iterator[str]:
         where = (
             f"{words.words(one.cells)}, {mean:+.3g} reward a step there" if one.cells else "no common cell"
         )
-        yield f"  {_robots(len(one.robots))} ({_names(one.robots)}): {where}"
+        yield f"  {_counted(len(one.robots), 'robot')} ({_names(one.robots)}): {where}"
     if found.unclear:
-        yield f"  {_robots(len(found.unclear))} ({_names(found.unclear)}): no cell stands out"
+        yield f"  {_counted(len(found.unclear), 'robot')} ({_names(found.unclear)}): no cell stands out"
     if found.left_out:
         yield f"  {found.left_out:,} further robots with less evidence were not compared"
 
@@ -150,7 +150,7 @@ def _interval(bound: Bound, unit: float) -> str:
 def _named(answer: Answer, robots: Sequence[Robot], what: str, more: str) -> Iterator[str]:
     rate = f"false discovery rate at most {100 * answer.robots.q:g} %{more}"
     end = ", most evidence first:" if robots else ""
-    yield f"{len(robots):,} of {_robots(len(answer.robots.every))}: {what} ({rate}){end}"
+    yield f"{len(robots):,} of {_counted(len(answer.robots.every), 'robot')}: {what} ({rate}){end}"
     if len(robots) > NAMED:
         yield f"  the first {NAMED}; --json lists all"
 
@@ -173,16 +173,16 @@ def time(seconds: float) -> str:
     return f"{datetime.fromtimestamp(seconds, timezone.utc):%Y-%m-%d %H:%M}" if seconds > 0 else "no time"
 
 
-def _robots(count: int) -> str:
-    return f"{count:,} robot{'s' if count != 1 else ''}"
+def _counted(count: int, what: str) -> str:
+    return f"{count:,} {what}{'s' if count != 1 else ''}"
 
 
 def notes(answer: Answer) -> Iterator[str]:
     """Yield the conditions of the numbers."""
     confidence = answer.groups[0].success.confidence
     yield (
-        f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for {len(answer.groups)} "
-        "groups (Holm)."
+        f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for "
+        f"{_counted(len(answer.groups), 'group')} (Holm)."
     )
     yield (
         "note: the false discovery rates assume that the number of a robot's missions does not depend on how they went."
