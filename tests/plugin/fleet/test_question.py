@@ -323,7 +323,10 @@ def scheduler() -> Iterator[Any]:
     """Start a scheduler without workers, with which clients and workers speak over TCP."""
     from distributed import LocalCluster
 
-    options = {"processes": False, "protocol": "tcp", "dashboard_address": None, "silence_logs": 50}
+    options = {"processes": False, "protocol": "tcp", "silence_logs": 50}
+    options["dashboard_address"] = (
+        "127.0.0.1:0"  # any free port; without, Dask takes 8787, which may be in use
+    )
     with LocalCluster(n_workers=0, threads_per_worker=1, **options) as cluster:
         yield cluster
 
