@@ -5,8 +5,8 @@ Coverage contexts record which tests reach which line, including processes that 
 copy of the checkout without the caches of TARL. It is caught if a test fails or the tests take far longer than without
 it; a test that fails without the fault, too, catches nothing. A fault that no test reaches is not caught.
 The tests of the file that is named after the module run first, then the others, each from the fastest to the slowest,
-until the next one exceeds `--budget`; a fault that survives these could
-still be caught by slower ones, so the share is a lower bound.
+until the next one exceeds `--budget`; a fault that survives these could still be caught by slower ones, so the share is
+a lower bound.
 The script prints the share of caught faults with its exact 95 % interval, and the surviving faults.
 """
 
@@ -208,19 +208,21 @@ def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, 
     file.write_bytes(fault.sown(text))
     limit = PATIENCE + 3 * sum(seconds[test] for test in tests)
     try:
-        status, failed = run(copy, tests, limit)
+        status, failed = tested(copy, tests, limit)
     except subprocess.TimeoutExpired:
         return Outcome(fault, "timeout", len(tests))
     finally:
         file.write_bytes(text)
-        for cache in copy.rglob(".tarl"):
-            shutil.rmtree(cache, ignore_errors=True)
-    if status and run(copy, [failed] if failed else tests, limit)[0] != 0:
-        return Outcome(fault, "unclear", len(tests))
-    return Outcome(fault, "caught" if status else "survived", len(tests))
+    if not status:
+        return Outcome(fault, "survived", len(tests))
+    try:
+        sound = tested(copy, [failed] if failed else tests, limit)[0] == 0
+    except subprocess.TimeoutExpired:
+        sound = False
+    return Outcome(fault, "caught" if sound else "unclear", len(tests))
 
 
-def run(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
+def tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
     """Return pytest's exit status, and which test failed first, or nothing if pytest itself failed.
 
     Raises TimeoutExpired if the tests exceed the limit in seconds.
@@ -241,6 +243,9 @@ def run(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
         except subprocess.TimeoutExpired:
             os.killpg(running.pid, 9)
             raise
+        finally:
+            for cache in copy.rglob(".tarl"):
+                shutil.rmtree(cache, ignore_errors=True)
     named = (line.split(" ", 1)[1] for line in told.splitlines() if line.startswith(("FAILED ", "ERROR ")))
     first = next(named, "")
     failed = [test for test in tests if first == test or first.startswith(f"{test} - ")]

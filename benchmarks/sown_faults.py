@@ -138,8 +138,10 @@ class _Finder:
         """Yield the faults of what follows the pattern of a case after `if`."""
         assert case.guard is not None
         lines = tuple(range(case.pattern.lineno, (case.guard.end_lineno or case.guard.lineno) + 1))
-        turned = self._fault(case.guard, "condition turned", f"not ({self._text(case.guard)})")
-        for fault in (turned, *(one for inner in ast.walk(case.guard) for one in self._expression(inner))):
+        for fault in (
+            self._turned(case.guard),
+            *(one for inner in ast.walk(case.guard) for one in self._expression(inner)),
+        ):
             yield replace(fault, lines=lines)
 
     def _statement(self, node: ast.stmt, *, alone: bool) -> Iterator[Fault]:
@@ -150,7 +152,7 @@ class _Finder:
         if called or stored or (isinstance(node, ast.Continue | ast.Break) and not alone):
             yield self._fault(node, "statement dropped", "pass")
         if isinstance(node, ast.If | ast.While) and not isinstance(node.test, ast.Constant):
-            yield self._fault(node.test, "condition turned", f"not ({self._text(node.test)})")
+            yield self._turned(node.test)
         if (
             isinstance(node, ast.Return)
             and isinstance(node.value, ast.Constant)
@@ -208,6 +210,9 @@ class _Finder:
             context = f"{self._text(left)[-30:]} {was} {self._text(right)[:30]}".replace("\n", " ")
             line = self._data.count(b"\n", 0, at) + 1
             yield Fault(self._name, line, at, at + len(was), f"{kind} in {context}", was, now)
+
+    def _turned(self, condition: ast.expr) -> Fault:
+        return self._fault(condition, "condition turned", f"not ({self._text(condition)})")
 
     def _fault(self, node: ast.expr | ast.stmt, kind: str, now: str) -> Fault:
         start, end = self._offsets(node)

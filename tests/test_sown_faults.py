@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +100,21 @@ def test_only_a_test_that_passes_without_the_fault_catches_it(
     outcome = mutants.tried(fault, tmp_path, [name], {name: 1.0})
     assert outcome.word == word
     assert file.read_text() == "def half(x):\n    return x / 2\n"
+
+
+def test_tests_that_do_not_end_without_the_fault_catch_nothing(
+    mutants: Any, sown: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def tested(_copy: Path, tests: list[str], limit: float) -> tuple[int, str]:
+        if "*" in file.read_text():
+            return 1, tests[0]
+        raise subprocess.TimeoutExpired(tests, limit)
+
+    monkeypatch.setattr(mutants, "tested", tested)
+    file = tmp_path / "half.py"
+    file.write_text("def half(x):\n    return x / 2\n")
+    (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
+    assert mutants.tried(fault, tmp_path, ["test_half.py"], {"test_half.py": 1.0}).word == "unclear"
 
 
 def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
