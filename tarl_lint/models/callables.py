@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import replace
 from typing import Final
 
@@ -102,7 +102,7 @@ def returned(
     The library's arguments are unknown: anything computed from its own arguments.
     """
     found = NONE
-    opaque = _opaque(ctx, arguments, base) if targets else BOTTOM
+    opaque = _opaque(ctx, arguments, base, frozenset(targets)) if targets else BOTTOM
     for number, target in enumerate(targets[:KEPT_APART]):
         slot = -1000 * (abs(call.slot) + 1) - KEPT_APART - number
         inner = replace(call, arguments=(), keywords=(), slot=slot)
@@ -113,8 +113,11 @@ def returned(
     return found
 
 
-def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
-    """Return a value that a library may pass: data of all its arguments, and the messages and objects among them."""
+def _opaque(ctx: Interpreter, arguments: Arguments, base: Value, called: Set[Obj] = frozenset()) -> Value:
+    """Return a value that a library may pass: data of all its arguments, and the messages and objects among them.
+
+    An instance that the library calls is not among them: it is what is called, not an argument of the call.
+    """
     plain, named = arguments
     objects: set[Obj] = set()
     for value in (*plain, *named.values()):
@@ -123,7 +126,7 @@ def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
                 objects |= containers.elements_of_any(ctx, _only(obj)).pts
             else:
                 objects.add(obj)
-    parts = frozenset(o for o in objects if o.kind in ("message", "instance", "lib"))
+    parts = frozenset(o for o in objects - called if o.kind in ("message", "instance", "lib"))
     return Value(call_contexts.all_used(ctx, arguments) | ctx.use(base), parts)
 
 

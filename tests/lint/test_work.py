@@ -265,3 +265,36 @@ def test_nested_elements_of_unknown_objects_are_few():
 
 def _parts(obj: Obj) -> int:
     return 1 + sum(_parts(sub) for sub in obj.subs.values() if sub is not obj)
+
+
+NET = """
+import lib
+import layers
+from std_msgs.msg import Float64
+import rospy
+
+class Net(lib.Chain):
+    def __init__(self):
+        super().__init__(LAYERS)
+
+    def __call__(self, x, t=None):
+BODY
+        return x
+
+def on(msg):
+    pub.publish(net(msg.data))
+
+net = Net()
+lib.load("weights", net)
+pub = rospy.Publisher("out", Float64, queue_size=1)
+rospy.Subscriber("in", Float64, on)
+rospy.spin()
+"""
+
+
+def test_a_library_does_not_pass_an_instance_that_it_calls_to_itself():
+    layers = ", ".join(f"conv{n}=lib.Conv({n})" for n in range(8))
+    body = "\n".join(f"        x = self.conv{n}(x)" for n in range(8))
+    machine = work(NET.replace("LAYERS", layers).replace("BODY", body))
+    called = [frame for frame in machine.frames.values() if frame.function.name == "__call__"]
+    assert len(called) == 2  # by `on`, and by the library
