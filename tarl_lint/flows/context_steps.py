@@ -8,6 +8,9 @@ from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.memory.frames import Frame
 from tarl_lint.models.ros.endpoints import SourceRecord
 
+Enclosing = dict[int, Written]  # in order, by identity
+Before = dict[tuple[int, int], None]  # pairs of statements: (enclosing one, step that it precedes)
+
 
 class Surroundings:
     """Finds context steps."""
@@ -15,6 +18,7 @@ class Surroundings:
     def __init__(self, texts: Texts) -> None:
         self.texts = texts
         self._above: dict[int, Written | None] = {}  # statement → nearest enclosing loop or guard
+        self._known: dict[tuple[Frame, int], tuple[Enclosing, Before]] = {}  # by frame and statement
 
     def registration(self, origin: SourceRecord) -> Written | None:
         """Return the statement that subscribes."""
@@ -24,21 +28,28 @@ class Surroundings:
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
     ) -> tuple[list[Written], list[tuple[int, int]]]:
         """Return the statements that enclose the steps and the registration, and the step that each precedes."""
-        found: dict[int, Written] = {}
-        edges: dict[tuple[int, int], None] = {}
+        found: Enclosing = {}
+        edges: Before = {}
         registration = self.registration(origin)
         if registration is not None:
             found[id(registration)] = registration
-            self._around(registration, registration, registration, found, edges)
-            self._callers(origin.frame, registration, found, edges)
+            steps = [(origin.frame, registration), *steps]
         for frame, written in steps:
-            self._around(written, written, written, found, edges)
-            self._callers(frame, written, found, edges)
+            enclosing, before = self._enclosing(frame, written)
+            found.update(enclosing)
+            edges.update(before)
         return list(found.values()), list(edges)
 
-    def _callers(
-        self, frame: Frame, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
-    ) -> None:
+    def _enclosing(self, frame: Frame, written: Written) -> tuple[Enclosing, Before]:
+        """Return the statements that enclose a step and the calls leading to it. The same for all flows."""
+        known = self._known.get((frame, id(written)))
+        if known is None:
+            known = self._known[frame, id(written)] = {}, {}
+            self._around(written, written, written, *known)
+            self._callers(frame, written, *known)
+        return known
+
+    def _callers(self, frame: Frame, step: Written, found: Enclosing, edges: Before) -> None:
         """Add the statements that enclose the calls leading to a frame, innermost first."""
         current: Frame | None = frame
         inner = step
@@ -53,8 +64,8 @@ class Surroundings:
         written: Written,
         step: Written,
         inner: Written,
-        found: dict[int, Written],
-        edges: dict[tuple[int, int], None],
+        found: Enclosing,
+        edges: Before,
     ) -> Written:
         """Add the loops and guards that enclose a statement; return the outermost."""
         around = self._shown(written)

@@ -13,6 +13,7 @@ from tarl_lint.flows.shortest_path import shortest_path
 from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.flows.topological_order import before_loops, in_order
 from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import MERGED, Place
 from tarl_lint.memory.values import Branches
 from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
@@ -55,6 +56,8 @@ class Tracer:
         self._statements: dict[int, Written | None] = {}
         self._formers: dict[int, list[int]] = {}
         self._before: dict[int, Sequence[tuple[int, list[int]]]] = {}
+        self._steps: dict[tuple[int, Dependence, Role | None], Step] = {}
+        self._chains: dict[tuple[Frame, Frame], Sequence[Written] | None] = {}
 
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
@@ -207,20 +210,26 @@ class Tracer:
             for decision, frame, outer, made in entrances(self.graph, nodes, self._alongside)
         )
         for condition, frame, outer, value in dict.fromkeys(each):
-            places = calls(frame, outer)
-            if not places:
+            between = self.calls(frame, outer)
+            if between is None:
                 continue
             chain = [condition]
-            for place in places:
-                found = self._statement(place)
-                if found is not None:
-                    written.setdefault(id(found), found)
-                    dependence.setdefault(id(found), "control")
-                    chain.append(id(found))
+            for found in between:
+                written.setdefault(id(found), found)
+                dependence.setdefault(id(found), "control")
+                chain.append(id(found))
             chain.append(value)
             known = [key for key in chain if key is not None]
             edges.update(dict.fromkeys((a, b) for a, b in pairwise(known) if a != b))
         return list(edges)
+
+    def calls(self, frame: Frame, outer: Frame) -> Sequence[Written] | None:
+        """Return the statements whose calls lead from one frame to another, None if no calls do."""
+        if (frame, outer) not in self._chains:  # the same for all flows
+            places = calls(frame, outer)
+            found = [written for place in places if (written := self._statement(place)) is not None]
+            self._chains[frame, outer] = found if places else None
+        return self._chains[frame, outer]
 
     def statement(self, node: int) -> Written | None:
         """Return the statement of a node; for an arriving message, the header of the callback."""
@@ -270,8 +279,9 @@ class Tracer:
         known = self._before.get(node)
         if known is None:
             nodes: dict[int, list[int]] = {}
+            statements = self._statements
             for former in self.before(node):
-                written = self.statement(former)
+                written = statements[former] if former in statements else self.statement(former)
                 if written is not None:
                     nodes.setdefault(id(written), []).append(former)
             known = self._before[node] = [*nodes.items()]
@@ -303,7 +313,15 @@ class Tracer:
         return known
 
     def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
-        """Return a statement as a step; an unknown role is derived from the syntax."""
+        """Return a statement as a step; flows share their equal steps."""
+        key = id(written), dependence, known
+        if key not in self._steps:
+            self._steps[key] = self._step(written, span, dependence, known)
+        return self._steps[key]
+
+    @staticmethod
+    def _step(written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
+        """Return a new step; an unknown role is derived from the syntax."""
         text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
         if known is not None:

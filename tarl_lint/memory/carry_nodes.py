@@ -15,7 +15,7 @@ def settle(graph: Graph) -> None:
         done += len(pending)
         for node, item in pending:
             carrier = graph.carried[node][0]
-            graph.flow(graph.arriving_through(frozenset([item]), frozenset(graph.data[carrier])), node)
+            graph.flow(graph.arriving_through(item, graph.data[carrier]), node)
     _feed(graph)
 
 

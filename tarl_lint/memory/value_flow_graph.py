@@ -207,11 +207,19 @@ class Graph:
         self._note(known)
         return known.nodes
 
-    def arriving_through(self, content: Nodes, carriers: Nodes) -> Nodes:
-        """Return the same as `through`, without caching it: for questions that are asked once."""
-        if not carriers or len(content) * len(carriers) > MAX_CARRIED or self.large():
-            return content
-        return self._through(content, carriers)
+    def arriving_through(self, item: int, carriers: Set[int]) -> Set[int]:
+        """Return the same as `through` for one item, without caching it or recording what it depends on."""
+        if len(carriers) > MAX_CARRIED or self.large():
+            return {item}
+        held = self.held
+        found: set[int] = set()
+        for carrier in carriers:
+            if carrier not in self.carried:
+                if item in held.get(carrier, NOTHING):
+                    found.add(self._carry(carrier, item))
+            elif item in held.get(self._first(carrier), NOTHING):
+                found |= self._arrival(carrier, item)
+        return found or {item}
 
     def _consulting(self, find: Callable[[], Nodes]) -> Arrival:
         """Return the result of a function, with the carriers that it consulted."""
