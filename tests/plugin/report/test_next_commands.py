@@ -1,0 +1,85 @@
+"""Commands that a report prints: they repeat the comparison, or are the next step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from pytest_tarl.model import Comparison, SearchTrace, Verdict
+from pytest_tarl.report import next_commands
+
+Varied = Callable[..., Comparison]
+TEST = "tests/test_traveller.py::test_delivers"
+
+
+def searched(*methods: str) -> tuple[SearchTrace, ...]:
+    return tuple(SearchTrace(method, (1.0,)) for method in methods)
+
+
+def test_a_command_names_drift_seed_and_flags_that_are_not_the_default(varied: Varied) -> None:
+    one = varied(seed=0, drift=None)
+    assert next_commands.command(one) == f"pytest {TEST} --tarl-online"
+    every = varied(seed=3, flags=("--tarl-alpha", "0.1"), target="a file.py::test")
+    assert next_commands.command(every, "--last") == (
+        "pytest 'a file.py::test' --tarl-online --tarl-drift mud --tarl-seed 3 --tarl-alpha 0.1 --last"
+    )
+
+
+@pytest.mark.parametrize(
+    ("methods", "expected"),
+    [
+        (("sweep",), ""),
+        (("sweep", "structure"), ""),
+        (("ranking", "sweep"), " --tarl-localize full"),
+        (("epsilon-greedy",), " --tarl-search epsilon-greedy"),
+        (("epsilon-greedy", "sweep"), " --tarl-search epsilon-greedy --tarl-search sweep"),
+        (("ranking", "bayes", "structure"), " --tarl-search bayes --tarl-localize full"),
+        ((), ""),
+    ],
+)
+def test_a_repair_is_repeated_with_its_searches(
+    varied: Varied, methods: tuple[str, ...], expected: str
+) -> None:
+    one = varied(seed=0, searches=searched(*methods))
+    assert (
+        next_commands.repeat(one) == f"pytest {TEST} --tarl-online --tarl-drift mud --tarl-repair{expected}"
+    )
+
+
+def test_without_a_repair_the_searches_are_not_repeated(varied: Varied) -> None:
+    one = varied(seed=0, repair=None, searches=searched("epsilon-greedy"))
+    assert next_commands.repeat(one) == f"pytest {TEST} --tarl-online --tarl-drift mud"
+
+
+def test_an_accepted_patch_is_applied_and_a_permanent_drift_recorded(
+    varied: Varied, shuttle: Comparison
+) -> None:
+    repair = shuttle.repair
+    assert repair is not None
+    apply = "git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch"
+    assert [*next_commands.next_steps(shuttle)] == [apply]
+    assert [*next_commands.next_steps(varied(permanent=True))] == [
+        apply,
+        f"pytest {TEST} --tarl-record --tarl-drift mud",
+    ]
+    assert next_commands.recording(varied(drift=None, target="t.py")) == "pytest t.py --tarl-record"
+    for nothing in (replace(repair, accepted=False), replace(repair, patch="")):
+        assert [*next_commands.next_steps(varied(repair=nothing))] == []
+
+
+def test_a_degraded_test_is_repaired_next_unless_its_missions_cannot_run_again(
+    varied: Varied, unchanged: Comparison
+) -> None:
+    one = varied(seed=0, repair=None)
+    assert [*next_commands.next_steps(one)] == [f"pytest {TEST} --tarl-online --tarl-drift mud --tarl-repair"]
+    for flag in ("--tarl-log", "--tarl-bag"):
+        assert [*next_commands.next_steps(replace(one, flags=(flag, "file")))] == []
+    drifted = Verdict("drifted", 0.001, 0.5, 0.0, 0.4, 0.5)
+    assert [*next_commands.next_steps(replace(one, verdict=drifted))] == []
+    assert [*next_commands.next_steps(unchanged)] == []
+
+
+def test_lost_lists_are_recorded_again_first(varied: Varied) -> None:
+    assert [*next_commands.next_steps(varied(lists=()))] == [f"pytest {TEST} --tarl-record"]
