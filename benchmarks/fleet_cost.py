@@ -2,7 +2,7 @@
 
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
-The measurements are those of docs/benchmarks.md, section "A fleet"; --measured replaces them by others, such as
+The measurements are those of docs/benchmarks/fleet.md, section "A fleet"; --measured replaces them by others, such as
 `--measured 100000:20.1:500 1000000:80.2:1300` (missions, CPU seconds and peak memory in MB of a question). Prices are
 assumptions in dollars: replace them by those of your provider.
 """
