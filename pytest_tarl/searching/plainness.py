@@ -44,7 +44,7 @@ def plainer(
     if the candidate scales a variable or is an offset, the first `UNTRIED` named constants if it changes a literal.
     """
     read = [unit for unit in units if kind(unit) < odd]
-    gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
+    gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
     others = sorted((unit for unit in read if unit not in gains), key=kind)
     if odd < Oddness.VARIABLE:
         others = others[:UNTRIED]

@@ -1,0 +1,383 @@
+"""The table of gains, and the small questions that searches ask it, on values written down by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS, _hull, _spans, _steepest, _widened
+from pytest_tarl.searching.course import deviation
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gentler import COARSE, FINE, another_way, gentler
+from pytest_tarl.searching.plainness import Oddness, kind, named, oddness, of_nature, plainer, writing
+from pytest_tarl.searching.race import Arm, Race, ahead_by, behind, paired
+from pytest_tarl.searching.ranking import Ranking
+from pytest_tarl.searching.screening import blocks, main_effects, worth_screening
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.units import Unit, whole_constants
+from pytest_tarl.sensors import Sensor
+from tarl_lint.model import Operand
+from tests.plugin.searching.test_candidates import CHANGES, REGION, evidence
+from tests.plugin.searching.test_search import operand
+
+WET = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
+
+
+def constant(line: int, code: str, value: float | None = 2.0) -> Operand:
+    """Return a use of a named constant; each statement is a site of its own."""
+    made = operand(line, code, 2.0)
+    return replace(
+        made,
+        value=value,
+        site=replace(made.site, text=f"x{line} = {code}"),
+        definition=operand(line + 40, code, 2.0).span,
+    )
+
+
+A, B, C = (Unit((constant(n, name),)) for n, name in enumerate(("A", "B", "C"), start=1))
+
+
+def gains(slack: float = 0.5) -> Gains:
+    """A gains 4 with 2.2 and 5 with 5.0, B loses both ways and gains 1 where it is wet, C changes nothing."""
+    found = Gains(slack)
+    for unit, guard, factor, gain in (
+        (A, ALWAYS, 2.2, 4.0),
+        (A, ALWAYS, 0.4, -3.0),
+        (A, ALWAYS, 5.0, 5.0),
+        (B, ALWAYS, 2.2, -1.0),
+        (B, ALWAYS, 0.4, -0.6),
+        (B, WET, 0.4, 1.0),
+        (C, ALWAYS, 2.2, 0.0),
+        (C, ALWAYS, 0.4, 0.0),
+    ):
+        found.enter((unit, guard), factor, gain)
+    return found
+
+
+def test_the_unchanged_constant_gains_nothing_unless_it_is_a_proposal() -> None:
+    found = gains()
+    assert found.of(A, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 0.4: -3.0, 5.0: 5.0}
+    assert found.of(A, WET) == {}
+    assert (found.most((A, ALWAYS)), found.most((B, ALWAYS)), found.most((A, WET))) == (5.0, 0.0, 0.0)
+    proposed = Gains(0.5, proposed=True)
+    proposed.enter((A, ALWAYS), 1.0, -2.0)
+    assert proposed.of(A, ALWAYS) == {1.0: -2.0}
+
+
+def test_gains_under_a_guard() -> None:
+    found = gains()
+    assert [*found.under(WET)] == [B]
+    assert [*found.under(ALWAYS)] == [A, B, C]
+    assert [key for key, _ in found.items()] == [(A, ALWAYS), (B, ALWAYS), (B, WET), (C, ALWAYS)]
+
+
+@pytest.mark.parametrize(("slack", "expected"), [(4.9, True), (5.0, False)])
+def test_something_gains_if_it_is_more_than_the_slack(slack: float, expected: bool) -> None:
+    assert gains(slack).anything() is expected
+
+
+def test_a_proposal_is_idle_if_it_changed_no_episode_as_proposed() -> None:
+    found = Gains(0.5, proposed=True)
+    found.enter((A, ALWAYS), 1.0, 0.0)
+    found.enter((A, ALWAYS), 2.2, 3.0)
+    found.enter((B, ALWAYS), 1.0, 0.0, moved=True)
+    found.enter((C, ALWAYS), 2.2, 0.0)
+    assert [found.idle(unit) for unit in (A, B, C)] == [True, False, False]
+    plain = Gains(0.5)
+    plain.enter((A, ALWAYS), 1.0, 0.0)
+    assert not plain.idle(A)
+
+
+def test_units_move_if_any_factor_changed_an_episode() -> None:
+    found = gains()
+    assert [found.moves(unit) for unit in (A, B, C)] == [True, True, False]
+    assert found.moving([C, B, A]) == [B, A]
+    one_way = Gains(0.5)
+    one_way.enter((C, ALWAYS), 2.2, 0.0)
+    assert one_way.moving([C, A]) == [C, A]  # moved one way only, or never tried
+    one_way.enter((C, WET), 0.4, 0.0)
+    assert one_way.moving([C, A]) == [A]  # both ways, under any guard
+
+
+def test_units_that_lose_both_ways() -> None:
+    found = gains()
+    assert found.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
+    assert found.lost_both_ways(ALWAYS, [A, B], (0.4,)) == [A, B]
+    assert found.lost_both_ways(ALWAYS, [A, B], (2.2, 0.4, 5.0)) == []
+    least = Gains(0.5)
+    for unit, factor, gain, moved in (
+        (A, 2.2, -0.5, True),  # not more than the slack
+        (A, 0.4, -9.0, True),
+        (B, 2.2, 0.0, True),  # a mission that already earned the least
+        (B, 0.4, -9.0, True),
+        (C, 2.2, 0.0, False),
+        (C, 0.4, -9.0, True),
+    ):
+        least.enter((unit, ALWAYS), factor, gain, moved)
+    assert least.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
+
+
+def test_units_that_lead_with_a_factor() -> None:
+    found = gains()
+    found.enter((B, ALWAYS), 5.0, 6.0)
+    assert found.leading(5.0, ALWAYS, [A, B, C], 5.0) == [B, A]
+    assert found.leading(5.0, ALWAYS, [A, B, C], 5.1) == [B]
+    assert found.leading(2.2, ALWAYS, [A, B, C], -1.0) == [A, B]
+    assert found.leading(2.2, ALWAYS, [A, B, C], -1.0, inert=True) == [A, C, B]
+
+
+def test_the_best_factor_of_each_unit_under_some_guards() -> None:
+    found = gains()
+    assert found.best_under([ALWAYS, WET]) == [(A, 5.0), (B, 0.4)]
+    assert found.best_under([ALWAYS]) == [(A, 5.0)]
+    assert found.best_under([]) == []
+
+
+def test_each_site_has_one_leader() -> None:
+    found = gains()
+    twin = Unit((replace(constant(1, "TWIN"), site=A.operands[0].site),))
+    found.enter((twin, ALWAYS), 2.2, 7.0)
+    assert found.leaders(ALWAYS) == [(7.0, (twin, 2.2))]
+    assert found.leaders(WET) == [(1.0, (B, 0.4))]
+
+
+LITERAL, ZERO = operand(9, "2.5", 2.5), operand(9, "0.0", 0.0)
+GRAVITY = constant(8, "GRAVITY", 9.81)
+
+
+@pytest.mark.parametrize(
+    ("one", "tried"),
+    [
+        (constant(7, "SPEED"), Oddness.NAMED),
+        (replace(constant(7, "speed"), definition=None), Oddness.VARIABLE),
+        (replace(constant(7, "speed"), definition=None, setting="speed"), Oddness.NAMED),
+        (constant(7, "START", 0.0), Oddness.INNER),
+        (LITERAL, Oddness.INNER),
+        (ZERO, Oddness.OFFSET),
+        (GRAVITY, Oddness.NATURE),
+        (operand(9, "9.81", 9.81), Oddness.NATURE),
+    ],
+)
+def test_the_order_in_which_operands_are_tried(one: Operand, tried: Oddness) -> None:
+    assert writing(one) is tried
+
+
+def test_a_zero_is_an_offset_whatever_its_name() -> None:
+    assert kind(Unit((constant(7, "START", 0.0),))) is Oddness.OFFSET
+    assert kind(Unit((replace(operand(7, "False", 0.0), value=False),))) is Oddness.INNER
+    assert named([A, Unit((LITERAL,)), Unit((GRAVITY,)), B]) == [A, B]
+    assert oddness([]) is Oddness.NAMED
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [(9.81, True), (-9.81, True), (math.pi, True), (3.14, True), (6.28, True), (3.15, False), (9.5, False),
+     (None, False), (True, False)],
+)  # fmt: skip
+def test_constants_of_nature(value: float | None, expected: bool) -> None:
+    assert of_nature(constant(7, "G", value)) is expected
+
+
+def test_a_constant_of_nature_with_its_sign_flipped_stays_one() -> None:
+    assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
+
+
+def test_plainer_changes_come_first_those_that_gain_before_untried_ones() -> None:
+    literal = Unit((LITERAL,))
+    found = gains()
+    assert plainer(Oddness.VARIABLE, found.under(ALWAYS), [C, B, A, literal], 4.0) == [A, literal]
+    others = [Unit((constant(n, f"N{n}"),)) for n in range(20, 24)]
+    assert plainer(Oddness.INNER, found.under(ALWAYS), [*others, A], 5.0) == [A, *others[:2]]
+    assert plainer(Oddness.INNER, found.under(ALWAYS), [*others, A], 5.1) == others[:2]
+    assert plainer(Oddness.NAMED, found.under(ALWAYS), [A, *others], 0.0) == []
+    mixed = [literal, *others]
+    assert plainer(Oddness.OFFSET, {}, mixed, 0.0) == [*others, literal]
+
+
+GOAL = Goal(tuple(Pair(seed, 0.0, 10) for seed in range(3)), 9.0, 9.0, 0.0, steps=10.0)
+
+
+def changed(unit: Unit, factor: float) -> Candidate:
+    return Candidate(unit.mutations(mutations, factor), ALWAYS)
+
+
+@pytest.mark.parametrize(
+    ("steps", "expected"), [(13, False), (14, True), (8, False), (7, True), (None, False)]
+)
+def test_missions_go_another_way_if_they_are_much_longer_or_shorter(
+    steps: int | None, expected: bool
+) -> None:
+    trials = Trials(lambda _, seed: Outcome(10.0, True, steps=steps), 9)
+    one = changed(A, 2.2)
+    assert not another_way(one, trials, GOAL)  # not run yet
+    trials(one, 0)
+    assert another_way(one, trials, GOAL) is expected
+    assert not another_way(one, trials, replace(GOAL, steps=None))
+    assert another_way(changed(Unit((GRAVITY,)), 2.2), trials, GOAL)
+
+
+def test_gentler_changes_have_fine_steps_where_their_statement_gains() -> None:
+    beside = Unit((replace(constant(30, "BESIDE"), site=A.operands[0].site),))
+    found = gains()
+    assert gentler(A, [A, C, B, Unit((LITERAL,)), beside], found, ALWAYS, 5.0) == [
+        (beside, FINE),
+        (B, COARSE),
+    ]
+    assert gentler(A, [beside], found, ALWAYS, 5.1) == [(beside, COARSE)]
+
+
+def test_blocks_of_screened_units() -> None:
+    many = [Unit((operand(n, "1.0", 1.0),)) for n in range(41)]
+    assert [len(block) for block in blocks(many)] == [20, 20, 1]
+    assert [len(block) for block in blocks(many[:40])] == [40]
+    assert blocks([]) == []
+    assert (worth_screening(many), worth_screening(many[:40])) == (True, False)
+
+
+def test_main_effects_are_those_of_ridge_regression() -> None:
+    design, gained = np.array([[1.0, 0.0], [1.0, 1.0]]), np.array([2.0, 5.0])
+    # (DᵀD + I) e = Dᵀg: [[3, 1], [1, 2]] e = [7, 5]
+    assert main_effects(design, gained) == pytest.approx([9 / 5, 8 / 5])
+
+
+def test_the_course_of_a_mission() -> None:
+    assert deviation((2.0, 0.0), (1.0, 1.0)) == pytest.approx((1.0 + 0.0) / 2 / 2)
+    assert deviation((1.0,), (1.0, -3.0)) == pytest.approx((0.0 + 3.0) / 2 / 2)
+    assert deviation((), ()) == 0.0
+
+
+def test_the_uses_of_a_constant_in_a_file_are_one_whole() -> None:
+    first, other = constant(3, "A"), replace(constant(9, "A"), definition=constant(3, "A").definition)
+    elsewhere = replace(other, span=replace(other.span, path="other.py"))
+    literal = operand(5, "2.0", 2.0)
+    apart = [Unit((one,)) for one in (first, literal, other, elsewhere, literal)]
+    found = [unit.operands for unit in whole_constants(apart)]
+    assert found == [(first, other), (literal,), (elsewhere,), (literal,)]
+    truth = [Unit((replace(one, value=True),)) for one in (first, other)]
+    assert whole_constants(truth) == tuple(truth)
+
+
+def race(of: dict[tuple[Unit, float], dict[int, float]]) -> Race:
+    found = Race(mutations, Trials(lambda *_: Outcome(0.0, True), 9), GOAL.pairs)
+    found.gains = {Arm(unit, factor, ALWAYS): seen for (unit, factor), seen in of.items()}
+    return found
+
+
+def test_the_order_of_arms_and_those_abreast_of_the_first() -> None:
+    found = race(
+        {
+            (A, 2.2): {0: 1.0, 1: 1.1, 2: 0.9},
+            (B, 2.2): {0: 5.0, 1: 5.2, 2: 4.9},
+            (C, 2.2): {0: 4.0, 1: 6.2, 2: 4.5},
+        }
+    )
+    one, two, three = found.gains
+    assert found.ranked([one, two, three, two]) == [two, three, one]
+    assert found.abreast([one, two, three]) == [two, three]
+    assert found.gain(three) == pytest.approx(4.9)
+    assert found.gain(Arm(A, 9.0, ALWAYS)) == 0.0
+
+
+def test_arms_around_the_outermost_and_those_of_other_units() -> None:
+    seen = {0: 1.0}
+    found = race({(A, 4.0): seen, (A, 1.0): seen, (A, -2.0): seen, (B, 2.0): seen, (A, 1.05): seen})
+    assert [arm.factor for arm in found.around(Arm(A, 4.0, ALWAYS))] == [round(math.sqrt(4.2), 3)]
+    assert found.around(Arm(A, 1.0, ALWAYS)) == []  # its neighbour is nearer than the finest ratio
+    assert [arm.factor for arm in found.around(Arm(A, 1.05, ALWAYS))] == [round(math.sqrt(4.2), 3)]
+    assert found.around(Arm(A, 3.0, ALWAYS)) == []
+    assert found.around(Arm(A, 4.0, WET)) == []
+
+
+@given(
+    st.dictionaries(st.integers(0, 5), st.floats(-9, 9)), st.dictionaries(st.integers(0, 5), st.floats(-9, 9))
+)
+def test_an_arm_is_behind_only_on_three_common_seeds(one: dict[int, float], other: dict[int, float]) -> None:
+    differences = paired(one, other)
+    assert differences == [one[seed] - other[seed] for seed in one if seed in other]
+    if len(differences) < 3:
+        assert not behind(other, one)
+    else:
+        assert behind(other, one) == (ahead_by(differences)[0] > 0)
+        assert not (behind(other, one) and behind(one, other))
+
+
+def test_the_interval_of_a_lead_is_students() -> None:
+    low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
+    assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
+
+
+def test_the_certainty_of_a_ranking_counts_sites_that_gain() -> None:
+    ranking = Ranking([A.operands[0]], mutations, ALWAYS, Trials(lambda *_: Outcome(0.0, True), 9), GOAL)
+    ranking.race = race(
+        {
+            (A, 2.2): {0: 3.0, 1: 3.1, 2: 2.9},
+            (A, 5.0): {0: 9.0},  # one seed may be luck
+            (B, 2.2): {0: 5.0, 1: 5.2, 2: 4.9},
+            (C, 2.2): {0: 0.5, 1: 0.7},
+        }
+    )
+    ranking.slack = 0.6
+    sites = [str(unit.operands[0].site) for unit in (A, B, C)]
+    first = ranking.certainty(sites[1])
+    assert first is not None
+    assert (first.gaining, first.level, first.ahead, first.seeds) == (2, 0, 0, 3)
+    assert first.by is not None
+    assert 0 < first.by[0] < 2.0 < first.by[1]
+    second = ranking.certainty(sites[0])
+    assert second is not None
+    assert (second.level, second.ahead) == (0, 1)
+    third = ranking.certainty(sites[2])
+    assert third is not None
+    assert (third.level, third.ahead, third.by, third.seeds) == (2, 0, None, 2)
+
+
+ANGLE = Sensor("heading", topic="/h", field="data", low=0, high=8, bins=8, angle=True)
+LINE = Sensor("x", topic="/x", field="data", low=0, high=8, bins=8)
+
+
+@pytest.mark.parametrize(
+    ("cells", "line", "arc"),
+    [((2, 3, 5), (2, 5), (2, 5)), ((0, 1, 7), (0, 7), (7, 9)), ((4,), (4, 4), (4, 4)), ((), None, None)],
+)
+def test_the_hull_of_some_bins_is_the_shortest_arc_of_an_angle(
+    cells: tuple[int, ...], line: tuple[int, int] | None, arc: tuple[int, int] | None
+) -> None:
+    some = [(one,) for one in cells]
+    assert _hull(some, 0, LINE) == line
+    assert _hull(some, 0, ANGLE) == arc
+
+
+def test_bins_span_all_that_were_seen() -> None:
+    assert _spans((2, 4), {2, 4}, LINE)
+    assert not _spans((2, 4), {2, 5}, LINE)
+    assert _spans((7, 9), {0, 1, 7}, ANGLE)
+    assert not _spans((7, 9), {2, 7}, ANGLE)
+    assert not _spans((7, 9), {0, 7}, LINE)
+
+
+def test_the_interval_where_most_changed_for_its_visits() -> None:
+    assert _steepest(evidence(REGION, changes=dict(CHANGES)), 0) == (4, 6)
+    assert _steepest(evidence(REGION, changes=dict(CHANGES)), 1) == (1, 1)
+
+
+def widened(sensor: Sensor, low: float, high: float) -> tuple[float, float]:
+    (one,) = _widened(Guard((Conjunct(sensor, low, high),))).conjuncts
+    return one.low, one.high
+
+
+def test_intervals_are_widened_by_two_bins() -> None:
+    assert widened(LINE, 3.0, 5.0) == (1.0, 7.0)
+    assert widened(LINE, 2.0, 6.0) == (0.0, 8.0)
+    assert widened(LINE, 1.0, 7.0) == (-math.inf, math.inf)
+    assert widened(ANGLE, 3.0, 5.0) == (1.0, 7.0)
+    assert widened(ANGLE, 7.0, 1.0) == (5.0, 3.0)
+    assert widened(ANGLE, 0.0, 4.0) == (-math.inf, math.inf)
+    assert widened(Sensor("wet", topic="/wet", field="data"), 1.0, 1.0) == (1.0, 1.0)
