@@ -16,9 +16,9 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
-MAX_EXACT_TURNS = 8  # the same in a run for one launched node
+MAX_EXACT_TURNS = 8  # the same limit in a run for one launched node
 SHORT = 3  # plain statements in a loop that is unrolled over up to MAX_KNOWN elements
-MAX_PASSES = 12  # over a loop's body; a safety limit, since the value domain is finite
+MAX_PASSES = 12  # passes over a loop's body; only a safety limit, since the value domain is finite
 
 
 def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
@@ -85,31 +85,31 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
 
 
 def _first_head(ctx: Interpreter, s: ir.Loop, frame: Frame) -> Delta:
-    """Return the initial state at a loop's head: the fixpoint of its last execution in the same call context.
+    """Return the initial state at a loop's head: the fixpoint of the loop's last execution in this call context.
 
-    States grow monotonically from one pass of an outer loop, or run of an entry point, to the next, so this is below
-    the new fixpoint. An inner loop then takes one pass if nothing has changed.
+    States only grow, from one pass of an outer loop to the next and from one run of an entry point to the next. The
+    former fixpoint is therefore below the new one, and an inner loop needs a single pass if nothing has changed.
     """
     known = frame.heads.get((s.id, *frame.turn))
     return {} if known is None else joins.joined(ctx, [{}, known])
 
 
 def _told_apart(ctx: Interpreter, s: ir.Loop, source: Value) -> list[Value]:
-    """Return the elements for an unrolled loop: few and known, with data or from the command line; else none."""
+    """Return the elements to unroll a loop over; [] if they are unknown, too many, or carry no data."""
     elements = sizes.unpacked(ctx, source) or []
     plain = len(s.body) <= SHORT and all(isinstance(one, ir.Assign | ir.Evaluate) for one in s.body)
     limit = sizes.MAX_KNOWN if plain else MAX_EXACT_TURNS if ctx.exact else MAX_TURNS
     if not 1 < len(elements) <= limit:
         return []
     if ctx.exact:
-        return elements  # groups of its arguments
+        return elements  # a loop over groups of arguments of the command line
     ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
     return elements if laden else []
 
 
 def _leaves(body: Sequence[ir.Stmt]) -> bool:
-    """Return whether a statement may end a turn before its end."""
+    """Return whether a statement may leave an iteration early."""
     inner = [
         part for s in body for name in ("body", "orelse", "final") for part in (getattr(s, name, ()) or ())
     ]
@@ -163,7 +163,7 @@ def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tup
 
 
 def _length(ctx: Interpreter, source: Value, node: int) -> None:
-    """Make a loop's decision depend on the container's length: on the choice of elements, not their data."""
+    """Make a loop's decision depend on the container's length, not on the data of its elements."""
     ours = frozenset(o for o in source.pts if sizes.sized(ctx, o))
     ctx.graph.flow(sizes.length(ctx, source), node)
     ctx.graph.choice(sizes.placed(ctx, ours), node)

@@ -50,7 +50,10 @@ def invoke(
     call: ir.Call,
     owner: Obj | None = None,
 ) -> Value:
-    """Call a function. A call without data into a module that neither subscribes nor publishes has a limited budget."""
+    """Call a function.
+
+    If the call passes no data into a module that neither subscribes nor publishes, its budget is limited.
+    """
     before, start = ctx.work.leisure, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
@@ -121,7 +124,7 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
 
 
 def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
-    """Approximate a call that is not executed: the results known so far, and the data of the arguments."""
+    """Return, for a call that is not executed, its results known so far with the data of its arguments."""
     known = BOTTOM
     for frame in ctx.stack:
         if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
@@ -165,7 +168,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
 
 
 def _written(call: ir.Call, plain: Sequence[Value]) -> list[ir.Expr | None]:
-    """Return the expression of each positional argument, the starred one for its elements, None for receivers."""
+    """Return the expression of each positional argument: `*values` for each of its elements, None for a receiver."""
     given: list[ir.Expr | None] = [*call.arguments]
     stars = [number for number, one in enumerate(given) if isinstance(one, ir.Starred)]
     unknown: list[ir.Expr | None] = [None] * len(plain)
@@ -228,7 +231,7 @@ def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arg
 def _missing(
     ctx: Interpreter, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
 ) -> Value:
-    """Return the value of a parameter without an argument of its own: default, `*` or `**`."""
+    """Return the value of a parameter that no argument names: its default, or what `*` or `**` collects."""
     value = ctx.store.get((closure, parameter.name)) if parameter.default is not None else None
     result = BOTTOM if value is None else value
     if rest is not None and parameter.kind == "plain":
@@ -293,5 +296,5 @@ def carries(ctx: Interpreter, arguments: Arguments) -> bool:
 
 
 def _receiver(value: Value) -> bool:
-    """Return whether an argument is an instance or class of the analysed files, which needs no node."""
+    """Return whether an argument needs no node, because it is an instance or class of the analysed files."""
     return bool(value.pts) and not value.deps and all(o.kind in ("instance", "class") for o in value.pts)

@@ -12,7 +12,8 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join, join_all, pointer
 from tarl_lint.models import sizes
 
-MAX_ALIKE = 12  # library objects whose methods are called one by one; more are treated as one receiver
+# library objects whose methods are called one by one; if there are more, they count as one receiver
+MAX_ALIKE = 12
 
 
 def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
@@ -25,7 +26,7 @@ def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
 
 
 def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
-    """Evaluate arguments; keywords `*` and `**` hold unpacked arguments of unknown number or name."""
+    """Evaluate arguments. The keywords `*` and `**` hold unpacked arguments whose number or names are unknown."""
     plain: list[Value] = []
     named: dict[str, Value] = {}
     for argument in expr.arguments:
@@ -50,14 +51,14 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
 def _noted(
     ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
 ) -> Value:
-    """Give a keyword's number its own node, so that queries find the number in the object that the call makes."""
+    """Give a number passed by keyword its own node, so that queries find it in the object that the call makes."""
     if not ctx.thorough:
         return value
     return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
 
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the arguments of `*value`; joins several sequences of equal length, None if lengths differ."""
+    """Return the arguments of `*value`, joined over its possible sequences; None if their lengths differ."""
     ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in value.objects]
     lengths = {-1 if way is None else len(way) for way in ways}
     if -1 in lengths or len(lengths) != 1:
@@ -126,7 +127,7 @@ def _call_member(
 
 
 def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the library objects stored in an attribute; they are called like functions."""
+    """Return the library objects stored in an attribute, which are called like functions."""
     stored = ctx.store.get((obj, name))
     pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
     return Value(stored.deps if stored is not None else NONE, pts)
@@ -145,7 +146,7 @@ def callable_held(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Call every object that a value may be; an unknown callee passes its arguments to the result."""
+    """Call every object that a value may be. The result of an unknown callee depends on its arguments."""
     targets = function.objects
     if ctx.nothing_yet(function):
         return BOTTOM

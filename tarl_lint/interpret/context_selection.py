@@ -1,4 +1,4 @@
-"""Select the call context of a call: its own, or a shared one if there are too many."""
+"""Select the context of a call: one of its own, or a shared one if the function has too many."""
 
 from __future__ import annotations
 

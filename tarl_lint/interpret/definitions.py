@@ -36,7 +36,7 @@ def decorated(
 ) -> Value:
     """Apply analysed decorators to a function or class; library decorators leave it unchanged.
 
-    A decorator that is a method of a library object, as `@server.route("/")`, registers it with that object.
+    A decorator that is a method of a library object, such as `@server.route("/")`, registers the function with it.
     """
     for decorator in reversed(decorators):
         wrapper = expressions.evaluate(ctx, decorator, frame)
@@ -110,7 +110,7 @@ def _inherits(info: ClassInfo) -> tuple[list[Obj], list[str]]:
 
 
 def frame_number(ctx: Interpreter, key: object) -> int:
-    """Return a frame's number, which is the same in every run."""
+    """Return a number for a frame that is the same in every run."""
     return ctx.frame_numbers.setdefault(key, -2 - len(ctx.frame_numbers))
 
 

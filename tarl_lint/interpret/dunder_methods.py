@@ -25,7 +25,7 @@ FUNCTIONS: Final = frozenset(
 def special(
     ctx: Interpreter, value: Value, name: str, given: Sequence[Value], frame: Frame, pos: ir.Pos
 ) -> Value | None:
-    """Return the result of a special method; None unless every object that a value may be has it."""
+    """Return the result of a special method; None if one of the value's possible objects lacks it."""
     methods: list[Value] = []
     for obj in value.objects:
         method = _special_method(ctx, obj, name) if obj.kind == "instance" else None
@@ -51,7 +51,7 @@ def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
 
 
 def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
-    """Return the result of an operator that an operand's analysed class overloads; None if none does."""
+    """Return the result of an operator that the analysed class of an operand overloads; None if no class does."""
     if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
         return None
     operator = expr.operator
@@ -72,5 +72,5 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
 
 
 def _slot(name: str, pos: ir.Pos) -> int:
-    """Return a slot number for the call that an operator makes, distinct from those of explicit calls."""
+    """Return a slot number for the call made by an operator, distinct from the slots of explicit calls."""
     return -(1_000_000 + pos[0] * 100_000 + pos[1] * 100 + len(name))

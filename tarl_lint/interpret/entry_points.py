@@ -17,7 +17,7 @@ from tarl_lint.models.ros import subscriptions
 
 
 def start_programs(ctx: Interpreter) -> None:
-    """Run main functions, and instantiate node classes, that nothing in the files calls."""
+    """Run the main functions and instantiate the node classes that nothing in the files calls."""
     for program in list(ctx.programs.values()):
         if ctx.modules[program.path].installed:
             continue
@@ -123,7 +123,7 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
 
 
 def _called_by_others(ctx: Interpreter, obj: Obj, info: ClassInfo) -> bool:
-    """Return whether outside code calls an object's methods: for plugins, and classes that register nothing."""
+    """Return whether outside code calls an object's methods: its class is a plugin, or registers no callback."""
     return obj.info in ctx.plugins or (obj.info in ctx.guests and not _registers_itself(info))
 
 
@@ -135,7 +135,7 @@ def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: l
 
 
 def _registers_itself(info: ClassInfo) -> bool:
-    """Return whether a class registers callbacks in `__init__`; otherwise outside code calls a method for that."""
+    """Return whether a class registers callbacks in `__init__`; if not, outside code calls a method that does."""
     body = info.statement.body if info.statement is not None else ()
     return any(
         isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body

@@ -21,7 +21,7 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG0
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
     """Make later statements depend on whether a library call raises for its arguments `deps`.
 
-    Applies only if the function or a caller handles the exception; with `named`, handles it by name.
+    Applies only if the function or a caller handles the exception; with `named`, only if it does so by name.
     """
     statement = frame.statement
     if not deps or statement is None or frame.cls is not None:
@@ -42,8 +42,8 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
     """Make statements after a call depend on whether the called function raises, as after a `raise`.
 
-    Without a handler, assertions and calls in a loop are ignored: otherwise the statements after the loop would
-    depend on the number of its iterations.
+    Where no handler is found, assertions and calls in a loop are ignored: the statements after the loop would
+    otherwise depend on the number of its iterations.
     """
     statement = caller.statement
     if statement is None:
@@ -64,7 +64,7 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
 
 
 def _bare(statement: ir.Stmt) -> bool:
-    """Return whether a statement raises without an exception, as assertions and a bare `raise` do."""
+    """Return whether a statement raises without naming an exception: an assertion or a bare `raise`."""
     return isinstance(statement, ir.Raise) and statement.value is None
 
 

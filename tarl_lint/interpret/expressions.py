@@ -31,7 +31,7 @@ BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules with classes generated from definition files
 
 
-LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # raised for a missing element
+LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # the exceptions raised for a missing element
 
 
 def evaluate(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value:
@@ -71,7 +71,7 @@ def holder(expr: ir.Name, frame: Frame) -> Obj:
 
 
 def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
-    """Return the value of a name that the module does not bind: from `import *`, or else a builtin."""
+    """Return the value of a name that the module does not bind: a name from `import *`, or else a builtin."""
     value = ctx.store.get((frame.module, name))
     if value is None:
         value = heap.opened(ctx, frame.module, name)
@@ -132,7 +132,7 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
 def _part_of_text(
     ctx: Interpreter, base: Value, bounds: Sequence[ir.Expr | None], frame: Frame
 ) -> Value | None:
-    """Return `text[a:b]` of a known text in a run for a launch file, where texts name topics; None otherwise."""
+    """Return `text[a:b]` of a known text; None if it is unknown, or if the run is not for a launch file."""
     known, text = base.constant()
     if not ctx.launching or not known or not isinstance(text, str):
         return None

@@ -31,9 +31,9 @@ class Linker(Interpreter):
         *,
         thorough: bool = True,
     ) -> None:
-        """With `failures`, store an exception there by file and continue; otherwise raise it.
+        """With `failures`, store an exception there under its file and continue; otherwise raise it.
 
-        Unless `thorough`, ignore values that do not come from a source; flows need only the others.
+        Unless `thorough`, ignore values that do not come from a source, since flows do not need them.
         """
         super().__init__(modules, config, wiring)
         self.thorough = thorough
@@ -76,14 +76,14 @@ class Linker(Interpreter):
             self._settle()
             if len(self.roots) == before:
                 break
-        if self.waiting:  # nothing more will be stored: unknown values stay unknown
+        if self.waiting:  # no root stores anything new, so values unknown now stay unknown
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()
         carry_nodes.settle(self.graph)
 
     def replay(self) -> None:
-        """Run every root once more, observed by a probe."""
+        """Run every root once more under a probe, which observes it."""
         for root, run in list(self.roots.values()):
             self._run(root, run)
 
@@ -107,12 +107,12 @@ class Linker(Interpreter):
                 self.shared.dirty.clear()
 
     def _turn(self, root: Root) -> tuple[int, int, int]:
-        """Return the priority of a root: new modules, then callbacks, then modules to re-run; cheapest first."""
+        """Return the priority of a root: new modules, then callbacks, then modules to re-run, each cheapest first."""
         took = self.took.get(root)
         return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
 
     def _reconsider(self) -> None:
-        """Queue the roots that ignored a node because no source reached it, if one reaches it now."""
+        """Queue the roots that ignored a node because no source reached it, if a source reaches it now."""
         for node in [n for n in self.doubts if n in self.graph.live]:
             self.pending.update(self.doubts.pop(node))
 

@@ -1,7 +1,7 @@
 """The state of the abstract interpretation, shared by all its parts.
 
 The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly,
-and those of higher parts through `ctx.ops` (declared in `operations.py`, assigned in `wiring.py`).
+and functions of higher parts through `ctx.ops` (declared in `operations.py`, assigned in `wiring.py`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
 NONE_ONLY = frozenset([None])
-CHECK = "TARL_CHECK"  # environment variable: execute calls that could be replayed, and compare
+# environment variable: also execute calls that could be replayed, and compare the results
+CHECK = "TARL_CHECK"
 
 
 Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
@@ -62,13 +63,15 @@ class Interpreter:
         self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
         self.nullness = NullnessFacts()
         self.unchanged: set[ir.Call] = set()  # calls that return a value unchanged; only in thorough runs
-        self.settings: dict[Obj, tuple[str, ir.Pos]] = {}  # loaded values → path and position of the call
-        self.patient = True  # unknown values may still be stored by a later root
+        # value loaded from a file → path and position of the loading call
+        self.settings: dict[Obj, tuple[str, ir.Pos]] = {}
+        self.patient = True  # whether a later root may still store values that are unknown now
         self.waiting: dict[Root, None] = {}  # roots that read such an unknown value
-        self.doubts: dict[int, dict[Root, None]] = {}  # unreached node → roots that relied on that
+        # node that no source reached → roots that relied on it being unreached
+        self.doubts: dict[int, dict[Root, None]] = {}
         self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
         self.work = Work()
-        self.widened: set[Hashable] = set()  # calls that share a context
+        self.widened: set[Hashable] = set()  # contexts that several calls share
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects among the arguments of roots
@@ -79,16 +82,18 @@ class Interpreter:
         self.made: set[Hashable] = set()  # keys of instantiated classes
         self.guests: set[object] = set()  # classes instantiated only outside of the files
         self.plugins: set[object] = set()  # classes that a package declares as plugins
-        self.ended: set[str] = set()  # classes outside of the files whose methods get data or callbacks
+        # names of classes outside of the files whose methods get data or callbacks
+        self.ended: set[str] = set()
         self.checking = os.environ.get(CHECK, "") not in ("", "0")
-        self.parameter_names: list[ParameterName] | None = None  # parameters in texts; None: not followed
-        self.fixed: Mapping[str, object] = {}  # parameters with known values, by name in the code
+        # parameters found in names; None if they are not followed
+        self.parameter_names: list[ParameterName] | None = None
+        self.fixed: Mapping[str, object] = {}  # known values of parameters, by their name in the code
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 
     @property
     def launching(self) -> bool:
-        """Return whether the run is for a launch file: names may depend on the node, clients have servers."""
+        """Return whether the run is for a launch file, in which names depend on the node and clients have servers."""
         return self.parameter_names is not None
 
     @property
@@ -105,11 +110,11 @@ class Interpreter:
 
     @property
     def exact(self) -> bool:
-        """Return whether the run is for one launched node, so that constants are worth following one by one."""
+        """Return whether the run is for one launched node; its constants are then followed one by one."""
         return self.launched is not None or bool(self.command_line)
 
     def end_key(self, path: str, pos: ir.Pos, frame: Frame) -> tuple[Hashable, ...]:
-        """Return the key of an end of flows; for a launch, objects and turns of unrolled loops have their own ends."""
+        """Return the key of a flow's end; for a launch, also by call context and iteration of an unrolled loop."""
         return (path, pos, frame.id, *frame.turn) if self.launching else (path, pos)
 
     @property
@@ -135,7 +140,7 @@ class Interpreter:
         self.graph.asked %= LOOKS
 
     def look(self, objects: Iterable[Obj]) -> None:
-        """Note that the running call depends on these objects' stamps: meaning, fields and data."""
+        """Note that the running call depends on the meaning, fields and data of these objects, by their stamps."""
         noted = self.store.reads.objects
         for obj in objects:
             if obj not in noted:
@@ -155,7 +160,7 @@ class Interpreter:
         return known
 
     def branch(self, frame: Frame, branch: Branch) -> tuple[int, str]:
-        """Return a branch of a function as a branch of one of its frames."""
+        """Return a branch of a function as seen in one of the function's frames."""
         number, way = branch
         key = (frame.id, number, "condition")
         node = self.graph.numbers.get(key)
@@ -206,7 +211,7 @@ class Interpreter:
         return Value(self.graph.merged(key, value.deps, self.stack[-1]), value.pts, value.consts)
 
     def carry(self, value: Value, node: int) -> Value:
-        """Return the value as passed on through a statement's node."""
+        """Return the value as it leaves a statement's node."""
         content = self.ops.deep(self, value.pts) if value.pts else NONE
         if value.deps:
             self.graph.flow(self.settled(value), node)
@@ -217,7 +222,7 @@ class Interpreter:
         return Value(frozenset([node]), value.pts, value.consts)
 
     def kept(self, node: int) -> Nodes:
-        """Return a node as dependency of a value; unless thorough, only if a source reaches it or its decisions."""
+        """Return a node as dependency of a value; empty if no source reaches it or its decisions (unless thorough)."""
         graph = self.graph
         live = graph.live
         if self.thorough or node in live:
@@ -236,7 +241,7 @@ class Interpreter:
         return NONE
 
     def use(self, value: Value) -> Nodes:
-        """Return the nodes whose data is used if the whole value is."""
+        """Return the nodes whose data is used where the whole value is used."""
         if not value.pts:
             return value.deps if value.consts is None else self.settled(value)
         content = self.ops.deep(self, value.pts)
@@ -245,7 +250,7 @@ class Interpreter:
         return value.deps | self.graph.through(content, value.deps)
 
     def settled(self, value: Value) -> Nodes:
-        """Return a value's dependencies; without branch conditions if all paths give the same constant."""
+        """Return a value's dependencies, without branch conditions if all paths give the same constant."""
         if not value.deps or not value.fixed():
             return value.deps
         free = [d for d in value.deps if not self.graph.control[d]]
@@ -254,7 +259,7 @@ class Interpreter:
         return frozenset(map(self.graph.unchosen, free))
 
     def nothing_yet(self, value: Value) -> bool:
-        """Return whether a value is unset so far, or is only None."""
+        """Return whether a value is unset so far, or None on all paths."""
         if value.pts or (value.deps and value.consts != NONE_ONLY):
             return False
         if value.consts == NONE_ONLY:
@@ -272,7 +277,7 @@ class Interpreter:
         return self.patient
 
     def release(self) -> None:
-        """Drop all references, to break cycles. The interpreter cannot be used afterwards."""
+        """Drop all references, to break reference cycles. The interpreter cannot be used afterwards."""
         for obj in (*self.objects.values(), *self.module_objects.values(), *self.frames.values()):
             obj.release()
         for record in self.sources.values():

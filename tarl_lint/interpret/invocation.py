@@ -29,7 +29,7 @@ class Invocation:
         return self.frame.statement.id if self.frame.statement is not None else -1
 
     def argument(self, which: tuple[int, str]) -> Value:
-        """Return an argument by position or keyword; BOTTOM if it is missing."""
+        """Return an argument by position or keyword; BOTTOM if the call does not pass it."""
         number, name = which
         plain, named = self.arguments
         if 0 <= number < len(plain):

@@ -1,4 +1,4 @@
-"""Transfer functions of displays and comprehensions."""
+"""Transfer functions of list, tuple, set and dict literals and of comprehensions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stor
 
 
 def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
-    """Return the value of a list, tuple or set display."""
+    """Return the value of a list, tuple or set literal."""
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     items = [
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
@@ -41,7 +41,7 @@ def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -
 
 
 def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> Value:
-    """Return the value of a dict display."""
+    """Return the value of a dict literal."""
     obj = recency.allocate(ctx, "mapping", frame, ("display", expr.slot))
     where = pointer(obj)
     for key, item in expr.items:
@@ -54,7 +54,7 @@ def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> 
 
 
 def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
-    """Return an element of a display; a number gets its own node, so that queries find it."""
+    """Return an element of a literal; a number gets its own node, so that queries find it."""
     if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
         return value
     node = ctx.node(frame, ("entry", slot), "assign")
@@ -97,7 +97,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
 
 
 def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
-    """Unroll a comprehension over few known elements; return the sequence or the mapping."""
+    """Unroll a comprehension over few known elements; return the sequence or mapping that it makes."""
     kind = "mapping" if expr.key is not None else "sequence"
     obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
     turn = frame.turn
@@ -116,7 +116,7 @@ def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value],
 def _selected(
     ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame
 ) -> list[Value] | None:
-    """Return the constants, of a known command line, for which the conditions hold; None if not all are decided."""
+    """Return the constants of a known command line for which the conditions hold; None if one is undecided."""
     chosen: list[Value] = []
     target, _, conditions = expr.loops[0]
     for value in known if all(one.fixed() for one in known) and len(known) <= sizes.MAX_KNOWN else ():
@@ -143,7 +143,7 @@ def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame)
 
 
 def _passes_on(ctx: Interpreter, expr: ir.Expr) -> bool:
-    """Return whether an expression returns a stored value unchanged, or one of several."""
+    """Return whether an expression only returns one of several stored values, unchanged."""
     if isinstance(expr, ir.Choice):
         return ctx.thorough and all(
             isinstance(arm, ir.Const) or _passes_on(ctx, arm) for arm in (expr.then, expr.other)

@@ -1,4 +1,4 @@
-"""Find, by syntax, code that starts a node; a file without it only defines names."""
+"""Find code that starts a node by its syntax. A file without such code only defines names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() 
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
 STARTING = re.compile(
     rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
-)  # words of which a file that starts a node has at least one
+)  # a file that starts a node contains at least one of these words
 
 
 def definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:

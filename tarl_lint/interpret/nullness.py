@@ -16,9 +16,9 @@ COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may copy 
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide `x is None` if it only tests whether x is set; None if it tests data.
+    """Return the nodes that decide `x is None` if the test only asks whether x is set; None if it tests data.
 
-    The arrival of a message is not its data; conditions under which it was stored are.
+    Whether a message has arrived is not data; the conditions under which it was stored are.
     """
     first, second = expr.parts
     if not isinstance(second, ir.Const) or second.value is not None:
@@ -27,7 +27,7 @@ def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes |
 
 
 def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide whether a value is set; None if data may decide."""
+    """Return the nodes that decide whether a value is set; None if data may decide it."""
     if isinstance(expr, ir.Call):
         ctx.store.reads.ask(ctx.nullness.of_result, expr)
         if expr in ctx.nullness.came_out:
@@ -65,7 +65,7 @@ def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame
 def note_taken(
     ctx: Interpreter, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame
 ) -> None:
-    """Record the same for a target that gets an element of a sequence."""
+    """Record a target whose element of a sequence is None only before the first message."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
     for key in keys:
         ctx.store.reads.ask(ctx.nullness.of_key, key)
@@ -91,7 +91,7 @@ def _holds_data(ctx: Interpreter, value: Value) -> bool:
 
 
 def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: Frame) -> None:
-    """Record a call whose result may be None by data, or is None only before the first message."""
+    """Record a call whose result is None because of data, or is None only before the first message."""
     ctx.store.reads.ask(ctx.nullness.of_key, (frame, RETURNED))
     without = [v.consts == NONE_ONLY and not v.pts for v in returned]
     if any(without) and not all(without):
@@ -118,7 +118,7 @@ def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
 
 
 def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield the keys of a variable or field; for a field of an instance, also those in its classes."""
+    """Yield the keys of a variable or field; for a field of an instance, also its keys in the classes."""
     if isinstance(expr, ir.Name):
         yield ctx.ops.holder(expr, frame), expr.name
     elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):
@@ -132,7 +132,7 @@ def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
 
 
 def _elements(ctx: Interpreter, container: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield the element keys of analysed containers: a None in one element counts for all."""
+    """Yield the keys of the elements of analysed containers; a None in one element counts for all elements."""
     held = (
         ctx.ops.evaluate(ctx, container, frame).pts if isinstance(container, (ir.Name, ir.Attribute)) else ()
     )
@@ -142,7 +142,7 @@ def _elements(ctx: Interpreter, container: ir.Expr, frame: Frame) -> Iterator[Ke
 
 
 def _index_chosen(ctx: Interpreter, expr: ir.Item | ir.Call, frame: Frame) -> bool:
-    """Return whether data selects the element."""
+    """Return whether the index of an element may depend on data."""
     index = expr.index if isinstance(expr, ir.Item) else expr.arguments[0]
     if not isinstance(index, (ir.Const, ir.Name, ir.Attribute)):
         return True

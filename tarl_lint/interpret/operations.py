@@ -37,7 +37,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def assign_fallback(self, ctx: Ctx, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Add data to the variable that holds an unknown object."""
+        """Add data to the variable that holds an object which is unknown."""
         ...
 
     def bind_target(
@@ -55,7 +55,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def launched_call(self, ctx: Ctx, target: Obj | None, it: Invocation) -> Value | None:
-        """Make or use a client of a service or action, or name the node; None if the call does neither."""
+        """Model a call that makes or uses a client of a service or action, or names the node; None for other calls."""
         ...
 
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:
@@ -65,7 +65,7 @@ class Operations(Protocol[Ctx]):
     def call_library(
         self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        """Call a library function or class. If it iterates over analysed objects, call their iterators."""
+        """Call a library function or class; a function that iterates over analysed objects calls their iterators."""
         ...
 
     def call_method(
@@ -90,7 +90,7 @@ class Operations(Protocol[Ctx]):
     def call_value(
         self, ctx: Ctx, function: Value, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        """Call every object that a value may be; an unknown callee passes its arguments to the result."""
+        """Call every object that a value may be. The result of an unknown callee depends on its arguments."""
         ...
 
     def deep(self, ctx: Ctx, objects: frozenset[Obj]) -> Nodes:
@@ -114,11 +114,11 @@ class Operations(Protocol[Ctx]):
         ...
 
     def gate(self, ctx: Ctx, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the node that decides which elements a new container gets; none if no data decides."""
+        """Return the node that decides which elements a new container gets; empty if no data decides it."""
         ...
 
     def generic(self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Pass all arguments to the result; store into the argument that the catalog lists as written."""
+        """Make the result depend on all arguments; store into the argument that the catalog lists as written."""
         ...
 
     def holder(self, expr: ir.Name, frame: Frame) -> Obj:
@@ -126,7 +126,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def imported(self, ctx: Ctx, module: str, member: str | None, importer: object) -> Value:
-        """Return the value that an import binds: an analysed module, a name in one, or a library name."""
+        """Return the value that an import binds: an analysed module, a name of such a module, or a library name."""
         ...
 
     def may_fail(self, ctx: Ctx, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
@@ -138,7 +138,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def named_by_settings(self, ctx: Ctx, target: Obj) -> str:
-        """Return the qualified name of an analysed function or method if the settings mention it, else ""."""
+        """Return the qualified name of an analysed function or method that the settings mention; "" for others."""
         ...
 
     def read_item(self, ctx: Ctx, base: Value, index: Value) -> Value:

@@ -55,12 +55,12 @@ CALLING = (
     ir.Call,
     ir.Choice,
     ir.Operation,
-)  # operands that may contain calls, which then depend on earlier operands
+)  # operands that may contain calls; these calls depend on earlier operands
 OURS = frozenset(
     ["instance", "sequence", "mapping"]
-)  # kinds whose type is known from the files, independent of data
+)  # kinds of objects whose type is known from the files and does not depend on data
 MESSAGES = frozenset(["message", "goal"])
-THERE = frozenset([*MESSAGES, *OURS])  # kinds that are never None
+THERE = frozenset([*MESSAGES, *OURS])  # kinds of objects that are never None
 MAX_TEXT = 300
 
 
@@ -90,7 +90,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
 
 
 def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
-    """Return the nodes whose data an operator uses. The arrival of a message is not its data."""
+    """Return the nodes whose data an operator uses. Whether a message has arrived is not data."""
     if name == "shape":
         return sizes.length(ctx, value)
     if name == "type":
@@ -116,7 +116,7 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
 
 
 def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
-    """Return a node that depends on the decisions to add elements to containers, but not on their data."""
+    """Return a node that depends on the decisions to add elements to containers, but not on the elements' data."""
     node = ctx.node(frame, slot, "condition")
     ctx.graph.choice(sizes.placed(ctx, objects), node)
     return ctx.kept(node)
@@ -125,7 +125,8 @@ def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashab
 def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
     """Return the nodes that decide whether a value counts as true.
 
-    A whole message and an object without `__bool__` and `__len__` are always true; a container depends on its length.
+    A whole message, and an object without `__bool__` and `__len__`, are always true. The truth of a container depends
+    on its length.
     """
     if not value.pts:
         return value.deps
@@ -147,7 +148,7 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
-    """Return the value of `a or b`: one operand, chosen by the former, on which later calls depend."""
+    """Return the value of `a or b`. The first operand decides which one it is; calls in the second depend on it."""
     result, deps, guards = BOTTOM, NONE, len(ctx.guards)
     for number, part in enumerate(expr.parts):
         value = ctx.ops.evaluate(ctx, part, frame)
@@ -195,7 +196,7 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
         return None
     try:
         results = frozenset(function(*constants) for constants in itertools.product(*known))
-    except Exception:  # any error that the program itself would raise
+    except Exception:  # the program itself would raise this error
         return None
     if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
         return None
@@ -205,7 +206,7 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
 
 
 def _certainly_set(values: list[Value]) -> bool:
-    """Return whether the first value is compared with None and is certainly an instance of a class."""
+    """Return whether the operation compares the first value with None, and that value is certainly an instance."""
     first, second = values
     none = second.consts == NONE_ONLY and not second.pts
     return (
@@ -228,7 +229,7 @@ def _fold_text(values: list[Value]) -> frozenset[object] | None:
 
 
 def _symbolic(results: frozenset[object]) -> frozenset[object] | None:
-    """Return results of an operator on texts that the launch of a node determines; None unless they are texts, too."""
+    """Mark the results of an operator on texts that the launch determines; None if a result is not a text."""
     if not all(isinstance(one, str) for one in results):
         return None
     return frozenset(Symbolic(one) for one in results)
@@ -245,10 +246,10 @@ def _asked(expr: ir.Operation) -> str:
 
 
 def _whole(obj: Obj) -> bool:
-    """Return whether an object is not part of another, so that its identity reveals none of its data."""
+    """Return whether an object is part of no other one; its identity then reveals none of its data."""
     return _there(obj) and obj.parent is None
 
 
 def _there(obj: Obj) -> bool:
-    """Return whether an object is never None, as an instance of a class."""
+    """Return whether an object is never None, such as an instance of a class."""
     return obj.kind in THERE or obj.info is BY_CLASS

@@ -1,6 +1,6 @@
 """Replay calls: skip a call whose reads are all unchanged since its last run in the same context.
 
-Its nodes, objects and entry points exist already, since the context is the same; only its stores are repeated.
+The context is the same, so the call's nodes, objects and entry points exist already; only its stores are repeated.
 `memory/reads.py` records the reads.
 """
 
@@ -19,7 +19,7 @@ from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, Key, Value, join_all
 
-READS = 40  # compared facts that cost as much as a statement
+READS = 40  # as many compared facts cost as much as a statement
 
 Mode = tuple[object, ...]
 
@@ -31,20 +31,20 @@ class Run:
     passed: Arguments
     mode: Mode
     reads: Reads
-    found: dict[Key, Value | None]  # values that it read
+    found: dict[Key, Value | None]  # values that the run read
     stored: dict[Key, bool]
     cost: int
     result: Value
     returned: list[Value]
     escapes: list[Escape]
     delta: Delta
-    edges: int  # number of edges that it made
-    noted: bool  # whether `delta` was stored value by value before
+    edges: int  # number of edges that the run made
+    noted: bool  # whether the stores of `delta` were already made one by one
     heard: dict[Key, Value]  # values that other roots may store at its waits
 
 
 def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:
-    """Return the last run of a frame if a new one would be equal, else execute it."""
+    """Return the last run of a frame if a new one would give the same result, else execute the frame."""
     mode = _mode(ctx)
     last = frame.recorded
     same = isinstance(last, Run) and _same(ctx, last, passed, mode)
@@ -93,7 +93,7 @@ def _hears(store: Store, last: Run) -> bool:
 
 
 def _check(ctx: Interpreter, frame: Frame, last: Run, made: Run) -> None:
-    """Compare a run with the one that would have been replayed. Raises AssertionError if they differ."""
+    """Compare a run with the run that would have been replayed; raise AssertionError if they differ."""
     keys = last.delta.keys() | made.delta.keys()
     wrong = {key for key in keys if _left(ctx, last, key) != _left(ctx, made, key)}
     escapes = [(e.name, e.value) for e in last.escapes] == [(e.name, e.value) for e in made.escapes]
@@ -103,13 +103,13 @@ def _check(ctx: Interpreter, frame: Frame, last: Run, made: Run) -> None:
 
 
 def _left(ctx: Interpreter, run: Run, key: Key) -> Value | None:
-    """Return the value of a key after a run. A cleared field equals an unset one if it was unset before."""
+    """Return the value of a key after a run. A cleared field equals an unset one if it was unset before the run."""
     value = run.delta.get(key)
     return None if value is ABSENT and ctx.store.peek(key) is None else value
 
 
 def _wait_again(ctx: Interpreter, reads: Reads) -> None:
-    """Repeat the wait of a replayed call: publish earlier stores that the call has not overwritten."""
+    """Repeat the wait of a replayed call: publish the earlier stores that the call did not overwrite."""
     worklist.show(ctx, reads.own)
     for key, value in reads.admitted.items():
         ctx.store.take(key, value)

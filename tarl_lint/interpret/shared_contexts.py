@@ -1,8 +1,8 @@
-"""Widened call contexts: if a root calls one function very often, its further calls share a context.
+"""Shared call contexts: if a root calls one function very often, further calls of it share a context.
 
-Separate contexts distinguish callers, but their number multiplies along call chains. Calls that share a context are
-analysed like iterations of a loop: their arguments and conditions are joined. No flow is missed, but data of one
-caller can appear to reach the effects of another.
+Separate contexts distinguish callers, but the number of contexts multiplies along call chains. Calls that share a
+context are analysed like iterations of a loop: their arguments and conditions are joined. No flow is missed, but data
+of one caller may be reported to reach the effects of another.
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import MERGED, Place
 from tarl_lint.memory.values import Branches, Value, join
 
-CALLED = -1  # pseudo-statement of the decision that a shared context runs
+CALLED = -1  # pseudo-statement: the decision whether a shared context runs
 CALLBACKS = frozenset(["closure", "bound", "partial", "method"])
 
 
 def may_share(arguments: Arguments) -> bool:
-    """Return whether a call may share a context; not if it passes a callback, which identifies a subscription."""
+    """Return whether a call may share a context.
+
+    A call that passes a callback may not: it identifies a subscription.
+    """
     plain, named = arguments
     return not any(obj.kind in CALLBACKS for value in (*plain, *named.values()) for obj in value.pts)
 
@@ -42,7 +45,7 @@ def conditions(ctx: Interpreter, frame: Frame) -> Branches:
 def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> Arguments:
     """Add a call to a shared context; return the joined arguments of all its calls so far.
 
-    Each parameter has one node for its data, so that another call adds an edge but changes no value.
+    Each parameter has one node for its data, so another call adds an edge without changing a value.
     """
     ((called, _),) = conditions(ctx, frame)
     above = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)

@@ -12,7 +12,7 @@ from tarl_lint.memory.values import Key
 
 @dataclass(slots=True, eq=False)
 class NullnessFacts:
-    """What is known about values that are None before the first message; all sets grow only."""
+    """Facts about values that are None before the first message; all sets only grow."""
 
     vacant: set[Key] = field(
         default_factory=set
@@ -24,13 +24,13 @@ class NullnessFacts:
     doubtful: set[ir.Call] = field(default_factory=set)  # calls whose None may be computed from data
     came: dict[Key, set[int]] = field(
         default_factory=dict
-    )  # copy of a vacant variable → nodes that decide whether it is set
+    )  # copy of a variable in `vacant` → nodes that decide whether the copy is set
     came_out: dict[ir.Call, set[int]] = field(
         default_factory=dict
-    )  # call that returns such a copy → nodes that decide whether it is set
+    )  # call that returns such a copy → nodes that decide whether the copy is set
 
     def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
-        """Return the facts about a variable or field; without a key, whether any may be None by data."""
+        """Return the facts about a variable or field; without a key, whether the None of any may come from data."""
         if key is None:
             return False, bool(self.optional), 0
         return key in self.vacant, key in self.optional, len(self.came.get(key, ()))
@@ -68,7 +68,7 @@ class Work:
         return self.spent - self.saved
 
     def begin(self, limit: int) -> None:
-        """Start to count for a run of a root."""
+        """Start counting for a run of a root."""
         self.spent = self.saved = self.idled = 0
         self.limit, self.leisure = limit, None
         self.activations.clear()

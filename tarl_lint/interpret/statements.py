@@ -157,7 +157,7 @@ def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Val
 
 
 def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:
-    """Add data to the variable that holds an unknown object."""
+    """Add data to the variable that holds an object which is unknown."""
     if ctx.nothing_yet(expressions.evaluate(ctx, expr, frame)):
         return
     while isinstance(expr, (ir.Item, ir.Attribute)):
@@ -204,7 +204,7 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
             value = calls.call_value(ctx, value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
         whole = Value(
             ctx.use(value), value.pts
-        )  # the objects' contents are discarded with the function's state
+        )  # the function's state is discarded, and with it the objects' contents
         value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
     if frame.tries:
         attempt = frame.tries[-1]
@@ -240,7 +240,7 @@ def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
 
 
 def _answer(s: ir.Return) -> ir.Call:
-    """Return a call that represents ROS sending a handler's result."""
+    """Return a call that stands for ROS sending a handler's result."""
     return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
 
 

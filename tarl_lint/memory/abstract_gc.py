@@ -21,7 +21,8 @@ TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # kinds of objects
 def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj], reads: Reads) -> Delta:
     """Return the changes of a frame that are visible after it returns.
 
-    `returned` are the objects that it returns, yields or raises; `given` are arguments of roots. Both stay reachable.
+    `returned` are the objects that the frame returns, yields or raises; `given` are arguments of roots. Both stay
+    reachable.
     """
     local = {owner for owner, name in delta if name == BORN and owner.kind in TEMPORARY}
     if not local:
@@ -29,7 +30,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     kept: Delta = {}
     inside: dict[Obj, list[frozenset[Obj]]] = {}
     pending = [*returned, *(local & given)]
-    followed: set[frozenset[Obj]] = set()  # sets already followed, since many values share one
+    followed: set[frozenset[Obj]] = set()  # points-to sets followed already; many values share one set
     for key, value in delta.items():
         owner = key[0]
         if owner is frame and not frame.captured:
@@ -54,7 +55,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
 def _reached(
     pending: list[Obj], inside: Mapping[Obj, list[frozenset[Obj]]], followed: set[frozenset[Obj]]
 ) -> set[Obj]:
-    """Return the outermost objects reached from some, through their fields and definitions."""
+    """Return the outermost objects that the given ones reach through fields and definitions."""
     seen: set[Obj] = set()
     while pending:
         obj = pending.pop()
@@ -83,7 +84,7 @@ def together(objects: Iterable[Obj]) -> Set[Obj]:
 
 
 def _about(info: object) -> Iterator[Obj]:
-    """Yield the objects in the definition of another one, such as a bound method's receiver."""
+    """Yield the objects that an object's definition refers to, such as the receiver of a bound method."""
     if isinstance(info, Obj):
         yield info
     elif isinstance(info, Value):

@@ -1,4 +1,4 @@
-"""Connect carry nodes to the content that they stand for, once all of the graph is known."""
+"""Connect carry nodes to the content that they stand for, once the graph is complete."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tarl_lint.memory.value_flow_graph import Graph
 
 
 def settle(graph: Graph) -> None:
-    """Connect every carry node to its item through the carriers before it."""
+    """Connect every carry node to its item through the carriers that passed the item on before."""
     done = graph.made = 0
     while done < len(graph.arriving):
         pending = list(islice(graph.arriving, done, None))
@@ -20,7 +20,7 @@ def settle(graph: Graph) -> None:
 
 
 def _feed(graph: Graph) -> None:
-    """Connect cycles of carry nodes to their origin, so that each has an entry."""
+    """Connect each cycle of carry nodes to its origin, so that the cycle has an entry."""
     circles: dict[int, list[int]] = {}
     for node, (_, origin) in graph.carried.items():
         circles.setdefault(origin, []).append(node)

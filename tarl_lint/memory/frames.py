@@ -10,13 +10,13 @@ from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
 @dataclass(slots=True, eq=False)
 class Attempt:
-    """A `try` whose body is being executed: the states in which a handler can be entered, and the exceptions."""
+    """A `try` whose body is running: the states in which a handler can be entered, and the exceptions."""
 
     depth: int
     states: list[dict[Key, Value]]
     handled: bool
     raised: Value
-    takes: frozenset[str] = frozenset()  # names of the handled exceptions; empty: all
+    takes: frozenset[str] = frozenset()  # names of the handled exceptions; empty if all are handled
 
 
 @dataclass(slots=True, eq=False)
@@ -84,8 +84,9 @@ class Frame(Obj):
         self.turn: tuple[
             int, ...
         ] = ()  # numbers of the current elements of unrolled loops and comprehensions
-        self.steps: frozenset[ir.Stmt] = frozenset()  # executed exactly once in each turn of an unrolled loop
-        self.answer: object = None  # receiver of the function's result, if ROS is the caller
+        # statements executed exactly once in each iteration of an unrolled loop
+        self.steps: frozenset[ir.Stmt] = frozenset()
+        self.answer: object = None  # what receives the function's result, if ROS is the caller
         self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class that defines the method, for super()
@@ -96,12 +97,13 @@ class Frame(Obj):
         self.control: object = None
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]
-        ] = {}  # loop and turn → state at its head, last fixpoint
+        ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
         self.captured = False
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
         self.depth_of_layers = 0
-        self.root_waits = False  # runs concurrently with callbacks: values can change in every loop iteration
+        # whether callbacks run concurrently, so that values can change in every loop iteration
+        self.root_waits = False
         self.tries: list[Attempt] = []
         self.escapes: list[Escape] = []
         self.result = BOTTOM
@@ -114,7 +116,7 @@ class Frame(Obj):
         self.arguments: list[Value] = []
 
     def release(self) -> None:
-        """Drop references, to break cycles."""
+        """Drop references, to break reference cycles."""
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
         self.recorded = self.passed = None

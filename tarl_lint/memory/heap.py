@@ -21,11 +21,11 @@ from tarl_lint.memory.values import (
     pointer,
 )
 
-ANY = "*"  # summary field of all elements
-KEYS = "<keys>"  # of a mapping: dependencies of its keys
-LENGTH = "<length>"  # of a container: dependencies of its length
-HELD = "<callables>"  # of a library object: callables among its arguments
-SENT = "<sent>"  # of a port, file or socket: data written to it
+ANY = "*"  # summary field: the join of all elements
+KEYS = "<keys>"  # field of a mapping: dependencies of its keys
+LENGTH = "<length>"  # field of a container: dependencies of its length
+HELD = "<callables>"  # field of a library object: callables among the arguments that it got
+SENT = "<sent>"  # field of a port, file or socket: data written to it
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
@@ -73,13 +73,16 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
         if obj.kind == "class":
             return bind_class(ctx, stored, obj)
         if obj.whole.kind == "message" and not written_here(ctx, obj, name):
-            return join(stored, pointer(obj.sub(name)))  # each message has its own
+            return join(stored, pointer(obj.sub(name)))  # every message has its own value of these
         return stored
     return ctx.ops.default(ctx, obj, name)
 
 
 def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
-    """Return the object that stores an attribute, and its name there; function attributes are stored with defaults."""
+    """Return the object that stores an attribute, and its name there.
+
+    A function's attributes are stored with its defaults.
+    """
     return (obj, f"<{name}>") if obj.kind == "closure" else userdata.seen_through(ctx, obj, name)
 
 
@@ -113,7 +116,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def _part(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return an unset field of a library object: a part of it, except for summary and pseudo-fields."""
+    """Return an unset field of a library object, which is a part of it; BOTTOM for summary and pseudo-fields."""
     if name == ANY or name.startswith("<"):
         return BOTTOM
     if name.startswith("[") and (held := content(ctx, obj)).pts:
@@ -136,14 +139,14 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
             return held_method(ctx, obj, name)
         holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
         return pointer(holder)
-    result = content(ctx, obj)  # elements, and attributes with computed names
+    result = content(ctx, obj)  # elements, and attributes whose names are computed
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))
     return result
 
 
 def replaced_attributes(ctx: Interpreter, obj: Obj) -> frozenset[Obj]:
-    """Return the mappings stored as an object's `__dict__`, which other objects can share."""
+    """Return the mappings stored as an object's `__dict__`; several objects can share one."""
     held = ctx.store.get((obj, "__dict__")) if "__dict__" in obj.fields else None
     return held.pts - {obj} if held is not None else frozenset()
 
@@ -235,7 +238,7 @@ def read_any(ctx: Interpreter, obj: Obj) -> Value:
 
 
 def read(ctx: Interpreter, base: Value, name: str) -> Value:
-    """Return a field read through a pointer, passed through the pointer's carriers."""
+    """Return a field read through a pointer, as its carriers pass it on."""
     if len(base.pts) == 1:
         (obj,) = base.pts
         return arrive(ctx, read_field(ctx, obj, name), base.deps)
@@ -263,13 +266,13 @@ def elements(ctx: Interpreter, value: Value) -> Value:
 
 
 def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:
-    """Return the keys of a mapping; they depend on data only if computed from data."""
+    """Return the keys of a mapping; constant keys depend on no data."""
     stored = ctx.store.get((mapping, KEYS))
     return UNKNOWN if stored is None else join(arrive(ctx, stored, carriers), UNKNOWN)
 
 
 def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
-    """Return a field's value, passed through the carriers of the pointer."""
+    """Return a field's value as the carriers of the pointer pass it on."""
     if not carriers:
         return value
     deps = ctx.graph.through(value.deps, carriers) | carriers

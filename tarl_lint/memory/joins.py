@@ -17,7 +17,7 @@ from tarl_lint.memory.values import (
     join,
 )
 
-JOINS = 40  # joined values that cost as much as a statement
+JOINS = 40  # as many joined values cost as much as a statement
 
 
 def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
@@ -49,7 +49,7 @@ def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) ->
     """Return the join of a key's values in several continuations."""
     value: Value | None = None
     blank: Value | None = None
-    before = False  # whether the value before the continuations is included
+    before = False  # whether `value` includes the value from before the continuations
     for delta in deltas:
         here = delta.get(key)
         if here is None or here is ABSENT:
@@ -71,7 +71,7 @@ def _join_of(ctx: Interpreter, key: tuple[Obj, str], deltas: Sequence[Delta]) ->
 
 
 def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
-    """Return whether the value of a library object's field is an unset field of a new message."""
+    """Return whether a library object's field is a field of a new message that is still unset."""
     owner = key[0]
     ctx.look(value.pts)
     return (
@@ -91,7 +91,7 @@ def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
     if owner.kind in ("frame", "module", "class", "closure"):
         return None
     if owner.kind != "message" and ctx.store.get((owner.whole, BORN)) is None:
-        return None  # the object does not exist there
+        return None  # the object does not exist in this continuation
     return heap.content(ctx, owner) if name == "*" else ctx.ops.default(ctx, owner, name)
 
 

@@ -1,7 +1,7 @@
 """Texts that stand for parameters in the names of topics, until the launch of a node gives their values.
 
-`rospy.Subscriber(rospy.get_param("~scan", "scan") + "/front", …)` has a topic that only the launch determines. In a run
-that follows such names, the call returns a text with a mark, and string operations keep the mark.
+The topic of `rospy.Subscriber(rospy.get_param("~scan", "scan") + "/front", …)` is known only at launch. In a run that
+follows such names, `get_param` returns a text with a mark, which string operations keep.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from tarl_lint.parameter_names import MARK, ParameterName
 
 
 def text_of_parameter(known: list[ParameterName] | None, name: str, default: Value) -> Consts:
-    """Return the text that stands for a parameter; None if `known` is None, or if its default is not a string."""
+    """Return the text that stands for a parameter; None if `known` is None or the default is not a string."""
     if known is None or not name.strip("~/") or default.pts:
         return None
     texts = default.names()

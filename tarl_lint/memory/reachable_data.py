@@ -18,7 +18,7 @@ from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
 
 @dataclass(slots=True, eq=False)
 class Visit:
-    """One traversal: the nodes inside visited objects, and the objects with data in each points-to set."""
+    """State of one traversal: the nodes inside visited objects, and the objects with data of each points-to set."""
 
     known: dict[Obj, Nodes] = field(default_factory=dict)
     laden: dict[frozenset[Obj], list[Obj]] = field(default_factory=dict)
@@ -64,8 +64,8 @@ def _still(ctx: Interpreter, last: Inside) -> bool:
 def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool = False) -> Nodes:
     """Return the nodes inside one object; cycles are entered once.
 
-    With `counted`, the summary field of the enclosing object has been added already, so the result is incomplete for
-    the part alone and is not cached.
+    With `counted`, the caller has added the summary field of the enclosing object, so the result lacks that field and
+    is not cached.
     """
     if obj.kind in HOLLOW or depth > MAX_NESTING:
         return NONE
@@ -107,7 +107,8 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
 def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
     """Return the parts of an object that can hold data of their own.
 
-    An empty part holds only data of the whole; a field added to it later notifies the readers of the whole.
+    An empty part is left out, since it holds only data of the whole; readers of the whole are notified when a field
+    is added to it.
     """
     if not obj.subs:
         return []
@@ -130,7 +131,7 @@ def defined(ctx: Interpreter, obj: Obj) -> str:
 
 
 def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
-    """Return whether this run has overwritten every field of a message or of its copy."""
+    """Return whether this run has overwritten every field of a message, or of a copy of it."""
     fields = FIELDS.get(kind)
     if fields is not None:
         ctx.store.reads.look(obj)
@@ -142,13 +143,16 @@ def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
 
 
 def _behind(ctx: Interpreter, value: Value, visit: Visit, depth: int) -> Nodes:
-    """Return the nodes inside the objects of a field, passed through the field's carriers."""
+    """Return the nodes inside the objects of a field, as the field's carriers pass them on."""
     inner = _inside_all(ctx, value.pts, visit, depth)
     return ctx.graph.through(inner, value.deps) if inner else inner
 
 
 def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: int) -> Nodes:
-    """Return the nodes inside objects. Many fields point to the same objects, so most were visited before."""
+    """Return the nodes inside objects.
+
+    Many fields point to the same objects, so most of these were visited before.
+    """
     laden = visit.laden.get(objects)
     if laden is None:
         laden = visit.laden[objects] = _laden(ctx, objects)
@@ -158,7 +162,7 @@ def _inside_all(ctx: Interpreter, objects: frozenset[Obj], visit: Visit, depth: 
     if None in insides:
         insides = [_deep(ctx, obj, visit, depth) for obj in laden]
     full = [inside for inside in insides if inside]
-    return full[0] if len(full) == 1 else NONE.union(*full)  # a set that is used again has its hash
+    return full[0] if len(full) == 1 else NONE.union(*full)  # reuse a set: its hash is computed already
 
 
 def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:
@@ -175,7 +179,7 @@ def _laden(ctx: Interpreter, objects: frozenset[Obj]) -> list[Obj]:
 
 
 def _node_like(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether an instance is a program rather than data: passing it on passes no data."""
+    """Return whether an instance is a program rather than data, so that passing it on passes no data."""
     info = obj.info.info if isinstance(obj.info, Obj) else None
     if not isinstance(info, ClassInfo):
         return False

@@ -18,32 +18,32 @@ Fact = tuple[Callable[[Any], object], object]  # (function, its argument)
 class Reads:
     """The reads of a running call, including those of nested calls.
 
-    Heap reads count only if the call has not stored to the key before. All other facts grow monotonically and are
-    recorded as at the first read.
+    A heap read counts only if the call has not stored to the key before. All other facts only grow, and are recorded
+    as they were at the first read.
     """
 
     keys: set[Key] = field(default_factory=set)  # keys whose value was read
     stored: set[Key] = field(
         default_factory=set
-    )  # keys for which it was asked whether the run has stored there
+    )  # keys for which the call asked whether the run has stored to them
     written: set[Key] = field(default_factory=set)  # keys stored by the call on the current path
     objects: dict[Obj, int] = field(
         default_factory=dict
     )  # object → stamp, the version of its fields, parts and data
-    unreached: set[int] = field(default_factory=set)  # nodes that no source reached
+    unreached: set[int] = field(default_factory=set)  # nodes that no source had reached
     holders: dict[Obj, int] = field(
         default_factory=dict
-    )  # object → number of keys to which a pointer to it was ever stored
+    )  # object → number of keys that ever held a pointer to it
     held: dict[int, int] = field(
         default_factory=dict
     )  # carrier → number of nodes that it has passed on inside objects
     arrivals: set[object] = field(
         default_factory=set
-    )  # results about carriers whose `consulted` are in `held`
+    )  # cached results whose `consulted` carriers are already in `held`
     facts: dict[Fact, object] = field(default_factory=dict)
     whole: bool = True  # False if a budget limit cut the call short
     waits: bool = False
-    heard: int = 0  # number of keys at which other roots' values are taken in, at the first wait
+    heard: int = 0  # number of keys at which the first wait takes in values of other roots
     own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
     admitted: dict[Key, Value] = field(default_factory=dict)  # values from other roots, taken in at waits
     left: int = 0  # number of paths left so far, whose stores no longer count as `written`
@@ -82,7 +82,7 @@ class Reads:
             self._add_rest(inner)
 
     def _add_rest(self, inner: Reads) -> None:
-        """Merge the reads that do not depend on the current path; once is enough."""
+        """Merge the reads that do not depend on the current path, which is needed only once."""
         self.unreached |= inner.unreached
         complete(self.objects, inner.objects)
         if inner.holders:
@@ -99,7 +99,7 @@ class Reads:
 
 
 def complete(mine: dict[T, U], theirs: Mapping[T, U]) -> None:
-    """Add missing entries, in time proportional to `theirs`, which is usually the smaller one."""
+    """Add missing entries. The time is proportional to the size of `theirs`, usually the smaller mapping."""
     if not mine:
         mine.update(theirs)
     elif not theirs.keys() <= mine.keys():

@@ -1,4 +1,4 @@
-"""Create abstract objects, with the newest object of an allocation site separate from the older ones.
+"""Create abstract objects; the newest object of an allocation site is kept apart from the older ones.
 
 Recency abstraction, after Balakrishnan and Reps (SAS 2006).
 """
@@ -25,7 +25,7 @@ def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
 
 
 def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
-    """Return the newest object of an allocation site; merge the former newest into the older ones."""
+    """Return the newest object of an allocation site; merge the formerly newest one into the older ones."""
     statement = frame.statement
     key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
     obj = ctx.objects.get((kind, key))
@@ -42,7 +42,7 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
 
 
 def _age(ctx: Interpreter, obj: Obj) -> None:
-    """Replace pointers to the former newest object by pointers to the summary of older ones."""
+    """Make pointers to the formerly newest object point to the summary of the older ones."""
     ctx.store.reads.holders.setdefault(obj, len(obj.holders))
     holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
     if not holders:
@@ -53,7 +53,7 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
         older.many = True
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)
-    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache, since many values share a set
+    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache by set, since many values share one
     for key in holders:
         value = ctx.store.get(key)
         if value is not None:

@@ -14,7 +14,7 @@ from tarl_lint.memory.values import ABSENT, DATA, Key, Obj, Value
 def unchanged(
     reads: Reads, found: Mapping[Key, Value | None], stored: Mapping[Key, bool], store: Store, graph: Graph
 ) -> bool:
-    """Return whether all recorded reads are unchanged, including the values `found` and the flags `stored`."""
+    """Return whether all recorded reads would give the same now, also the values `found` and the flags `stored`."""
     if not reads.unreached.isdisjoint(graph.live):
         return False
     current, waited = store.now, store.waited
@@ -43,9 +43,9 @@ def unchanged(
 def _as_it_was(obj: Obj, stamp: int, store: Store) -> bool:
     """Return whether no change of an object since a stamp is visible in the current state.
 
-    What the call itself added is visible only if another run of an entry point left it in the shared memory.
+    What the call itself added is visible only where another run left it in the shared memory.
     """
-    if stamp == NEW:  # the call allocated it, which clears all fields
+    if stamp == NEW:  # the call allocated the object, which clears all its fields
         return _empty(obj, store) and not _held(obj, store)
     return all(_unseen(obj, what, store) for what in obj.changes[stamp:])
 
@@ -54,7 +54,7 @@ def _unseen(obj: Obj, change: str | Obj | None, store: Store) -> bool:
     """Return whether a change of an object is not visible in the current state."""
     if change is None:
         return False
-    if isinstance(change, Obj):  # elements are read together, also empty ones
+    if isinstance(change, Obj):  # all elements are read at once, also empty ones
         return not change.name.startswith("[") and _empty(change, store)
     return not _data(obj, store) if change == DATA else store.peek((obj, change)) is None
 
@@ -80,6 +80,6 @@ def _data(obj: Obj, store: Store) -> bool:
 
 
 def _held(obj: Obj, store: Store, beyond: int = 0) -> bool:
-    """Return whether a key holds a pointer to an object; the first `beyond` keys that ever held one are skipped."""
+    """Return whether a key holds a pointer to an object now; skip the first `beyond` keys that ever held one."""
     values = (store.peek(key) for key in islice(obj.holders, beyond, None))
     return any(value is not None and obj in value.pts for value in values)

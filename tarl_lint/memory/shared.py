@@ -1,4 +1,4 @@
-"""The stores of all roots: what each leaves for the others, and who has read it."""
+"""The stores of all roots: what each root leaves for the others, and which roots have read it."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class Root:
     kind: str
     name: str = ""
     once: bool = False
-    function: ir.Function | None = None  # its function, if known
+    function: ir.Function | None = None  # the function that it runs, if known
     maker: Root | None = None  # the root that added it
     program: str = ""  # the file whose budget it uses
-    number: int = 0  # in order of addition
+    number: int = 0  # roots are numbered in order of addition
     heeds: set[Key] = field(default_factory=set)  # keys that it stores itself and reads after a wait
 
     def generations(self) -> int:
@@ -52,7 +52,7 @@ class Shared:
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     dirty: set[Root] = field(default_factory=set)
-    edition: int = 0  # number of changes of a class, a `from … import *` or a `__dict__`
+    edition: int = 0  # number of changes so far of classes, `from … import *` and `__dict__`
 
     def read(self, key: Key, root: Root) -> None:
         """Register a root as reader of a key."""
@@ -113,14 +113,17 @@ class Shared:
             current.inside.clear()
 
     def _appeared(self, obj: Obj, root: Root) -> None:
-        """Mark the roots dirty that have read the fields of an object, or of an enclosing one, without this field."""
+        """Mark the roots dirty that have read the set of fields of an object or of one around it: a field is new."""
         inside: Obj | None = obj
         while inside is not None:
             self.dirty |= self._others(self.watchers.get(inside), root)
             inside = inside.parent
 
     def _others(self, roots: set[Root] | None, root: Root) -> set[Root]:
-        """Return the readers to notify of a root's change; itself only if it can run concurrently with itself."""
+        """Return the readers to notify of a root's change.
+
+        The root itself is one only if it can run concurrently with itself.
+        """
         if not roots:
             return NOBODY
         return roots - {root} if root.once else roots
@@ -130,7 +133,8 @@ class Shared:
         owners = table.setdefault(key, {})
         before = owners.get(root)
         after = value if before is None else join(before, value)
-        if key[1] == BORN:  # readers of the object have read the field that holds it
+        # readers of the object have also read the field that holds it, and are notified through that field
+        if key[1] == BORN:
             owners[root] = after
             return
         if not owners:

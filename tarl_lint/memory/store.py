@@ -13,7 +13,7 @@ from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 Delta = dict[Key, Value]
 
 CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
-ADDING = frozenset(["*", "<keys>", "<length>"])  # fields with weak updates only
+ADDING = frozenset(["*", "<keys>", "<length>"])  # fields that get weak updates only
 
 
 def private(key: Key) -> bool:
@@ -24,7 +24,7 @@ def private(key: Key) -> bool:
 
 @dataclass(slots=True, eq=False)
 class Inside:
-    """A cached result of `deep`: the data inside objects, and the reads it depends on."""
+    """A cached result of `deep`: the data inside objects, and the reads that the result depends on."""
 
     nodes: frozenset[int]
     reads: Reads
@@ -65,10 +65,11 @@ class Store:
         default_factory=dict
     )  # values that other roots may store while this one waits
     hearing: dict[Key, Value] = field(default_factory=dict)
-    heeded: int = 0  # number of heeded keys when `hearing` was computed
+    heeded: int = 0  # size of the root's `heeds` when `hearing` was computed
     waited: bool = False  # whether other roots may have stored since the start
     reads: Reads = field(default_factory=Reads)  # reads of the running call
-    gather: Callable[[Key, Value], Value] = as_it_is  # maps a value stored to a field with weak updates
+    # applied to each value stored to a field that gets weak updates
+    gather: Callable[[Key, Value], Value] = as_it_is
 
     def get(self, key: Key) -> Value | None:
         """Return the current value; None if unset. Records the read."""
@@ -105,10 +106,10 @@ class Store:
         return value
 
     def former(self, key: Key) -> Value | None:
-        """Return the current value, to join it with that of a path which stores to the key.
+        """Return the current value of a key, to join it with the value from another path that stores to the key.
 
-        An object that this run makes on other paths only is another one in each run. If only joins read its keys, the
-        root does not run again because of its own stores to them.
+        If this run makes the object only on other paths, every run makes its own. Own stores to its keys then do not
+        make the root run again, as long as only joins read them.
         """
         owner = key[0]
         whole = owner.outermost or owner
@@ -122,19 +123,19 @@ class Store:
         return self.found[key]
 
     def _made_elsewhere(self, whole: Obj) -> bool:
-        """Return whether an object belongs to one run, and does not exist on the current path."""
+        """Return whether an object belongs to a single run and does not exist on the current path."""
         if isinstance(whole, Frame):
             return whole.captured
         return BORN in whole.fields and self.get((whole, BORN)) is None
 
     def isolated(self, obj: Obj) -> bool:
-        """Return whether no store of another run can be seen inside an object now."""
+        """Return whether no store of another run is visible inside an object now."""
         return not self.waited and self._new(obj.outermost or obj)
 
     def _new(self, obj: Obj) -> bool:
-        """Return whether the current path allocated an object: then no other run has stored to its unset fields.
+        """Return whether the current path allocated an object; no other run has then stored to its unset fields.
 
-        Allocation clears all fields that were ever stored, so that the others are unset everywhere.
+        Allocation clears all fields that were ever stored, so all other fields are unset everywhere.
         """
         return obj.kind in CLEARED and (obj, BORN) in self.now
 
@@ -153,7 +154,7 @@ class Store:
         return self.elsewhere[key]
 
     def found_by(self, reads: Reads) -> tuple[dict[Key, Value | None], dict[Key, bool]]:
-        """Return the current values of the keys read, and whether this run stored to the keys asked about."""
+        """Return the current values of the keys read and, for the keys in `stored`, whether this run stored to them."""
         now, found = self.now, self.found
         values: dict[Key, Value | None] = {}
         for key in reads.keys:
@@ -196,7 +197,7 @@ class Store:
             self.shared.load(owner, self.root)
 
     def absorb(self, delta: Delta) -> None:
-        """Store the changes of a closed layer, whose values were all stored before."""
+        """Store the changes of a closed layer again."""
         layer, hidden, now = self.layers[-1], self.hidden[-1], self.now
         for key, value in delta.items():
             if key not in layer:
@@ -206,7 +207,7 @@ class Store:
         self.tick += 1
 
     def _note(self, key: Key, held: frozenset[Obj]) -> bool:
-        """Record the holder of objects; return whether one of them holds data."""
+        """Record the key that holds objects; return whether one of these objects holds data."""
         owner, laden = key[0], False
         for obj in held:
             if obj.kind == "lib":
@@ -273,7 +274,7 @@ class Store:
         return merged
 
     def admit(self, key: Key, mine: Value, news: Value) -> Value:
-        """Return a value joined with that of other roots, and record their part."""
+        """Return a value joined with the value of other roots; record the part that is theirs."""
         both = join(mine, news)
         if both is not mine:
             theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())
@@ -296,9 +297,9 @@ class Store:
         return part if news or not (value.deps or value.pts) else None
 
     def heard(self) -> dict[Key, Value]:
-        """Return the values that other roots may store at the keys that this root heeds; constant during its run.
+        """Return the values that other roots may store at the keys in `heeds`; constant during this root's run.
 
-        Keys to which no other root stores are left out: heeding one more of them changes nothing.
+        Keys to which no other root stores are left out, so that adding one to `heeds` does not change the result.
         """
         if self.heeded != len(self.root.heeds):
             self.heeded = len(self.root.heeds)

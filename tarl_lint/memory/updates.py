@@ -7,7 +7,7 @@ from tarl_lint.memory import heap
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
 from tarl_lint.memory.values import Obj, Value, in_order, join
 
-MAX_KEYS = 8  # candidate keys of a mapping for one store
+MAX_KEYS = 8  # keys of a mapping that one store may mean; if there are more, it may be any element
 
 
 def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
@@ -71,7 +71,7 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
-    """Store into one of several elements: the known keys of mappings, else any element."""
+    """Store into one of several elements: an element under a known key of a mapping, or else any element."""
     constants = index.keys() or ()
     known = sorted(constants, key=repr) if len(constants) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)

@@ -1,4 +1,4 @@
-"""Userdata of smach state machines, shared by their states under remapped names."""
+"""Userdata of smach state machines, which the states share under remapped names."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import Obj, Value, pointer
 
-VIEW = "view"  # kind of a state's userdata: the shared fields under remapped names
+VIEW = "view"  # kind of the object for a state's userdata: the shared fields under remapped names
 MACHINE_FIELD = "userdata"  # attribute of a state machine that holds the shared fields
 
 
 def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
-    """Return the userdata of a state, or of the machine itself without one."""
+    """Return the userdata of a state; without a state, that of the machine itself."""
     if state is None:
         return pointer(recency.intern(ctx, "record", MACHINE_FIELD, MACHINE_FIELD))
     view = recency.intern(ctx, VIEW, (MACHINE_FIELD, state))

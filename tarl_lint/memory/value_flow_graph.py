@@ -1,7 +1,7 @@
 """The value-flow graph: nodes are values made by statements, edges are their dependencies.
 
-Terms: content are nodes inside an object; a carrier is a node that passed a pointer to the object on; a choice is the
-set of branches that selected a value; a node is live if a source reaches it.
+Terms: content is the set of nodes inside an object. A carrier is a node that passed on a pointer to the object. A
+choice is the set of branches that selected a value. A node is live if a source reaches it.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from tarl_lint.memory.reads import Reads, complete
 from tarl_lint.memory.values import Branches, Nodes
 
 MAX_NODES = 12_000  # nodes of a program; beyond that, content arrives without carriers
-MAX_EDGES = 200_000  # data edges of a program; then only FEW of a value's dependencies get edges
+MAX_EDGES = 200_000  # data edges of a program; beyond that, only FEW of a value's dependencies get edges
 FEW = 8
 MANY = 16  # separate nodes in a field with weak updates; more are merged
-MANY_CARRIERS = 64  # the same for pointers to objects with content
+MANY_CARRIERS = 64  # the same limit for pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
-CARRIED = 5  # carriers, or items passed on by them, that cost as much as a graph operation
+CARRIED = 5  # as many carriers, or items passed on by them, cost as much as a graph operation
 MAX_CARRIED = 500  # content × carriers; beyond that, content arrives without carriers
 
 
 @dataclass(slots=True)
 class Place:
-    """The place of a node: a statement in a frame; no statement for an arriving message."""
+    """The place of a node: a statement in a frame, or only a frame for an arriving message."""
 
     frame: Frame
     statement: ir.Stmt | None
@@ -38,19 +38,22 @@ class Place:
 
 @dataclass(slots=True, eq=False)
 class Arrival:
-    """The nodes by which items arrive; `consulted` maps the carriers asked to how many nodes they had passed on."""
+    """The nodes by which items arrive.
+
+    `consulted` maps each carrier asked to the number of nodes it had passed on.
+    """
 
     nodes: Nodes
     consulted: dict[int, int]
-    grown: int  # value of `Graph.grown` at which this was last known to hold
+    grown: int  # value of `Graph.grown` when this was last found valid
 
 
 @dataclass(slots=True, eq=False)
 class Graph:
     """The graph. Edges lead backwards, from a node to its dependencies.
 
-    `held[c]` holds the nodes that were inside an object when carrier `c` passed it on; so a value read from it later
-    depends on `c`.
+    `held[c]` has the nodes that were inside an object when carrier `c` passed it on. A value that is read from the
+    object later, and comes from one of these nodes, depends on `c`.
     """
 
     places: list[Place] = field(default_factory=list)
@@ -60,8 +63,9 @@ class Graph:
     gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)  # node → value, choice
     counts: dict[int, set[int]] = field(
         default_factory=dict
-    )  # node of an element count → dependencies of the elements
-    stands_for: dict[int, int] = field(default_factory=dict)  # node without choice → the original node
+    )  # node of a container's length → dependencies of the elements
+    # copy of a node without its choice → the original node
+    stands_for: dict[int, int] = field(default_factory=dict)
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → its constant
@@ -76,8 +80,8 @@ class Graph:
     )  # (carry node, item), in order of creation
     edges: int = 0  # data edges of the current program
     made: int = 0  # nodes of the current program
-    grown: int = 0  # number of growths of any `held` set
-    live: set[int] = field(default_factory=set)  # nodes reached by sources, by data or control
+    grown: int = 0  # how often a `held` set has grown
+    live: set[int] = field(default_factory=set)  # nodes that a source reaches by data or control
     onward: dict[int, list[int]] = field(default_factory=dict)  # node that is not live yet → its successors
     asked: int = 0  # graph operations, charged as work
     asking: set[tuple[int, int]] = field(
@@ -112,7 +116,7 @@ class Graph:
             if dep == node:
                 self.depend(
                     node, [branch[0] for branch in mine]
-                )  # a value that depends on itself depends on the number of iterations
+                )  # a value that depends on itself also depends on the number of iterations
                 continue
             if dep in edges:
                 continue
@@ -135,7 +139,7 @@ class Graph:
         return node
 
     def meets(self, key: Hashable, deps: Nodes, *, carriers: bool) -> bool:
-        """Return whether a field has too many values for separate nodes, or is merged already.
+        """Return whether a field has too many values for separate nodes, or has a merged node already.
 
         With `carriers`, the values are pointers, for which the limit is MANY_CARRIERS.
         """
@@ -151,7 +155,7 @@ class Graph:
         return frozenset([node])
 
     def choice(self, deps: Iterable[int], node: int) -> None:
-        """Make `node` depend on the choices that selected `deps`, but not on their data."""
+        """Make `node` depend on the choices that selected `deps`, but not on the data of `deps`."""
         mine = self.branches[node]
         for dep in deps:
             if not self.branches[dep] <= mine:
@@ -182,7 +186,7 @@ class Graph:
                 pending += self.onward.pop(current, ())
 
     def _lead(self, former: int, node: int) -> None:
-        """Make a node live as soon as its dependency `former` is."""
+        """Make a node live as soon as its dependency `former` is live."""
         if former not in self.live:
             self.onward.setdefault(former, []).append(node)
         elif node not in self.live:
@@ -208,7 +212,7 @@ class Graph:
         return known.nodes
 
     def arriving_through(self, item: int, carriers: Set[int]) -> Set[int]:
-        """Return the same as `through` for one item, without caching it or recording what it depends on."""
+        """Return the result of `through` for one item, without caching it or recording its dependencies."""
         if len(carriers) > MAX_CARRIED or self.large():
             return {item}
         held = self.held
@@ -222,7 +226,7 @@ class Graph:
         return found or {item}
 
     def _consulting(self, find: Callable[[], Nodes]) -> Arrival:
-        """Return the result of a function, with the carriers that it consulted."""
+        """Call a function; return its result with the carriers that it consulted."""
         reads = self.reads
         outer = reads.held, reads.arrivals
         reads.held, reads.arrivals = {}, set()
@@ -240,7 +244,7 @@ class Graph:
         return True
 
     def as_passed(self, sizes: Mapping[int, int]) -> bool:
-        """Return whether carriers have passed on as many nodes as is noted for each."""
+        """Return whether each carrier has passed on as many nodes as `sizes` says."""
         held = self.held
         for carrier, size in sizes.items():
             passed = held.get(carrier)
@@ -256,7 +260,7 @@ class Graph:
             complete(reads.held, known.consulted)
 
     def _through(self, content: Nodes, carriers: Nodes) -> Nodes:
-        """Return content as passed on through carriers, and make the carry nodes that this takes."""
+        """Return content as passed on through carriers; create the necessary carry nodes."""
         self.asked += len(carriers) // CARRIED
         self._consult(carriers)
         found: set[int] = set()
@@ -282,7 +286,7 @@ class Graph:
         return self.made > MAX_NODES
 
     def _consult(self, carriers: Nodes) -> None:
-        """Record a dependency on the numbers of nodes that carriers, and their own carriers, have passed on."""
+        """Record a dependency on the number of nodes passed on by each carrier, and by the carriers of carriers."""
         noted, held, carried = self.reads.held, self.held, self.carried
         for carrier in carriers:
             while carrier not in noted:
@@ -300,7 +304,7 @@ class Graph:
         return not self.control[node]
 
     def _first(self, carrier: int) -> int:
-        """Return the first holder in a chain of carriers: content that it did not hold did not come this way."""
+        """Return the first carrier of a chain. Content that it did not hold has not come along this chain."""
         while carrier in self.carried:
             carrier = self.carried[carrier][1]
         return carrier
@@ -317,7 +321,7 @@ class Graph:
         return known.nodes
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
-        """Return an item as passed on by one carrier; nothing if it was not inside then."""
+        """Return an item as passed on by one carrier; empty if it was not inside the object at that time."""
         parts = self.carried.get(carrier)
         if parts is None:
             return {self._carry(carrier, item)} if item in self.held.get(carrier, ()) else set()
@@ -332,7 +336,7 @@ class Graph:
     def _carry(self, carrier: int, item: int) -> int:
         """Return the carry node of `item`, passed on inside an object by `carrier`.
 
-        A carried item keeps its origin, so there are at most as many carry nodes as pairs of carrier and origin.
+        A carried item keeps its origin, so there is at most one carry node for a pair of carrier and origin.
         """
         known = self.passed_on.get((carrier, item))
         if known is not None:

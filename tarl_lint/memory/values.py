@@ -15,13 +15,14 @@ Consts = frozenset[object] | None  # None: unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
-NO_CONSTANTS: frozenset[object] = frozenset()  # of a value that is certainly an object: not None either
+# constants of a value that is certainly an object, so not None either
+NO_CONSTANTS: frozenset[object] = frozenset()
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # numbers of objects, in order of creation
 NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
-MAX_TEXTS = 24  # string constants of a value; high, for tables of topic names
+MAX_TEXTS = 24  # string constants of a value; the limit is high for the sake of tables of topic names
 MAX_DEPTH = 6  # nesting depth of embedded objects
 MAX_ELEMENTS = 2  # nesting of separate elements; more would give exponentially many objects
 MAX_CELLS = 16  # separate nested elements of a library object, such as a matrix
@@ -64,15 +65,15 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # every field ever stored, in order, with the objects registered as held there (`holders`, `inside`)
+        # every field ever stored, in order, with the objects whose `holders` or `inside` name it
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
-        self.holders: dict[tuple[Obj, str], None] = {}  # keys to which pointers to it were stored
+        self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to it
         self.info: object = None
         self.defined = ""  # name of a message's definition
         self.laden: bool = (
             parent.laden if parent is not None else kind in MESSAGES
-        )  # whether it may hold data, at any depth
+        )  # whether it may contain data, at any depth
         self.cells = 0  # number of nested elements so far
         self.stamp = 0  # version: length of `changes`
         self.changes: list[
@@ -81,7 +82,7 @@ class Obj:
         self.inside: dict[Obj, None] = {}  # objects that hold a pointer to it, stored while it was not laden
 
     def sub(self, name: str) -> Obj:
-        """Return the object embedded under a field; deep nesting folds into one."""
+        """Return the object embedded under a field; beyond MAX_DEPTH, the object itself stands for its parts."""
         if self.depth >= MAX_DEPTH or (self.elements >= MAX_ELEMENTS and name.startswith("[")):
             return self
         found = self.subs.get(name)
@@ -118,7 +119,7 @@ class Obj:
         self.changes.append(added)
 
     def release(self) -> None:
-        """Drop references, to break cycles."""
+        """Drop references, to break reference cycles."""
         for sub in self.subs.values():
             if sub is not self:
                 sub.release()
@@ -182,7 +183,7 @@ class Value:
         return self.constant()[0]
 
     def keys(self) -> Consts:
-        """Return its constants; None if it may be anything else, also a text that the launch determines."""
+        """Return its constants; None if it may be anything else, such as a text that the launch determines."""
         return None if self.consts and any(type(c) is Symbolic for c in self.consts) else self.consts
 
     def consts_in(self, other: Value) -> bool:
@@ -194,7 +195,7 @@ class Value:
         return self.names() if self.keys() is not None else ()
 
     def names(self) -> tuple[str, ...]:
-        """Return its possible strings, sorted, also those that the launch of the node determines."""
+        """Return its possible strings, sorted, including those that the launch of the node determines."""
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
         return tuple(sorted(str(c) for c in self.consts))
@@ -267,8 +268,8 @@ class ClassInfo:
     external: list[str] = field(default_factory=list)
     statement: ir.Class | None = None
     module: str = ""
-    fields: tuple[str, ...] = ()  # names annotated in its body, the fields of a dataclass
-    named: bool = False  # a named tuple, whose fields are also elements
+    fields: tuple[str, ...] = ()  # names annotated in the body; the fields, if the class is a dataclass
+    named: bool = False  # whether it is a named tuple, whose fields are also elements
 
     @property
     def opaque(self) -> bool:

@@ -1,4 +1,4 @@
-"""Callables passed to libraries: their results can be part of the library's results, now or later."""
+"""Callables passed to libraries: what they return can be part of what the library returns, now or later."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ from tarl_lint.models.smach import LATER
 from tarl_lint.trees import walk
 
 MAX_INSIDE: Final = (
-    3  # nesting of mappings and sequences searched for callables, such as constraints of solvers
+    # depth to which nested mappings and sequences, such as the constraints of a solver, are searched for callables
+    3
 )
-KEPT_APART: Final = 500  # callables of one call; calls by libraries use a separate range of slots
+KEPT_APART: Final = 500  # callables of one call; calls made by libraries have a range of slots of their own
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Let a library call the functions among its arguments at any time, with the arguments after them."""
+    """Let a library call the functions among its arguments at any time, with the arguments that follow them."""
     plain, named = arguments
     for number, value in enumerate(plain):
         for target in value.objects:
@@ -97,9 +98,9 @@ def _behind_callable(ctx: Interpreter, obj: Obj) -> tuple[ir.Function | None, in
 def returned(
     ctx: Interpreter, targets: Sequence[Obj], arguments: Arguments, base: Value, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data of the values that callables return if a library calls them.
+    """Return the data of the values that callables return when a library calls them.
 
-    The library's arguments are unknown: anything computed from its own arguments.
+    The library may pass them anything that it computes from its own arguments.
     """
     found = NONE
     opaque = _opaque(ctx, arguments, base, frozenset(targets)) if targets else BOTTOM
@@ -114,9 +115,9 @@ def returned(
 
 
 def _opaque(ctx: Interpreter, arguments: Arguments, base: Value, called: Set[Obj] = frozenset()) -> Value:
-    """Return a value that a library may pass: data of all its arguments, and the messages and objects among them.
+    """Return a value that a library may pass: data of all its arguments, and any message or object among them.
 
-    An instance that the library calls is not among them: it is what is called, not an argument of the call.
+    An instance that the library calls is left out, since it is the callee and not an argument.
     """
     plain, named = arguments
     objects: set[Obj] = set()

@@ -45,7 +45,7 @@ APPENDED = "<appended>"  # field of a list: its length before the first subscrib
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
-)  # these keep the separate elements of their argument
+)  # functions that keep the separate elements of their argument
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
@@ -99,7 +99,7 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
-    """Return the index that a list gives what each turn of an unrolled loop appends; None if it is not known."""
+    """Return the index in a list of what each iteration of an unrolled loop appends; None if it is not known."""
     if len(values) != 1 or frame.statement not in frame.steps:
         return None
     known = sizes.unpacked(ctx, base)
@@ -114,11 +114,11 @@ def _subscribers(values: list[Value]) -> bool:
 def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: Frame, call: ir.Call) -> None:
     """Append a subscriber at its own index, since a synchroniser passes one message for each, in this order.
 
-    An earlier `append` may have been conditional: its index and later ones may be that of this subscriber, too.
+    If an earlier `append` was conditional, this subscriber may also have the index of that one, or a later index.
     """
     known = sizes.unpacked(ctx, base)
     if known is None or len(known) >= sizes.MAX_KNOWN or any(v.pts & subscriber.pts for v in known):
-        insert_elements(ctx, base, [subscriber], frame, call)  # its index is unknown, such as in a loop
+        insert_elements(ctx, base, [subscriber], frame, call)  # its index is unknown, for example in a loop
         return
     (obj,) = base.pts
     news = through_statement(ctx, subscriber, frame, call)
@@ -132,7 +132,7 @@ def _append_subscriber(ctx: Interpreter, base: Value, subscriber: Value, frame: 
 
 
 def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
-    """Set or clear an event; queries of it depend on the conditions of that."""
+    """Set or clear an event; later queries of the event depend on the conditions of this call."""
     events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
     updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name == "set"), frame, call))
 
@@ -145,7 +145,7 @@ def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, c
 
 
 def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
-    """Return the dependencies of a read from a port, file or socket, without the data written to it."""
+    """Return the dependencies of a read from a port, file or socket; the data written to it is not among them."""
     deps = base.deps | call_contexts.all_used(ctx, arguments)
     for obj in base.objects:
         deps |= heap.content(ctx, obj).deps
@@ -181,9 +181,9 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
 
 
 def fill_empty(ctx: Interpreter, arguments: Arguments, deps: Nodes, frame: Frame, call: ir.Call) -> None:
-    """Let a library store data into empty lists passed to a call whose result is not used.
+    """Let a library fill empty lists that are passed to a call whose result is not used.
 
-    The only purpose of such a list is to be filled.
+    Such a list has no other purpose.
     """
     if not deps:
         return
@@ -331,7 +331,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Return whether reads of a library object return other data than was written to it."""
+    """Return whether reads of a library object return other data than writes to it stored."""
     return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
 
 

@@ -1,7 +1,7 @@
-"""Drawings of matplotlib: what is drawn into any part of a figure is in the figure, and in the image made of it.
+"""Drawings of matplotlib: whatever is drawn into a part of a figure is also in the figure and in its image.
 
 Axes, lines and canvases refer to their figure, and the functions of `pyplot` to the current one. All of them are
-therefore one object, also where a program has several figures.
+therefore one object, even where a program has several figures.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tarl_lint.memory.values import Obj, Value, pointer
 from tarl_lint.models import containers
 
 PYPLOT: Final = frozenset(["matplotlib.pyplot", "matplotlib.pylab", "pylab"])
-FIGURE: Final = ("Figure", "FigureCanvas")  # beginnings of the names of classes
+FIGURE: Final = ("Figure", "FigureCanvas")  # prefixes of class names
 PLAIN: Final = frozenset(["get_cmap", "imread", "rc"])  # functions of pyplot that do not draw
 SAVING: Final = frozenset(["savefig", "print_png", "print_figure", "print_raw", "print_rgba", "print_jpg"])
 KEY: Final = ("drawing",)
@@ -62,7 +62,7 @@ def _changed(
             news = containers.through_statement(ctx, Value(inside), frame, call)
             containers.change(ctx, value, news, [expr], frame)
         return base
-    if arguments[0] or arguments[1]:  # constants too: whether they are drawn can depend on data
+    if arguments[0] or arguments[1]:  # also constants: whether they are drawn can depend on data
         learnt = Value(call_contexts.all_used(ctx, arguments))
         containers.insert_elements(ctx, pointer(obj), [learnt], frame, call)
     return base

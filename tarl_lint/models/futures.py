@@ -16,7 +16,7 @@ from tarl_lint.models import containers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
 
-RESULT: Final = "<result>"  # field of a future with its result
+RESULT: Final = "<result>"  # field of a future that holds its result
 
 
 def _set_result(ctx: Interpreter, it: Invocation) -> Value:
@@ -39,7 +39,7 @@ def _result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _is_done(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `done()`: it depends on the conditions of setting the result, not on the result."""
+    """Return the value of `done()`, which depends on the conditions of setting the result, not on the result."""
     node = ctx.node(it.frame, ("done", it.call.slot), "call")
     deps = it.base.deps
     for obj in it.base.objects:
@@ -69,7 +69,7 @@ def awaited_result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _submit(ctx: Interpreter, it: Invocation) -> Value:
-    """Call a function submitted to an executor; its result is that of the future."""
+    """Call a function submitted to an executor; the future gets its result."""
     plain, named = it.arguments
     skipped = 1 if it.name == "run_in_executor" else 0
     given = plain[skipped:]

@@ -113,7 +113,7 @@ def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-    """Return the node that decides which elements a new container gets; none if no data decides."""
+    """Return the node that decides which elements a new container gets; empty if no data decides it."""
     if not decides:
         return NONE
     node = ctx.node(frame, ("filter", slot), "condition")
@@ -122,7 +122,7 @@ def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Node
 
 
 def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
-    """Return elements chosen or ordered by `key=`: the results of the key function decide their places."""
+    """Return elements chosen or ordered by `key=`; the results of the key function decide which and where."""
     key = it.arguments[1].get("key")
     if key is None or key.consts or not elements.deps | elements.pts | key.pts:
         return elements
@@ -131,7 +131,7 @@ def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; the presence of an object is not its data."""
+    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object is there is not its data."""
     if not it.arguments[0]:
         return UNKNOWN
     value = it.arguments[0][0]

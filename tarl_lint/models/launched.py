@@ -1,4 +1,4 @@
-"""What a launch tells of one node: its parameters, also as lists and mappings, and its names."""
+"""What a launch file determines about one node: its names and parameters, also lists and mappings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
 from tarl_lint.parameter_names import DEFAULT, ELSEWHERE
 
-GIVEN: Final = "given by the launch"  # name of a mapping whose entries are all known
+GIVEN: Final = "given by the launch"  # name of a mapping object whose entries are all known
 MAX_TEXT: Final = 10_000
 PARSERS: Final = frozenset(
     ["ast.literal_eval", "builtins.eval", "json.loads", "yaml.load", "yaml.safe_load", "yaml.full_load"]
@@ -24,7 +24,7 @@ _NOTHING: Final = object()
 
 
 def value_of(ctx: Interpreter, name: str) -> object:
-    """Return the value that the launch gives a parameter, DEFAULT for none, ELSEWHERE if this is not known."""
+    """Return the value that the launch gives a parameter; DEFAULT if it gives none, ELSEWHERE if that is unknown."""
     if name in ctx.fixed:
         given = ctx.fixed[name]
         return list(given) if isinstance(given, tuple) else given
@@ -32,7 +32,7 @@ def value_of(ctx: Interpreter, name: str) -> object:
 
 
 def made(ctx: Interpreter, value: Any, frame: Frame, slot: Hashable) -> Value:
-    """Return a value of the launch as an abstract value: a constant, or a sequence or mapping of such."""
+    """Return a value of the launch as an abstract value: a constant, or a sequence or mapping of constants."""
     if value is ELSEWHERE:
         return UNKNOWN
     if isinstance(value, list):
@@ -50,7 +50,7 @@ def made(ctx: Interpreter, value: Any, frame: Frame, slot: Hashable) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Return whether a parameter is set, or the data in a known text; None for other calls."""
+    """Model a call that asks whether a parameter is set, or that parses a known text; None for other calls."""
     given = it.arguments[0]
     if ctx.launched is None or not given:
         return None
@@ -67,7 +67,7 @@ def asked(ctx: Interpreter, it: Invocation) -> Value | None:
 
 
 def _parsed(text: str) -> object:
-    """Return the lists, mappings, texts and numbers that a text states; nothing is executed."""
+    """Parse a text as lists, mappings, texts and numbers; nothing is executed."""
     for read in (ast.literal_eval, json.loads) if len(text) <= MAX_TEXT else ():
         try:
             found = read(text)
@@ -88,7 +88,7 @@ def entries(ctx: Interpreter, base: Value) -> list[tuple[Value, Value]] | None:
 
 
 def entry(ctx: Interpreter, base: Value, key: Value) -> Value | None:
-    """Return the entry of a mapping that the launch gives; None without one, or for other objects."""
+    """Return the entry of a mapping that the launch gives; None if it has no such entry, or for other objects."""
     known, constant = key.constant()
     obj = next(iter(base.pts)) if len(base.pts) == 1 else None
     if not known or obj is None or obj.kind != "mapping" or obj.name != GIVEN:

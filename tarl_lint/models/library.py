@@ -1,4 +1,4 @@
-"""Calls of libraries: arguments pass to results unless there is a better model."""
+"""Calls of libraries: the result depends on all arguments unless there is a better model."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def call_library(
         return ctx.ops.send(
             ctx, Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified)
         )
-    if ctx.launching:  # for a launch file
+    if ctx.launching:  # only in a run for a launch file
         client = ctx.ops.launched_call(ctx, None, Invocation(qualified, BOTTOM, arguments, frame, call))
         if client is not None:
             return client
@@ -87,7 +87,7 @@ def call_library(
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
-    """Apply the settings to a call of a function: a source subscribes if it gets a callback."""
+    """Apply the settings to a call of a function; a call of a source with a callback subscribes."""
     if ctx.config.wrappers and (fact := facts(ctx.config.wrappers).get(qualified)):
         return fact
     if qualified not in ctx.config.sources:
@@ -96,7 +96,7 @@ def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
 
 
 def named_by_settings(ctx: Interpreter, target: Obj) -> str:
-    """Return the qualified name of an analysed function or method if the settings mention it, else ""."""
+    """Return the qualified name of an analysed function or method that the settings mention; "" for others."""
     if not ctx.config.named:
         return ""
     closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
@@ -108,7 +108,7 @@ def named_by_settings(ctx: Interpreter, target: Obj) -> str:
 
 
 def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Pass all arguments to the result; store into the argument that the catalog lists as written."""
+    """Make the result depend on all arguments; store into the argument that the catalog lists as written."""
     name = qualified.rpartition(".")[2]
     if (raises := fails(name)) is not None:
         ctx.ops.may_fail(ctx, call_contexts.all_used(ctx, arguments), raises, frame)
@@ -138,12 +138,16 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         senders.note(ctx, qualified, made, arguments, frame, call)
     if qualified.startswith(containers.NAMED) or (ctx.config.named and name[:1].isupper()):
         for obj in made.objects:
-            obj.name = qualified  # for settings on its methods, and for objects that return what was written
+            # its class, for settings on its methods and for objects that return what was written to them
+            obj.name = qualified
     return made
 
 
 def _has_fields(qualified: str) -> bool:
-    """Return whether keyword arguments become fields: of classes, except for processes, whose `stdout` is a stream."""
+    """Return whether keyword arguments become fields of the new object.
+
+    Those of a process do not: its `stdout` is a stream.
+    """
     return qualified.rpartition(".")[2][:1].isupper() and qualified not in containers.PROCESSES
 
 
@@ -183,7 +187,7 @@ def call_method(
     call: ir.Call,
 ) -> Value:
     """Call a method of an object whose class is not analysed."""
-    if ctx.launching and target is not None:  # for a launch file
+    if ctx.launching and target is not None:  # only in a run for a launch file
         client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
         if client is not None:
             return client
@@ -275,7 +279,7 @@ def _unknown_method(
 def _given(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data of the results of callables that a library object holds, since its methods may call them."""
+    """Return the data of the results of the callables that a library object holds: its methods may call them."""
     new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
     if keeps_callables(name):
         callables.hold(ctx, base.pts, new)
@@ -293,7 +297,7 @@ def _built_by_base(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
 
 
 def changeable(obj: Obj) -> bool:
-    """Return whether an object's library methods may change it; those of a node are ROS's and do not."""
+    """Return whether an object's library methods may change it. The library methods of a node do not."""
     return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))
 
 

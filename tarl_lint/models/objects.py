@@ -38,7 +38,7 @@ def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one si
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
-    """Return the result of a query about a type, which is not data either."""
+    """Return the result of a query about a type; a type is not data."""
     return UNKNOWN
 
 
@@ -60,7 +60,7 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the value of an unset field, also through `super()`, and for parameters."""
+    """Return the value of an unset field, also of `super()` and of parameters."""
     if obj.kind == "super" and isinstance(obj.info, tuple):
         owner, this = obj.info
         cls = this.info if this.kind == "instance" else this
@@ -72,7 +72,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
                 return heap.bind(ctx, value, this, base)
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
-        return pointer(obj)  # what a process takes in through one may come out of another
+        return pointer(obj)  # data that enters a process through one stream may leave it through another
     if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
         return command_line.arguments(ctx)
     if obj.kind == "lib" and name == MACHINE_FIELD:

@@ -1,7 +1,7 @@
-"""Options of the command line: what argparse and optparse return for the arguments that a launch gives a node.
+"""Options of the command line: the results of argparse and optparse for the arguments of a launched node.
 
-The declared options are collected while the program is analysed, and the standard library parses the known arguments
-by them. Nothing of the program is executed; of `type=`, only `int`, `float` and `str` are known.
+The analysis of the program collects the declared options; the standard library then parses the known arguments.
+Nothing of the program is executed, so `type=` can only be `int`, `float` or `str`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Declared = tuple[tuple[str, ...], tuple[tuple[str, Any], ...]]
 
 
 class _UnfitError(Exception):
-    """The arguments do not fit the options: the program would exit."""
+    """Raised if the arguments do not fit the options; the program itself would exit."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -80,7 +80,7 @@ def _declared(ctx: Interpreter, it: Invocation) -> Declared | None:
 
 
 def _parsed(ctx: Interpreter, parser: Obj, it: Invocation) -> Value | None:
-    """Return the namespace of the parsed arguments, in a pair with the rest where the call returns one."""
+    """Return the namespace of the parsed arguments; in a pair with the remaining ones if the call returns a pair."""
     ctx.store.reads.look(parser)
     texts = _texts(ctx, it)
     declared = list(parser.info.values()) if isinstance(parser.info, dict) else []
@@ -109,7 +109,7 @@ def _as_the_library(declared: list[Declared], texts: list[str]) -> tuple[argpars
 
 
 def _texts(ctx: Interpreter, it: Invocation) -> list[str] | None:
-    """Return the arguments that are parsed: those passed, or those of the launched node without those for ROS."""
+    """Return the arguments to parse: those passed to the call, or those of the launched node without ROS's own."""
     if not ctx.command_line:
         return None
     given = it.arguments[0][:1] or [it.arguments[1][name] for name in ("args",) if name in it.arguments[1]]

@@ -10,7 +10,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Value, join
 
-CONNECTED = "<connected>"  # field of a signal with the connected functions
+CONNECTED = "<connected>"  # field of a signal that holds the connected functions
 
 
 def signal(

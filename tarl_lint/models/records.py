@@ -29,7 +29,7 @@ from tarl_lint.memory.values import (
 from tarl_lint.models import sizes
 from tarl_lint.models.ros import senders
 
-MAX_COPIED: Final = 3  # nesting that a deep copy follows
+MAX_COPIED: Final = 3  # depth of nested objects that a deep copy copies
 INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
 MADE_BY: Final = {
     **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
@@ -37,7 +37,7 @@ MADE_BY: Final = {
 }
 PLAIN: Final = frozenset(
     ["abc.ABC", "typing.Generic", "typing.Protocol"]
-)  # bases without a constructor of their own
+)  # base classes without a constructor of their own
 
 
 # --- fields -------------------------------------------------------------------------------------------
@@ -96,7 +96,7 @@ def _preset(
 
 
 def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None:
-    """Return the options of a dataclass field's `field(...)`; None if it was not called."""
+    """Return the options of a dataclass field's `field(...)`; None if the field has no such call."""
     preset = ctx.store.get((owner, name))
     spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
     return spec.info if spec is not None and isinstance(spec.info, dict) else None
@@ -189,7 +189,7 @@ def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Val
 
 
 def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
-    """Return a new object of the common kind of all copied ones."""
+    """Return a new object of the kind that all copied objects have in common."""
     classes = {o.info for o in value.pts if o.kind == "instance"}
     if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
         obj = recency.allocate(ctx, "instance", frame, slot)

@@ -18,7 +18,7 @@ OURS = frozenset(["instance", "class", "closure", "module"])
 
 
 def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an attribute by a name that is known, or whose beginning is known."""
+    """Return an attribute whose name is known, or at least how the name begins."""
     plain = it.arguments[0]
     names = plain[1].texts() if len(plain) > 1 else ()
     if not names and len(it.call.arguments) > 1:
@@ -27,7 +27,7 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Return the methods that `getattr(self, "do_" + verb)` may mean; None if unknown."""
+    """Return the methods that `getattr(self, "do_" + verb)` may return; None if they are unknown."""
     start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
     found = BOTTOM
     for obj in holder.objects if len(start) > 1 else ():
@@ -83,7 +83,7 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def evaluated(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `eval`: data of the local variables that the expression may name."""
+    """Return the value of `eval`: the data of the local variables that the expression may name."""
     deps = call_contexts.all_used(ctx, it.arguments)
     if len(it.arguments[0]) == 1:
         named = _names(it.arguments[0][0].texts())

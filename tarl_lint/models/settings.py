@@ -1,6 +1,6 @@
-"""Numbers that are fixed at the start of a node: from a file or the environment, or computed from constants.
+"""Numbers that are fixed when a node starts: read from a file or the environment, or computed from constants.
 
-Flows do not need them. A thorough run records them, so that a repair can change them like any constant.
+Flows do not need them. A thorough run records them, so that a repair can change them as it changes constants.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ ARRAYS: Final = frozenset(["numpy.array", "numpy.asarray"])
 def noted(
     ctx: Interpreter, qualified: str, found: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
-    """Return a library function's result; if it is a fixed number, with a node for it."""
+    """Return a library function's result; a fixed number gets a node."""
     if not ctx.thorough:
         return found
     name = qualified.removeprefix("builtins.")
@@ -52,7 +52,7 @@ def noted(
 
 
 def loaded(ctx: Interpreter, found: Value, frame: Frame, call: ir.Call) -> Value:
-    """Return a loaded value: an unknown constant, or an object of unknown constants."""
+    """Return a loaded value, which is an unknown constant or an object made of unknown constants."""
     ctx.unchanged.add(call)
     for obj in found.objects:
         ctx.settings[obj] = (frame.program.path, call.pos)

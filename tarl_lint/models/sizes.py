@@ -25,7 +25,7 @@ COMBINING = frozenset(["+", "*", "|", "-", "&"])
 
 
 def combined(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value | None:
-    """Return the new container that an operator makes of containers; None if no operand is one."""
+    """Return the new container that an operator makes of containers; None if no operand is a container."""
     kinds = [{o.kind for o in v.pts} for v in values]
     if expr.operator == "*" and {"sequence"} in kinds:
         return repeated(ctx, expr, values, frame)
@@ -69,7 +69,7 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
 def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
     """Return the container after `a += b` or `a |= b`.
 
-    Elements and length each pass through one node of the statement, shared by all containers.
+    One node of the statement passes on all elements, and one the length; all containers share them.
     """
     first, second = values
     tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")
@@ -107,7 +107,7 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
 
 
 def _between(ctx: Interpreter, base: Value, index: ir.Slice, frame: Frame) -> list[Value] | None:
-    """Return the elements that a slice selects from constants of a known command line; None if they are not known."""
+    """Return the elements that a slice selects from a known command line; None if these elements are not known."""
     elements = constants(ctx, base) if ctx.exact and index.bounds else None
     found = [part and ctx.ops.evaluate(ctx, part, frame).constant()[1] for part in index.bounds]
     ends = [one if isinstance(one, int) else None for one in found]
@@ -117,7 +117,7 @@ def _between(ctx: Interpreter, base: Value, index: ir.Slice, frame: Frame) -> li
 
 
 def constants(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the elements of a sequence if each is one known constant, else None."""
+    """Return the elements of a sequence if each of them is one known constant, else None."""
     elements = unpacked(ctx, value)
     if elements is None or not all(one.fixed() and one != ABSENT and not one.deps for one in elements):
         return None
@@ -165,7 +165,7 @@ def empty(ctx: Interpreter, obj: Obj) -> None:
 
 
 def length(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the nodes on which a value's length depends; for analysed containers, without their elements."""
+    """Return the nodes on which a value's length depends; the elements of analysed containers are not among them."""
     deps = value.deps
     for obj in value.objects:
         if sized(ctx, obj):
@@ -182,7 +182,7 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
 
 
 def sized(ctx: Interpreter, obj: Obj) -> bool:
-    """Return whether an object's length is independent of its elements' data: containers, and arrays in messages."""
+    """Return whether an object is a container or array, whose length is independent of its elements' data."""
     if obj.kind in ("sequence", "mapping"):
         return True
     ctx.store.reads.look(obj)
@@ -190,7 +190,7 @@ def sized(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
-    """Return the nodes that added elements to containers, without later stores into the elements."""
+    """Return the nodes that added elements to containers; later stores into the elements do not count."""
     found: set[int] = set()
     for obj in objects:
         ctx.store.look(obj)
@@ -203,7 +203,7 @@ def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def lengthen(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Make an object's length depend on that of a value whose elements it gets."""
+    """Make an object's length depend on the length of a value whose elements it gets."""
     longer = length(ctx, value)
     if longer:
         decide_length(ctx, obj, longer)

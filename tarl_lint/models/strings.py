@@ -48,7 +48,7 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
 
 
 def pieces(ctx: Interpreter, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value | None:
-    """Return the list that `split` makes of a known text; None if the text or an argument is not known."""
+    """Return the list that `split` makes of a text; None if the text or an argument is not known."""
     known, text = base.constant()
     given = [value.constant() for value in arguments[0]]
     if not known or not isinstance(text, str) or arguments[1] or not all(found for found, _ in given):
@@ -75,13 +75,13 @@ def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.C
 
 
 def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Value]) -> Consts:
-    """Return the results of a function for all combinations of constants, the first of which are strings."""
+    """Return the results of a function for all combinations of constants; the first one of each must be a string."""
     ways = [_known(ctx, v) for v in values]
     if not all(ways) or math.prod(len(w) for w in ways) > MAX_TEXTS:
         return None
     try:
         made = [function(*given) for given in itertools.product(*ways) if isinstance(given[0], str)]
-    except Exception:  # any error that the program itself would raise
+    except Exception:  # the program itself would raise this error
         return None
     if not made or not all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made):
         return None
@@ -90,13 +90,13 @@ def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Va
 
 
 def _flat(ways: Sequence[Any]) -> Iterator[Any]:
-    """Yield constants, also those in lists."""
+    """Yield constants, including those in lists."""
     for one in ways:
         yield from _flat(one) if isinstance(one, list) else (one,)
 
 
 def _known(ctx: Interpreter, value: Value) -> list[Any]:
-    """Return the possible constants of a value, or lists of them; empty if not all are known."""
+    """Return the possible constants of a value, or the possible lists of them; empty if not all are known."""
     if value.consts and not value.pts:
         return sorted(value.consts, key=str)
     parts = [_known(ctx, e) for e in sizes.unpacked(ctx, value) or ()]
@@ -118,7 +118,7 @@ def as_text(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def as_number(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `int(x)`; a constant in a run for one launched node, whose numbers may be part of names."""
+    """Return `int(x)`. It is a constant in a run for one launched node, where numbers may be part of names."""
     known, constant = it.arguments[0][0].constant() if len(it.arguments[0]) == 1 else (False, None)
     if not (ctx.exact and known and isinstance(constant, str | int | float)):
         return ctx.ops.generic(ctx, f"builtins.{it.name}", it.arguments, it.frame, it.call)

@@ -13,7 +13,7 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, pointer
 from tarl_lint.models import library, sizes
 
-ITERATED = -2  # slot of the calls of `__iter__` and `__next__` that a loop makes
+ITERATED = -2  # slot of the calls of `__iter__` and `__next__` made by a loop
 NEXT = -3
 
 
@@ -29,7 +29,7 @@ ITERATING = frozenset(
 def call_library(
     ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
-    """Call a library function or class; those that iterate over analysed objects call their iterators."""
+    """Call a library function or class; a function that iterates over analysed objects calls their iterators."""
     if qualified in ITERATING:
         arguments = [_gone_over(ctx, v, frame, call) for v in arguments[0]], arguments[1]
     return library.call_library(ctx, qualified, arguments, frame, call)

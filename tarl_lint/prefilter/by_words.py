@@ -33,7 +33,7 @@ DOTTED: Final = re.compile(r"(?:^|,)[\s\\(]*([.\w]+)")
 
 
 def concerned(modules: Sequence[Named], config: Config) -> bool:
-    """Return whether a word in any module suggests that it subscribes or publishes; otherwise there are no flows."""
+    """Return whether a word in any module suggests that it subscribes or publishes; if not, there is no flow."""
     return any(True for _ in mentioning(modules, config))
 
 
@@ -43,11 +43,13 @@ def relevant(modules: Sequence[M], config: Config) -> list[M]:
 
 
 def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
-    """Return the relevant modules in groups between which no data flows, each with everything that it imports.
+    """Return the relevant modules in groups between which no data flows.
 
-    Relevant modules are those that subscribe or publish, those that import them, and everything that these import.
-    Within a group, a module comes after its imports, as far as import cycles allow. A module that several programs
-    import may be in several groups.
+    A group includes everything that its modules import.
+
+    Relevant modules are those that subscribe or publish, the modules that import them, and everything that these
+    import. Within a group, a module comes after its imports, as far as import cycles allow. A module that several
+    programs import may be in several groups.
     """
     start = list(mentioning(modules, config))
     if not start:
@@ -82,18 +84,19 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
 
 
 def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
-    """Yield the modules that contain a word that every subscribing or publishing module contains."""
+    """Yield the modules that contain one of the words of which every subscribing or publishing module has one."""
     has_word = endpoint_words(config)
     return (m for m in modules if has_word(m.text))
 
 
 def endpoint_words(config: Config) -> Callable[[str], bool]:
-    """Return whether a text contains a word that every subscribing or publishing module contains, as a function."""
+    """Return a test of texts: whether one contains a word that every subscribing or publishing module contains."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
     search = re.compile("|".join(whole(word) for word in sorted(words))).search
-    first = [word.rstrip("(") for word in words]  # a substring search is faster, and rarely succeeds
+    # a substring search is faster than the pattern, and rarely succeeds
+    first = [word.rstrip("(") for word in words]
 
     def has_word(text: str) -> bool:
         return any(w in text for w in first) and bool(search(text)) and bool(search(code(text)))
@@ -108,7 +111,7 @@ def code(text: str) -> str:
 
 
 def whole(word: str) -> str:
-    """Return a pattern for a whole word (not the `publish` in `robot_state_publisher`)."""
+    """Return a pattern for a whole word: `publish` does not match in `robot_state_publisher`."""
     return rf"\b{re.escape(word)}" + (r"\b" if word[-1].isalnum() else "")
 
 
@@ -134,7 +137,7 @@ def _connected(modules: Mapping[str, M], edges: Mapping[str, Sequence[M]]) -> It
 
 
 def _in_turn(modules: Iterable[str], imports: Mapping[str, Sequence[Named]]) -> list[str]:
-    """Return paths in an order in which a module comes after its imports."""
+    """Return paths in an order in which each module comes after its imports."""
     done: dict[str, None] = {}
     entered: set[str] = set()
     pending = [(path, False) for path in sorted(modules, reverse=True)]

@@ -1,7 +1,7 @@
-"""Find, by words and syntax, groups of modules that only subscribe or only publish: most need not be run.
+"""Find groups of modules that only subscribe or only publish, by words and syntax; most of them need not be run.
 
-A flow needs both sides. Each hazard rule decides whether it can find nothing in such a group (`ruled_out`); a group
-that an enabled rule does not rule out is run like any other.
+A flow needs both. Each hazard rule decides whether it can find nothing in such a group (`ruled_out`); a group that an
+enabled rule does not rule out is run like any other.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
-ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are sinks too
+ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are also sinks
 SAYS: Final = re.compile("|".join(map(whole, catalog.SINK_WORDS)))
 
 
@@ -52,7 +52,7 @@ class Rule(Protocol):
 
     @staticmethod
     def ruled_out(side: Side) -> bool:
-        """Return whether words and syntax exclude any finding, so that the group need not be run."""
+        """Return whether words and syntax rule out all findings, so that the group need not be run."""
 
 
 def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) -> bool:
@@ -66,7 +66,7 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if hears and any(
         _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
     ):
-        return False  # messages can reach a base class outside of the files, which a note then names
+        return False  # messages can reach a base class outside of the files, and a note then names that class
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))
 
@@ -77,7 +77,7 @@ def two_sided(texts: Sequence[str], config: Config) -> bool:
 
 
 def _hears_and_says(texts: Sequence[str]) -> tuple[bool, bool]:
-    """Return whether texts without comments have words that subscribe, and words that publish."""
+    """Return (whether texts contain words that subscribe, whether they contain words that publish)."""
     hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
     return (True, True) if answers else (hears, says)
 

@@ -1,8 +1,9 @@
-"""Split a group of modules into the programs that run apart.
+"""Split a group of modules into programs, which run in separate processes.
 
-A program is a file that is run, with its imports. Programs run in processes of their own, so that no value of one
-reaches another through a module that both import. They are analysed apart, and analysed again alone after an edit,
-unless a flow may begin or end in such a module: then a flow is reported once, with the statements of all programs.
+A program is a file that is run, with its imports. Since programs run in separate processes, no value reaches one from
+another through a module that both import. They are analysed separately, also after an edit. Only if a flow may begin
+or end in a common module are they analysed together, so that the flow is reported once, with the statements of all
+programs.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ def programs(
     """Return the modules of each program, in the order of the group. A module may be part of several programs.
 
     `endpoints` are the paths of the modules that may subscribe or publish. Programs stay together if they share one
-    of these, and if they share any module and a file that no program imports, or that loads modules by name, is
-    among them.
+    of these paths. They also stay together if they share any module and one of the files is imported by no program,
+    or loads modules by name.
     """
     imported = {module.path for one in group for module in imports[one.path]}
     runs = [_reached(one, imports) for one in group if one.path not in imported]
@@ -53,7 +54,7 @@ def programs(
 
 
 def _reached(start: M, imports: Mapping[str, Sequence[M]]) -> dict[str, M]:
-    """Return a module and all that it imports, directly or indirectly; the module itself comes first."""
+    """Return a module and all modules that it imports, directly or indirectly; the module itself comes first."""
     found = {start.path: start}
     pending = [start]
     while pending:
@@ -73,7 +74,7 @@ def _closed(run: Mapping[str, Named], code: Callable[[str], str]) -> bool:
 
 
 def _join(joined: list[int], members: Iterable[int]) -> None:
-    """Put runs together; each set of runs is represented by its first one."""
+    """Merge sets of runs; each set is represented by its first run."""
     firsts = {_first(joined, member) for member in members}
     for first in firsts:
         joined[first] = min(firsts)

@@ -1,1 +1,1 @@
-"""Constant propagation queries of the plugin at single sites."""
+"""Constant propagation queries, which the plugin asks about single sites."""

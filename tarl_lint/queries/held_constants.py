@@ -1,4 +1,4 @@
-"""Contents of variables: constants with their origins, and unchanged fields of messages."""
+"""What variables contain: constants with their origins, and unchanged fields of messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
-    setting: str = ""  # its key in the file from which it was loaded
+    setting: str = ""  # key in the file from which the value was loaded
 
 
 class Origins:
@@ -51,7 +51,7 @@ class Origins:
         return frozenset(found) if found is not None else frozenset()
 
     def _loaded(self, value: Value) -> frozenset[Origin]:
-        """Return the origin of a value loaded from a file; nothing for a table, of which only parts are used."""
+        """Return the origin of a value loaded from a file; empty for a table, of which only parts are used."""
         settings = self.machine.settings
         if len(value.pts) != 1:
             return frozenset()
@@ -63,7 +63,7 @@ class Origins:
         return frozenset([Origin(None, path, pos, "" if key.isdigit() else key)])
 
     def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
-        """Return the origins of a table's numbers if a computed index selects one of them, else nothing."""
+        """Return the origins of a table's numbers if a computed index selects one of them; empty otherwise."""
         if value is None or index is None or value.pts:
             return frozenset()
         found = self._trace(value.deps - self.machine.use(index), set())
@@ -71,7 +71,7 @@ class Origins:
         return frozenset(found) if found and numbers else frozenset()
 
     def _trace(self, deps: Iterable[int], seen: set[int]) -> set[Origin] | None:
-        """Return the constants from which nodes come; None if one has another origin."""
+        """Return the constants from which nodes come; None if a node does not come from a constant."""
         found: set[Origin] = set()
         for node in sorted(deps):
             if node in seen:
@@ -96,7 +96,7 @@ class Origins:
         return found
 
     def _settled(self, node: int) -> bool:
-        """Return whether a node is None or chooses only between constants, independent of any message."""
+        """Return whether no message reaches a node, and it is None or a choice between constants."""
         place = self.graph.places[node]
         if self.graph.data[node] or node in self.graph.live:
             return False
@@ -154,7 +154,7 @@ class Holding:
                 self._fields(machine, name, value)
 
     def _fields(self, machine: Linker, name: str, value: Value) -> None:
-        """Read the fields written into a stored message: they may no longer be the topic's values."""
+        """Read the fields of a stored message that the node wrote; they may no longer be the topic's values."""
         pending: list[tuple[str, Value]] = [("", value)]
         while pending:
             path, current = pending.pop()
@@ -183,7 +183,7 @@ class Holding:
         arrived = any(topic in origins.topics.get(m, ()) for m in self.delivered)
         new = (
             [text for text, fresh in found if fresh] if arrived else []
-        )  # values of an earlier message are stale
+        )  # variables not written in this run hold values of an earlier message
         texts = new or [text for text, _ in found]
         return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
 
@@ -244,7 +244,7 @@ def _bracketed(path: str) -> str:
 
 
 def _rest(have: str, want: str) -> str | None:
-    """Return the rest of the path `want` after `have`, None if `have` is not a prefix."""
+    """Return the rest of the path `want` after the prefix `have`; None if `have` is not a prefix."""
     if have == want:
         return ""
     if not have:

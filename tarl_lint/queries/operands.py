@@ -1,4 +1,4 @@
-"""Operands: the expressions that a repair may replace. Uses of numbers, but not indices, sizes or rates."""
+"""Operands: the expressions that a repair may replace. Numbers are included, but not indices, sizes or rates."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ LOGGING: Final = frozenset(
 
 
 class Constants(Protocol):
-    """The interface of a query for constants."""
+    """Interface of a query for the constants of an expression."""
 
     def of(self, expr: ir.Expr, value: Value | None) -> object:
-        """Return the origins of an expression's constants; a false value if it is not constant."""
+        """Return the origins of an expression's constants; a falsy value if it is not constant."""
         ...
 
     def entries(self, value: Value | None, index: Value | None) -> object:
-        """Return the origins of the entries of a table of constants; a false value for other expressions."""
+        """Return the origins of the entries of a table of constants; a falsy value for other expressions."""
         ...
 
 

@@ -24,7 +24,7 @@ def ros_call(ctx: Interpreter, it: Invocation) -> Value:
     if "**" in it.arguments[1]:
         it.arguments = it.arguments[0], _unpacked_keywords(ctx, it)
     action = ACTIONS.get(it.fact.kind)
-    return action(ctx, it) if action is not None else UNKNOWN  # no model for this kind of call
+    return action(ctx, it) if action is not None else UNKNOWN  # this kind of call has no model
 
 
 def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
@@ -109,7 +109,7 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
 def _listed(
     ctx: Interpreter, it: Invocation, name: Value, default: Value, slot: Hashable = ()
 ) -> Value | None:
-    """Return the list or mapping that a launch, or the code in its place, gives a parameter; None if there is none."""
+    """Return the list or mapping that the launch, or else the default, gives a parameter; None without one."""
     names = name.texts()
     given = launched.value_of(ctx, names[0]) if len(names) == 1 else None
     if given is DEFAULT and default.pts and ctx.launched is not None:
@@ -120,13 +120,13 @@ def _listed(
 
 
 def _named(ctx: Interpreter, it: Invocation, default: Value) -> Consts:
-    """Return the text that stands for a parameter in names of topics, if the call names one parameter."""
+    """Return the text that stands for a parameter in topic names; None if the call does not name one parameter."""
     names = it.argument(it.fact.topic).texts()
     return _value_of(ctx, names[0], default) if len(names) == 1 else None
 
 
 def _value_of(ctx: Interpreter, name: str, default: Value) -> Consts:
-    """Return the known value of a parameter, else the text that stands for it in names of topics."""
+    """Return the known value of a parameter, or else the text that stands for it in topic names."""
     value = launched.value_of(ctx, name)
     if value is ELSEWHERE:
         return text_of_parameter(ctx.parameter_names, name, default)
@@ -150,7 +150,7 @@ def _default_of(
         literals.mark(ctx, node, expr, default, frame)
     ctx.graph.flow(ctx.use(default) if default.pts else default.deps, node)
     if ctx.thorough and default.pts:
-        return ctx.carry(default, node)  # a mapping with its entries
+        return ctx.carry(default, node)  # a mapping, which brings its entries
     return Value(ctx.kept(node), consts=consts)
 
 
@@ -220,7 +220,7 @@ def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _parameter_object(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a parameter; if the code does not declare it, with the value that the launch gives the node."""
+    """Return a parameter. If the code does not declare it, its value is the one that the launch gives the node."""
     name = it.argument(it.fact.topic)
     found = _parameters(ctx, it.base, name)
     for obj in found.objects if ctx.launched is not None and len(name.texts()) == 1 else ():

@@ -1,6 +1,6 @@
 """Models of clients of services and actions: requests and goals are sinks, responses and results are sources.
 
-Only runs for launch files follow them: there, the server is another node.
+Clients are followed only in runs for launch files, where the server is another node.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ READING: Final = frozenset(["get_result"])
 
 
 def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value | None:
-    """Make a client, or call one of its methods or the client itself, or ask for the names of the node.
+    """Model a call that makes or uses a client, or asks for the names of the node.
 
-    Return None if the call is none of these.
+    Return None for other calls.
     """
     table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
     for told in (node_name, launched.asked, options.asked):
@@ -95,7 +95,7 @@ def _call_back(ctx: Interpreter, info: Publisher, it: Invocation, answer: Value)
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
     """Return the response of a service, or the result of an action.
 
-    Whether it depends on the request is known of the server's node, which is a node of its own.
+    Whether it depends on the request is found by the analysis of the server's node.
     """
     frame, place = it.frame, (it.frame.program.path, it.call.pos)
     key = ctx.end_key(*place, frame)

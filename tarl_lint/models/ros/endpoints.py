@@ -1,4 +1,4 @@
-"""Records of the ends of flows, subscriptions and publish calls, and of publishers."""
+"""Records of the ends of flows (subscriptions and publish calls) and of publishers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Kind = Literal["topic", "service", "action", "transform"]
 class SourceRecord:
     """A subscription: its place, its topics, and the nodes at which its messages arrive.
 
-    `key` tells the subscriptions of one place apart where a launch file gives them names of their own.
+    `key` distinguishes the subscriptions made at one place, which a launch file may give different names.
     """
 
     path: str
@@ -50,7 +50,8 @@ class SinkRecord:
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
-    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # positions where they are created
+    # positions where the publishers are created
+    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)
     kind: Kind = "topic"
 
 

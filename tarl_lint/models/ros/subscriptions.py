@@ -27,11 +27,11 @@ from tarl_lint.models.smach import LATER
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}
-Fresh = Sequence[tuple[Obj, str, Value]]  # (new object of each call, field, value)
+Fresh = Sequence[tuple[Obj, str, Value]]  # (object made by each call, field, value)
 
 
 def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
-    """Record a subscription, at the outermost call that supplies its callback."""
+    """Record a subscription; its place is the outermost call that supplies the callback."""
     place, pos, statement, via = it.frame, it.call.pos, it.frame.statement, []
     while place.caller is not None and place.call is not None and _supplied(place, callback):
         via.append((place.program.path, pos))
@@ -72,7 +72,7 @@ def subscribe(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _forward(ctx: Interpreter, record: SourceRecord, callback: Value, it: Invocation) -> None:
-    """If the callback is a library method, as `other.publish`, call it at the registration."""
+    """If the callback is a library method, such as `other.publish`, call it where it is registered."""
     for target in callback.objects:
         if target.kind == "method":
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
@@ -157,7 +157,7 @@ def receive(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def message_filter(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a subscriber of message_filters; its first argument is the topic in rospy, the node in rclpy."""
+    """Return a subscriber of message_filters. Its first argument is the topic in rospy and the node in rclpy."""
     first = it.arguments[0][0] if it.arguments[0] else BOTTOM
     if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
         it.fact = catalog.FILTER_WITH_NODE
@@ -225,7 +225,7 @@ def call_when(
     named: Mapping[str, Value] = NOTHING,
     program: str = "",
 ) -> None:
-    """Queue a function as root with these arguments; `answer` gets its result."""
+    """Queue a function as root with these arguments; `answer` receives its result."""
     root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
     root.maker = ctx.store.root
     root.program = program or root.maker.program
@@ -250,7 +250,7 @@ def call_when(
 
 
 def _too_many(ctx: Interpreter, root: Root) -> bool:
-    """Return whether a function has enough roots already: its own restarts, or other objects of its class."""
+    """Return whether a function has enough roots already, from its own restarts or from other objects of its class."""
     if root.function is None:
         return False
     if root.generations() > MAX_GENERATIONS:
