@@ -189,7 +189,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
     """Give all cells that the recording lacks one number, and join the transitions that become equal."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
-    if not max(chain.cell.max(initial=0), chain.next_cell.max(initial=0)) >= recorded:
+    if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
         return chain
     codes, place = np.unique((chain.episode * width + cell) * (width + 1) + after + 1, return_inverse=True)
     return Chain(

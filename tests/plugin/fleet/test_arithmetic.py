@@ -316,5 +316,8 @@ def test_the_inverse_of_a_singular_matrix() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))
+    small, rank = components._inverse(1e-10 * np.eye(2))
+    assert rank == 2
+    assert small == pytest.approx(1e10 * np.eye(2))
     nothing, rank = components._inverse(np.zeros((2, 2)))
     assert (rank, nothing.tolist()) == (0, [[0.0, 0.0], [0.0, 0.0]])

@@ -154,6 +154,8 @@ def test_clusters_name_place_and_mean_residual() -> None:
     assert lines[start + 2] == "  1 robot (s1): no common cell"
     assert lines[start + 3] == "  2 robots (u1, u2): no cell stands out"
     assert lines[start + 4] == "  1,500 further robots with less evidence were not compared"
+    twenty = [*words.lines(answer(clusters=Clusters((), names[:20])))]
+    assert f"  20 robots ({', '.join(names[:20])}): no cell stands out" in twenty
     only = [*words.lines(answer(clusters=Clusters((), ("u1",))))]
     assert "  1 robot (u1): no cell stands out" in only
     assert not [line for line in only if "further robots" in line]
