@@ -1,4 +1,4 @@
-"""API for other programs: flows, sites, operands of a site, and expressions that contain a topic's field."""
+"""API for other programs: flows, sites, the operands of a site, and expressions that contain a field of a topic."""
 
 from __future__ import annotations
 

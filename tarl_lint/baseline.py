@@ -37,7 +37,10 @@ class Baseline:
 
 
 def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[Finding, ...]:
-    """Return findings marked as accepted; a group larger than the accepted number is entirely new."""
+    """Return the findings, marked as accepted where the baseline has them.
+
+    If there are more of a kind than the baseline accepts, all of that kind are new.
+    """
     found = Counter(f.fingerprint for f in findings)
     return tuple(
         replace(f, status="accepted") if found[f.fingerprint] <= accepted.get(f.fingerprint, 0) else f
@@ -48,7 +51,7 @@ def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[
 def missing(
     baseline: Baseline, found: Mapping[str, int], judged: Callable[[Accepted], bool]
 ) -> tuple[tuple[Accepted, ...], tuple[Accepted, ...]]:
-    """Return the accepted findings that were not found, each with the number missing: (vanished, kept).
+    """Return the accepted findings that were not found, as (vanished, kept), each with the number of missing findings.
 
     `judged` returns whether this run can judge an entry. It cannot if a file of the entry was not analysed or is
     unreadable; such entries are kept.
@@ -59,7 +62,7 @@ def missing(
 
 
 def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
-    """Return the baseline of the found and kept entries; counts of equal fingerprints are added."""
+    """Return the baseline with the found and kept entries; counts of equal fingerprints are added."""
     counts: Counter[Fingerprint] = Counter()
     files: dict[Fingerprint, set[str]] = {}
     for entry in (*found, *kept):
@@ -111,7 +114,7 @@ _FLOW: Final = {
     "in": "place",
     "class": "owner",
     "package": "package",
-}  # key in the file → field
+}  # key in the file → field of the dataclass
 _HAZARD: Final = {"rule": "rule", "about": "about", "in": "place", "package": "package"}
 
 

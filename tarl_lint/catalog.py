@@ -109,7 +109,7 @@ OTHER_KINDS: Final = (
     "tf2.",
 )
 
-FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # handlers receive a response to fill
+FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # their handlers receive a response to fill
 
 # Callbacks of action servers: "goal" gets the goal, the others a goal handle; the return value of "execute" is the
 # result.
@@ -233,7 +233,7 @@ DEVICE_READERS: Final = frozenset(
 )  # fmt: skip
 MEASURES: Final = frozenset(
     ["shape", "size", "ndim", "dtype", "nbytes"]
-)  # attributes of an array that no store changes
+)  # attributes of an array that do not change when its elements are stored to
 KEEPERS: Final = frozenset(
     [
         "functools.wraps",
@@ -264,7 +264,7 @@ MAY_BE_NONE: Final = frozenset(
 )  # library functions that return None if they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
 
-STATES: Final = "smach"  # when a state runs, it receives the data shared by all states
+STATES: Final = "smach"  # when such a state runs, it receives the data that all states share
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
@@ -276,7 +276,7 @@ STATE_BY_CALLBACKS: Final = (
 NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])
 TESTS: Final = frozenset(
     ["unittest.TestCase", "unittest.case.TestCase"]
-)  # a test runner creates their objects
+)  # a test runner creates objects of these classes
 NODE_BASES: Final = NODES | frozenset(
     [
         "object", "Exception",
@@ -286,7 +286,7 @@ NODE_BASES: Final = NODES | frozenset(
 
 SHAPED: Final = frozenset(
     ["zeros_like", "ones_like", "empty_like", "full_like"]
-)  # functions that use only the shape of their first argument
+)  # functions that use only the shape of their first argument, not its data
 
 CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock: its time is not data of the object
 
@@ -300,12 +300,12 @@ def on_topic(api: str) -> bool:
 
 
 def fact(qualified: str) -> Fact | None:
-    """Return the fact about a library function or class, None if there is none."""
+    """Return the fact about a library function or class; None if there is none."""
     return FUNCTIONS.get(qualified)
 
 
 def written(qualified: str) -> int | None:
-    """Return the position of the argument that a function changes, None if it changes none."""
+    """Return the position of the argument that a function changes; None if it changes none."""
     if qualified.startswith("numpy.") and qualified.endswith(".at"):  # numpy.add.at(array, places, values)
         return 0
     return ARGUMENT_WRITERS.get(qualified)

@@ -1,4 +1,4 @@
-"""The command `tarl-lint`: options in, report out, exit code."""
+"""The command `tarl-lint`: read the options, write the report, return the exit code."""
 
 from __future__ import annotations
 
@@ -158,7 +158,10 @@ def _check(config: Config) -> None:
 
 
 def _show(typed: Namespace, result: Result) -> None:
-    """Print the report, or write it to a file; information without a place in the format goes to standard error."""
+    """Print the report, or write it to a file.
+
+    Information that the format has no place for goes to standard error.
+    """
     if typed.output_file:
         view = _view(typed)
         _write_file(typed.output_file, report.render(typed.format, result, view))
@@ -171,7 +174,7 @@ def _show(typed: Namespace, result: Result) -> None:
 
 
 def _view(typed: Namespace, stream: TextIO | None = None) -> View:
-    """Return the display settings, for a terminal if the report goes to one."""
+    """Return the display settings; they are those of the terminal if the report goes to one."""
     view = View(
         show_paths=typed.show_paths or typed.all_steps,
         all_steps=typed.all_steps,
@@ -199,7 +202,7 @@ def _print(lines: Iterable[Line]) -> None:
 
 
 def _give_up_output() -> None:
-    """Discard the remaining output; otherwise Python reports an error at exit."""
+    """Discard the remaining output, since Python would otherwise report an error at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -10,10 +10,10 @@ LABEL = "Documentation"
 
 @cache
 def site() -> str:
-    """Return the address of the documentation, which ends with a slash; "" if the installed version states none."""
+    """Return the address of the documentation, with a slash at its end; "" if the installed version states none."""
     try:
         stated = metadata("tarl").get_all("Project-URL") or []
-    except PackageNotFoundError:  # run from a source tree that is not installed
+    except PackageNotFoundError:  # tarl-lint runs from a source tree that is not installed
         return ""
     for one in stated:
         label, _, address = str(one).partition(",")
@@ -23,5 +23,5 @@ def site() -> str:
 
 
 def rule_page(code: str) -> str:
-    """Return the address of a rule's page, "" if there is none."""
+    """Return the address of a rule's page; "" if there is none."""
     return f"{site()}rules/{code}/" if site() else ""

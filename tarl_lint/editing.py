@@ -16,12 +16,12 @@ from tarl_lint.run.runner import Early, Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
-KEPT_RUNS: Final = 10  # for so many runs a report is kept that none of them needs: edits are often undone
+KEPT_RUNS: Final = 10  # runs for which an unneeded report is kept, because edits are often undone
 __all__ = ["Result", "Superseded", "Workspace"]
 
 
 class Superseded(BaseException):
-    """A further edit made a run obsolete. Not an Exception, so that it is not reported as a bug of the analysis."""
+    """A later edit made this run obsolete. It is not an Exception, so it is not reported as a bug of the analysis."""
 
 
 class Workspace:
@@ -72,7 +72,7 @@ class Workspace:
 
 
 class _Memory(Cache):
-    """Reports of the last runs by key, and those of the cache on disk, which is read only."""
+    """Reports of the last runs by key, and those of the cache on disk. The cache on disk is never written."""
 
     adapts = True
 
@@ -82,20 +82,20 @@ class _Memory(Cache):
         self._analyses = Analyses(config)
         self._saved = saved
         self._known: dict[str, Report] = {}
-        self._digests: Mapping[str, str] = {}  # of the last complete run, by path
+        self._digests: Mapping[str, str] = {}  # digests of the last complete run, by path
         self._seen: Mapping[str, str] = {}
         self._used: dict[str, int] = {}  # key → number of the last run that needed its report
         self._run = 0
 
     def report(self, key: str) -> Report | None:
-        """Return the report stored under a key, None if there is none."""
+        """Return the report stored under a key; None if there is none."""
         found = self._known.get(key) or self._saved.report(key)
         if found is not None:
             self.put(key, found)
         return found
 
     def put(self, key: str, report: Report) -> None:
-        """Keep a report until several runs have not needed it."""
+        """Keep a report until KEPT_RUNS runs in a row have not needed it."""
         self._known[key] = report
         self._used[key] = self._run
 
@@ -108,12 +108,12 @@ class _Memory(Cache):
         self._analyses.keep(scripts, readings, report)
 
     def edited(self, digests: Mapping[str, str]) -> frozenset[str]:
-        """Return the files that are not as in the last complete run, by their digests; none in the first run."""
+        """Return the files whose digests differ from the last complete run; empty in the first run."""
         before, self._seen = self._digests, digests
         return frozenset(path for path, one in digests.items() if before and before.get(path) != one)
 
     def plan(self, _: str) -> Sequence[str]:
-        """Return no plan: each run determines the reports it needs."""
+        """Return no plan, so that each run determines which reports it needs."""
         return []
 
     def save(self) -> None:

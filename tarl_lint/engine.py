@@ -1,4 +1,7 @@
-"""Compute flows and findings from modules and settings. Pure: the same files give the same result everywhere."""
+"""Compute flows and findings from modules and settings.
+
+It is a pure function: the same files give the same result everywhere.
+"""
 
 from __future__ import annotations
 
@@ -44,10 +47,10 @@ def examine(
 ) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...], tuple[str, ...]]:
     """Return the findings in a group of modules, the failures by file, and the programs that exhausted their budget.
 
-    The last element is the classes outside the files at which flows ended.
+    The last element holds the classes outside the files at which flows ended.
 
-    Failures are raised unless isolated. The rest is analysed as if the failed code did nothing.
-    With `readings`, what was read of each file is stored there.
+    Failures are raised unless `isolated`. The rest is analysed as if the failed code did nothing. With `readings`,
+    what was read of each file is stored there.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()
@@ -90,10 +93,10 @@ def trace(
     parameters: list[ParameterName] | None = None,
     fixed: Mapping[str, object] = MappingProxyType({}),
 ) -> tuple[Linker, tuple[Flow, ...]]:
-    """Return the flows and the interpreter that found them, which answers further queries if it was thorough.
+    """Return the flows and the interpreter that found them. A thorough interpreter answers further queries.
 
-    With `parameters`, names of topics may contain parameters by their index in this list, which is filled. `fixed` are
-    values of parameters, DEFAULT for those that have their defaults.
+    With `parameters`, topic names may contain parameters. They refer to them by their index in this list, to which
+    the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:

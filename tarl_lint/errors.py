@@ -8,7 +8,7 @@ class LintError(Exception):
 
 
 class UsageError(LintError):
-    """The command line is invalid: an unknown option, rule or file, or a place without Python files."""
+    """The command line is invalid: an unknown option, rule or file, or a directory without Python files."""
 
 
 class ConfigError(LintError):

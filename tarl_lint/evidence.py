@@ -18,7 +18,8 @@ PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 DEFINITIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
-LOOK_UPS: Final = frozenset(["getattr", "hasattr", "attrgetter", "methodcaller"])  # take a name as a string
+# functions that take a name as a string
+LOOK_UPS: Final = frozenset(["getattr", "hasattr", "attrgetter", "methodcaller"])
 LOCKS: Final = frozenset(["Lock", "RLock", "Condition", "Semaphore", "BoundedSemaphore"])
 
 
@@ -39,14 +40,16 @@ class Outline:
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
     definitions: list[Definition] = field(default_factory=list)  # sorted by line
-    locks: dict[str, str] = field(default_factory=dict)  # name → lock; a condition has the name of its lock
-    assigned: dict[str, list[ast.expr]] = field(default_factory=dict)  # last part of a name → values
+    # name → lock; the name of a condition variable → its lock
+    locks: dict[str, str] = field(default_factory=dict)
+    # last part of a name → values assigned to it
+    assigned: dict[str, list[ast.expr]] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)  # names that functions declare global
     shared: frozenset[str] | None = None  # globals that functions change; None until computed
     held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)  # node → held locks, a cache
     lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(
         default_factory=dict
-    )  # calls under locks, by function
+    )  # calls made under locks, by function
     by_text: bool = False  # whether names may be looked up by computed strings
 
     def __post_init__(self) -> None:
@@ -98,7 +101,7 @@ class Outline:
         return next((c for c in found if (c.end_lineno, c.end_col_offset) == (pos[2], pos[3])), None)
 
     def qualname(self, line: int) -> str:
-        """Return the dotted name of the innermost function or class at a line, "" for the module."""
+        """Return the dotted name of the innermost function or class at a line; "" for the module."""
         holding = [d for d in self.definitions if d.lineno <= line <= (d.end_lineno or 0)]
         return ".".join(d.name for d in sorted(holding, key=lambda d: d.lineno))
 
@@ -140,7 +143,7 @@ class Evidence:
         return self.tracer.ends.source(self.machine.sources[path, pos])
 
     def finding(self, code: str, span: Span, message: str, about: str) -> Finding:
-        """Return a hazard. `about` identifies it without lines and names of local variables."""
+        """Return a hazard. `about` identifies the hazard without lines and names of local variables."""
         return Finding(code, span, message, about=about, place=self.outline(span.path).qualname(span.line))
 
     def complete(self, path: str) -> bool:
@@ -164,7 +167,7 @@ class Evidence:
                     yield Read(module.path, node, list(outline.around(node)))
 
     def _looked_up(self, node: ast.Constant, outline: Outline) -> bool:
-        """Return whether a string may be used to look up a name, rather than being a topic of the same name."""
+        """Return whether a string may be used to look up a name. A topic of the same name is not."""
         outer = outline.parents.get(node)
         if isinstance(outer, ast.Call) and last_name(outer.func) in LOOK_UPS:
             return True

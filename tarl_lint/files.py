@@ -7,11 +7,11 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file under another name and rename it, so that no reader sees a partial file.
+    """Write a file under another name and then rename it, so that no reader sees a partial file.
 
     A device or pipe is written to directly and never replaced.
     """
-    target = path.resolve()  # follow a link instead of replacing it
+    target = path.resolve()  # write to the target of a link instead of replacing the link
     if target.exists() and not target.is_file():
         target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
         return

@@ -13,10 +13,14 @@ UNKNOWN: Final = "?"
 
 @dataclass(frozen=True)
 class OfFlow:
-    """A flow. Topics are strings, `?` if unknown; the package is the ROS package, else Python's, else the script."""
+    """A flow.
+
+    Topics are strings, `?` if unknown. The package is the ROS package if there is one, else the Python package, else
+    the script.
+    """
 
     package: str
-    owner: str  # the subscribing class, "" for none
+    owner: str  # the subscribing class; "" if there is none
     source: str
     callback: str
     sink: str
@@ -65,20 +69,20 @@ Fingerprint = OfFlow | OfHazard
 
 def digest(texts: Sequence[str]) -> str:
     """Return a digest of texts as 16 hexadecimal digits."""
-    import hashlib  # imports OpenSSL, needed only for findings
+    import hashlib  # imports OpenSSL, which only findings need
 
     return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 def of_finding(finding: Finding, package: str, module: str) -> Fingerprint:
-    """Return the fingerprint of a finding. `package` and `module` are those of the file where it begins."""
+    """Return the fingerprint of a finding. `package` and `module` are those of the file where the finding begins."""
     if finding.flow is not None:
         return of_flow(finding.flow, package)
     return OfHazard(_package(package, module), finding.code, finding.about, finding.place)
 
 
 def of_flow(flow: Flow, package: str) -> OfFlow:
-    """Return the fingerprint of a flow. `package` is the ROS package of its source, "" if there is none."""
+    """Return the fingerprint of a flow. `package` is the ROS package of the flow's source; "" if there is none."""
     source, sink = flow.source, flow.sink
     return OfFlow(
         package=_package(package, source.module),

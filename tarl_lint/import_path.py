@@ -1,4 +1,4 @@
-"""Restrict imports of `tarl-lint` to the standard library and installed packages, never linted files.
+"""Restrict imports of `tarl-lint` to the standard library and installed packages; linted files are never imported.
 
 Python puts the working directory (`python -m`), the directory of a script and the entries of `PYTHONPATH` before its
 own library, and editable installations append source trees; a file `types.py` in any of them could be imported.
@@ -31,7 +31,7 @@ def _site() -> list[str]:
 
 
 def _beside_us() -> list[str]:
-    """Return the directory of this package if it was installed there, as by `pip install --target`."""
+    """Return the directory of this package if it was installed elsewhere, for example by `pip install --target`."""
     holder = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     installed = any(n.startswith("tarl-") and n.endswith(".dist-info") for n in os.listdir(holder))
     return [holder] if installed else []

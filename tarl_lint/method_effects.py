@@ -1,4 +1,4 @@
-"""Effects of library methods on their objects, guessed from the method's name."""
+"""Guess the effects of library methods on their objects from the names of the methods."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from typing import Final
 CHANGES: Final = re.compile(
     r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|observe|learn|train)$|[Aa]ccept_?[Ww]aveform"
     r"|(?:update|step|process|feed|push|advance|integrate|transition)(?:_|[A-Z]|$)"
-)  # changes the object even if the result is used
+)  # methods that change the object even if the result is used
 TELLS: Final = re.compile(
     r"(?:send|publish|emit|log|print|write|say|speak|show|notify|call|draw|plot|display|imshow|save|dump|export|report"
     r"|get|is|has|check|assert|close|stop|shutdown|wait|sleep|spin|debug|info|warn|warning|error|broadcast|respond"
     r"|reply|render|play|exec|execute|request)(?:_|[A-Z]|$)"
-)  # uses its arguments without storing them
+)  # methods that use their arguments without storing them
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"
-)  # stores callables to call them later
+)  # methods that store callables to call them later
 FAILS: Final = re.compile(
     r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
     r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"
-)  # raises for some arguments
+)  # functions that raise for some arguments
 
 
 def changes(method: str, *, dropped: bool) -> bool:
     """Return whether a method changes its object by its arguments.
 
-    `dropped`: the result is not used, so the call has a purpose other than its result.
+    `dropped` says that the result is not used, so the call must have another purpose.
     """
     return CHANGES.match(method) is not None or (dropped and TELLS.match(method) is None)
 
@@ -37,7 +37,7 @@ def keeps_callables(name: str) -> bool:
 
 
 def fails(name: str) -> str | None:
-    """Return the exception that a library call raises for an unsuitable value: "" for any, None for none.
+    """Return the exception that a library call raises for an unsuitable value; "" for any exception, None for none.
 
     Only conversions, parsers and look-ups count, because they fail depending on their argument.
     """

@@ -34,8 +34,8 @@ class Span:
 class SiteId:
     """A statement's identity, which survives moved lines.
 
-    `text` is the statement as `ast.unparse` formats it, for a compound statement only its header;
-    `ordinal` counts statements with the same module, qualified name and text, from 0 in file order.
+    `text` is the statement as `ast.unparse` formats it; for a compound statement, only its header. `ordinal` counts
+    statements with the same module, qualified name and text, from 0 in file order.
     """
 
     module: str
@@ -92,8 +92,9 @@ class Sink:
 class Flow:
     """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source.
 
-    `chain` contains the indices in `steps` of the shortest path from the message's arrival to the publish call: of data
-    for an explicit flow, of data and conditions for an implicit one. It is empty if no single path was found.
+    `chain` has the indices in `steps` of the shortest path from the message's arrival to the publish call. The path
+    of an explicit flow follows data; that of an implicit flow follows data and conditions. It is empty if no single
+    path was found.
     """
 
     kind: Kind
@@ -107,9 +108,9 @@ class Flow:
 class Finding:
     """One diagnostic: a flow (TARL101 to TARL103) or a hazard (TARL2xx).
 
-    `package` is the ROS package, else Python's, else the script, in which a finding begins. For a hazard, `about` is
-    its subject and `place` the qualified name of its function. Neither contains lines or local names, so the hazard
-    is recognised in an edited file.
+    `package` is where the finding begins: a ROS package if there is one, else a Python package, else a script. For a
+    hazard, `about` is its subject and `place` the qualified name of its function. Neither contains lines or local
+    names, so the hazard is recognised in an edited file.
     """
 
     code: str
@@ -127,7 +128,7 @@ class Finding:
 class Cut:
     """A program that exhausted its budget: some of its flows may be missing.
 
-    `path` is the file that is run, `node` the name of its node, "" if it is not a literal.
+    `path` is the file that is run. `node` is the name of its node; "" if that is not a literal.
     """
 
     path: str
@@ -144,10 +145,10 @@ class Cut:
 class Operand:
     """A use of a constant by a site, which a repair may replace.
 
-    `span` is the expression that uses it, on the site's own lines; `code` its text (`5`, `self.kp`).
-    `value` is the constant, or None if it is known only at run time (a parameter without default).
-    `definition` is the place where the constant is defined, equal to `span` for a literal.
-    `setting` is the key of a value that is loaded from a file.
+    `span` is the expression that uses the constant, on the site's own lines; `code` is its text (`5`, `self.kp`).
+    `value` is the constant, or None if it is known only at run time (a parameter without default). `definition` is
+    the place where the constant is defined; for a literal it equals `span`. `setting` is the key of a value that is
+    loaded from a file.
     """
 
     site: SiteId

@@ -12,7 +12,7 @@ NODES: Final = frozenset(["Node", "LifecycleNode"])
 
 
 def node_name(tree: ast.Module) -> str:
-    """Return the name of the first node that a file starts, "" if it is computed or there is none."""
+    """Return the name of the first node that a file starts; "" if the name is computed or there is no node."""
     bases = {id(c): _names_node(c) for c in ast.walk(tree) if isinstance(c, ast.ClassDef)}
     inside = {id(n) for c in ast.walk(tree) if bases.get(id(c)) for n in ast.walk(c)}
     for call in walk(tree):

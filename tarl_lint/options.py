@@ -27,12 +27,12 @@ _EPILOG: Final = (
     "or baseline, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
-DRAWN: Final = "svg"  # a format of launch files only
-MOST_SHOWN: Final = 100  # flows shown individually in a text report, about ten screens
+DRAWN: Final = "svg"  # this format is for launch files only
+MOST_SHOWN: Final = 100  # flows shown individually in a text report; about ten screens
 
 
 class _Help(argparse.HelpFormatter):
-    """Determines the terminal width itself: argparse would import shutil whenever an option is added."""
+    """Determines the terminal width itself, since argparse would import shutil for every added option."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=max(40, _columns() - 2))
@@ -243,7 +243,7 @@ def _jobs(text: str) -> int | None:
 
 
 def options(typed: argparse.Namespace) -> Options:
-    """Return the options that determine findings. Raises UsageError for contradictions."""
+    """Return the options that influence findings. Raises UsageError for contradictions."""
     if typed.no_baseline and (typed.write_baseline or typed.baseline):
         other = "--write-baseline" if typed.write_baseline else "--baseline"
         raise UsageError(f"--no-baseline and {other} cannot be used together: omit one.")

@@ -1,4 +1,4 @@
-"""Parts of topic names that only the launch determines: marks in a text that stand for parameters and node names."""
+"""Parts of topic names that only the launch determines. In a text, marks stand for parameters and node names."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from typing import Any, Final, Literal
 
 MARK: Final = "\0"
 DEFAULT: Final = "\0default"  # the value of a parameter that is not set
-ARGUMENTS: Final = "\0argv"  # among the values of parameters: the program's command line, a tuple of texts
-LAUNCHED: Final = "\0launched"  # among the values of parameters: the `Launched` node itself
+# key among the values of parameters: the program's command line, a tuple of texts
+ARGUMENTS: Final = "\0argv"
+LAUNCHED: Final = "\0launched"  # key among the values of parameters: the `Launched` node itself
 ELSEWHERE: Final = "\0elsewhere"  # the value of a parameter that is known only on the robot
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterName:
-    """A parameter by its name in the code, and its default: None if that is not one known text.
+    """A parameter: its name in the code, and its default; None if the default is not one known text.
 
-    Other kinds are the node's name, its last part ("own"), its namespace, and a name after resolving and remapping.
+    Other kinds are the node's name, the last part of it ("own"), its namespace, and a name after resolving and
+    remapping.
     """
 
     name: str
@@ -30,7 +32,7 @@ class ParameterName:
 
 @dataclass(frozen=True)
 class Launched:
-    """A launched node: its absolute name, and by absolute name the parameters that it can see, sorted.
+    """A launched node: its absolute name, and the parameters that it can see, sorted by their absolute names.
 
     A value is a text, number, truth value, list, mapping or None, or ELSEWHERE.
     """
@@ -48,7 +50,7 @@ class Launched:
         return dict(self.parameters)
 
     def value(self, name: str) -> Any:
-        """Return the value of a parameter by its name in the code; a mapping of those below it, or DEFAULT for none."""
+        """Return the value of a parameter by its name in the code; else a mapping of those below it, or DEFAULT."""
         for place in places(name, self.name):
             if place in self._values:
                 return self._values[place]
@@ -69,7 +71,7 @@ def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
 
 
 def places(name: str, node: str) -> tuple[str, ...]:
-    """Return the absolute names that a parameter in the code of a node may have: in ROS 1, and in ROS 2."""
+    """Return the absolute names of a parameter in the code of a node: the one in ROS 1 and the one in ROS 2."""
     namespace = node.rpartition("/")[0]
     start = {"~": f"{node}/", "/": "/"}.get(name[:1], f"{namespace}/")
     whole = start + name.lstrip("~/")
@@ -78,7 +80,7 @@ def places(name: str, node: str) -> tuple[str, ...]:
 
 
 def substituted(text: str, value: Callable[[int], str | None]) -> str | None:
-    """Return a text with each mark replaced by the value of the parameter; None if one has no value."""
+    """Return a text with each mark replaced by the value of its parameter; None if a parameter has no value."""
     found = {number: value(int(number)) for number in _MARKED.findall(text)}
     if None in found.values():
         return None

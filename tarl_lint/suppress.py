@@ -10,7 +10,7 @@ from typing import Final
 
 from tarl_lint.model import RULES, Finding
 
-_COMMENT: Final = (  # compiled on first use, which most runs never reach
+_COMMENT: Final = (  # compiled at first use, since most runs never need it
     r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
     r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
@@ -20,7 +20,7 @@ _COMMENT: Final = (  # compiled on first use, which most runs never reach
 class Suppression:
     """One comment that silences rules. Lines and columns count from 1.
 
-    `code` is a rule, a prefix (`TARL1`), or "" for all.
+    `code` is a rule, a prefix of rules (`TARL1`), or "" for all rules.
     """
 
     path: str
@@ -36,7 +36,7 @@ class Suppression:
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """Return the rules that the comment silences; none if the code is unknown."""
+        """Return the rules that the comment silences; empty if the code is unknown."""
         return tuple(rule for rule in RULES if self.code in ("", *_beginnings(rule)))
 
 
@@ -68,7 +68,7 @@ def _codes(comment: re.Match[str]) -> tuple[str, ...]:
 
 
 def _comments(text: str) -> Iterator[tuple[int, int, str]]:
-    """Yield (line, column, text) of each comment, as far as the text can be tokenised."""
+    """Yield (line, column, text) of each comment, up to the place where the text cannot be tokenised."""
     import tokenize
 
     try:
@@ -82,7 +82,7 @@ def _comments(text: str) -> Iterator[tuple[int, int, str]]:
 def apply(
     findings: Sequence[Finding], texts: Mapping[str, str]
 ) -> tuple[tuple[Finding, ...], tuple[Finding, ...], tuple[Suppression, ...]]:
-    """Return the findings that are not silenced, those that are, and the comments that silence nothing."""
+    """Return the findings that are not silenced, the silenced findings, and the comments that silence nothing."""
     every = {path: suppressions(path, text) for path, text in texts.items()}
     kept: list[Finding] = []
     silenced: list[Finding] = []

@@ -10,7 +10,7 @@ ATOMS: Final = frozenset(
     ["id", "attr", "arg", "name", "asname", "module", "level", "ctx", "op", "ops", "kind", "type_comment", "names",
      "conversion", "is_async", "simple", "rest", "kwd_attrs", "type_ignores", "tag", "lineno"]
 )  # fmt: skip
-ALIASES: Final = (ast.Import, ast.ImportFrom)  # the names of these statements are nodes
+ALIASES: Final = (ast.Import, ast.ImportFrom)  # these statements contain names as nodes
 
 
 def children(node: ast.AST) -> list[ast.AST]:
@@ -41,7 +41,7 @@ def walk(*trees: ast.AST) -> Iterator[ast.AST]:
 
 
 def last_name(expr: ast.expr) -> str:
-    """Return the last part of a dotted name, "" for any other expression."""
+    """Return the last part of a dotted name; "" for any other expression."""
     return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 

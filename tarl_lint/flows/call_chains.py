@@ -12,7 +12,7 @@ Entrance = tuple[int, Frame, Frame, int]  # (condition, frame of the value, fram
 
 
 def made_alongside(graph: Graph) -> dict[int, list[int]]:
-    """Return node → the nodes whose values it takes without their conditions, in order of their stand-ins."""
+    """Return node → the nodes whose values it takes without their conditions, in the order of their copies."""
     found: dict[int, list[int]] = {}
     for node, formers in enumerate(graph.data):
         if not graph.stands_for.keys().isdisjoint(formers):
@@ -21,9 +21,10 @@ def made_alongside(graph: Graph) -> dict[int, list[int]]:
 
 
 def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[int]]) -> Iterator[Entrance]:
-    """Yield the conditions among the nodes that choose values which may be made in other functions.
+    """Yield those conditions among the nodes that choose a value, which may be made in another function.
 
-    `calls` returns the calls between their frames. `alongside` is the result of `made_alongside`.
+    `calls` returns the calls between the frames of condition and value. `alongside` is the result of
+    `made_alongside`.
     """
     for node in sorted(nodes & (graph.gates.keys() | alongside.keys())):
         if node in graph.gates:
@@ -42,7 +43,7 @@ def _between(graph: Graph, choice: Branches, nodes: set[int], made: int, shown: 
 
 
 def calls(frame: Frame, outer: Frame) -> list[Place]:
-    """Return the calls that lead from one frame to another, outermost first; empty if none do."""
+    """Return the calls that lead from one frame to another, outermost first; empty if no calls do."""
     found: list[Place] = []
     current: Frame | None = frame
     while current is not None and current is not outer:

@@ -8,7 +8,7 @@ from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.memory.frames import Frame
 from tarl_lint.models.ros.endpoints import SourceRecord
 
-Enclosing = dict[int, Written]  # in order, by identity
+Enclosing = dict[int, Written]  # statements in order, by identity
 Before = dict[tuple[int, int], None]  # pairs of statements: (enclosing one, step that it precedes)
 
 
@@ -27,7 +27,7 @@ class Surroundings:
     def context(
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
     ) -> tuple[list[Written], list[tuple[int, int]]]:
-        """Return the statements that enclose the steps and the registration, and the step that each precedes."""
+        """Return the statements that enclose the steps and the registration, each with the step that it precedes."""
         found: Enclosing = {}
         edges: Before = {}
         registration = self.registration(origin)
@@ -41,7 +41,10 @@ class Surroundings:
         return list(found.values()), list(edges)
 
     def _enclosing(self, frame: Frame, written: Written) -> tuple[Enclosing, Before]:
-        """Return the statements that enclose a step and the calls leading to it. The same for all flows."""
+        """Return the statements that enclose a step and the calls leading to it.
+
+        The result is the same for all flows.
+        """
         known = self._known.get((frame, id(written)))
         if known is None:
             known = self._known[frame, id(written)] = {}, {}
@@ -67,7 +70,7 @@ class Surroundings:
         found: Enclosing,
         edges: Before,
     ) -> Written:
-        """Add the loops and guards that enclose a statement; return the outermost."""
+        """Add the loops and guards that enclose a statement; return the outermost one."""
         around = self._shown(written)
         while around is not None:
             found[id(around)] = around

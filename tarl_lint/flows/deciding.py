@@ -1,7 +1,7 @@
-"""Statements that decide what is published although no message passes through them.
+"""Statements that decide what is published, although they are on no flow.
 
-The limit of a watchdog compares two times, a state machine waits for a clock, and a set point is sent as it is: none of
-them is on a flow, and their constants matter all the same.
+Examples are a watchdog that compares two times, a state machine that waits for a clock, and a set point that is sent
+unchanged. A repair may have to change their constants.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ CONSTRUCTORS = frozenset(["__init__", "__post_init__"])
 
 
 def deciding(tracer: Tracer, flows: Collection[Flow]) -> tuple[Step, ...]:
-    """Return the statements from which the published values follow, by data or control, outside of the flows.
+    """Return the statements outside of the flows on which published values depend by data or control.
 
     Only files on a flow count. Assignments that set up a node (of a module, a class or a constructor) are left out:
     their constants are found where they are used.

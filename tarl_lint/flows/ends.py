@@ -12,7 +12,7 @@ from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """Describes the ends of flows; a sink's name contains its number among those with the same topics."""
+    """Describes the ends of flows. The name of a sink contains its number among the sinks with the same topics."""
 
     texts: Texts
     sinks: Collection[SinkRecord]

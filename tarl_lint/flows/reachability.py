@@ -33,11 +33,12 @@ ROLES: Mapping[str, Role] = {
 
 @dataclass(slots=True)
 class Reach:
-    """Nodes that a source reaches: by data edges alone, and by any edge."""
+    """Nodes that a source reaches: by data edges alone (`data`), and by any edge (`any`)."""
 
     data: set[int]
     any: set[int]
-    counted: Mapping[int, set[int]]  # element counts → the source's data that it put there under a condition
+    # container's length → data of the source that was added under a condition
+    counted: Mapping[int, set[int]]
 
 
 class Tracer:
@@ -81,7 +82,7 @@ class Tracer:
         return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]), counted)
 
     def counts(self, data: set[int]) -> dict[int, set[int]]:
-        """Return the element counts, not yet in `data`, of containers whose elements come from `data`."""
+        """Return the lengths, not yet in `data`, of containers whose elements come from `data`."""
         graph = self.graph
         found: dict[int, set[int]] = {}
         for node, elements in graph.counts.items():
@@ -116,7 +117,7 @@ class Tracer:
         return Flow("explicit" if explicit else "implicit", source, sink, steps, chain)
 
     def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
-        """Return a function from a node to the data it is made from, including the elements behind a count."""
+        """Return a function from a node to the data it is made from; for a container's length, also the elements."""
         return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
@@ -127,7 +128,7 @@ class Tracer:
         return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
-        """Return the constants that conditions among the nodes choose, with the nodes that produce them."""
+        """Return the constants that conditions among the nodes choose, and the nodes that produce these constants."""
         graph = self.graph
         found: set[int] = set()
         for node in filter((graph.gates.keys() | self._alongside.keys()).__contains__, nodes):
@@ -142,7 +143,7 @@ class Tracer:
         return found
 
     def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
-        """Add the nodes from which a value is made, as far as they are under the conditions that choose it."""
+        """Add the nodes from which a value is made that are under the conditions that choose the value."""
         data, branches, stands_for = self.graph.data, self.graph.branches, self.graph.stands_for
         pending = [dep] if ways else []
         while pending:
@@ -203,7 +204,7 @@ class Tracer:
         written: dict[int, Written],
         dependence: dict[int, Dependence],
     ) -> list[tuple[int, int]]:
-        """Add the calls between conditions and the values stored under them; return the order constraints."""
+        """Add the calls between conditions and the values that they choose; return the order constraints."""
         edges: dict[tuple[int, int], None] = {}
         each = (
             (statement_of.get(decision), frame, outer, statement_of.get(made))
@@ -224,7 +225,7 @@ class Tracer:
         return list(edges)
 
     def calls(self, frame: Frame, outer: Frame) -> Sequence[Written] | None:
-        """Return the statements whose calls lead from one frame to another, None if no calls do."""
+        """Return the statements whose calls lead from one frame to another; None if no calls do."""
         if (frame, outer) not in self._chains:  # the same for all flows
             places = calls(frame, outer)
             found = [written for place in places if (written := self._statement(place)) is not None]
@@ -251,7 +252,7 @@ class Tracer:
     def edges(
         self, nodes: Iterable[int], statement_of: Mapping[int, int], written: Mapping[int, Written]
     ) -> list[tuple[int, int]]:
-        """Return the order constraints between statements, without those carried by a loop to its next iteration."""
+        """Return the order constraints between statements, without dependencies on earlier iterations of a loop."""
         found: dict[tuple[int, int], None] = {}
         turns: dict[tuple[int, int], None] = {}
         function: dict[int, object] = {}
@@ -275,7 +276,7 @@ class Tracer:
         return [*found, *before_loops(found, turns, function)]
 
     def statements_before(self, node: int) -> Sequence[tuple[int, list[int]]]:
-        """Return the statements that a node depends on, each with its nodes. The same for all flows."""
+        """Return the statements that a node depends on, each with its nodes. The result is the same for all flows."""
         known = self._before.get(node)
         if known is None:
             nodes: dict[int, list[int]] = {}
@@ -313,7 +314,7 @@ class Tracer:
         return known
 
     def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
-        """Return a statement as a step; flows share their equal steps."""
+        """Return a statement as a step; flows share equal steps."""
         key = id(written), dependence, known
         if key not in self._steps:
             self._steps[key] = self._step(written, span, dependence, known)
@@ -334,7 +335,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last; functions called in its arguments otherwise come after it."""
+    """Return a path with its publish call last, also after functions that are called in the call's arguments."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

@@ -12,10 +12,10 @@ def shortest_path(
     formers: Callable[[int], Iterable[int]],
     statement_of: Mapping[int, int],
 ) -> tuple[int, ...]:
-    """Return the statements on a path with the fewest statements from one of `starts` to one of `ends`, in that order.
+    """Return the statements on a shortest path from one of `starts` to one of `ends`, in order.
 
-    Nodes of the same statement, and nodes without one, cost nothing (0-1 breadth-first search from the ends). Ties
-    are broken by the order of `ends` and `formers`, which must be ordered. Empty if there is no path.
+    A step to a node of the same statement, or to one without a statement, costs nothing (0-1 breadth-first search
+    from the ends). The order of `ends` and `formers` breaks ties, so both must be ordered. Empty if there is no path.
     """
     following: dict[int, int] = {}
     cost: dict[int, int] = {}

@@ -31,12 +31,12 @@ class Written:
 
     @property
     def defines(self) -> bool:
-        """Return whether it is a function or class: statements that enclose it do not enclose its calls."""
+        """Return whether it is a function or class; statements that enclose a definition do not enclose its calls."""
         return isinstance(self.node, (*FUNCTIONS, ast.ClassDef))
 
     @property
     def shown(self) -> bool:
-        """Return whether it is shown as context of steps inside it: a loop, or the `__main__` guard."""
+        """Return whether it is a loop or the `__main__` guard, which are shown as context of the steps inside."""
         return isinstance(self.node, LOOPS) or (
             isinstance(self.node, ast.If) and _guards_main(self.node.test)
         )
@@ -136,7 +136,7 @@ class Text:
         return known
 
     def span(self, written: Written) -> Span:
-        """Return the span of a statement (of its header, if compound)."""
+        """Return the span of a statement; for a compound statement, that of its header."""
         known = self.spans.get(id(written))
         if known is None:
             known = self.spans[id(written)] = self.stretch((*written.start, *self._end(written.node)))
@@ -224,7 +224,7 @@ def _header(node: ast.AST) -> ast.AST:
 
 
 def _last_of_header(node: ast.AST) -> tuple[int, int] | None:
-    """Return the end of the last expression of a header, None for simple statements."""
+    """Return the end of the last expression of a header; None for simple statements."""
     if isinstance(node, FUNCTIONS):
         parts: list[ast.AST] = [*ast.walk(node.args)]
         parts += [node.returns] if node.returns is not None else []

@@ -16,7 +16,8 @@ def in_order(
 ) -> list[T]:
     """Return the keys in an order in which `before` precedes `after` for each edge, as far as cycles allow.
 
-    A key without predecessors is placed as late as possible, unless it is in `first`; the default is all of them.
+    A key without predecessors is placed as late as possible, unless it is in `first`. Without `first`, all keys count
+    as being in it.
     """
     after: dict[T, set[T]] = {key: set() for key in spans}
     waiting = dict.fromkeys(spans, 0)
@@ -50,7 +51,7 @@ def before_loops(
 ) -> list[tuple[int, int]]:
     """Return edges that order statements of other functions before a loop.
 
-    Such a statement computes a value that the body of the loop uses, so it comes before the head of the loop.
+    Such a statement computes a value that the loop's body uses, so it comes before the loop's head.
     """
     heads: dict[int, set[int]] = {}
     for carried, head in turns:

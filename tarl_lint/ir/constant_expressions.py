@@ -12,7 +12,7 @@ CONSTANTS: Final = frozenset(["pi", "tau", "e"])  # names in math and numpy
 def computed(expr: ir.Expr) -> ir.Pos | None:
     """Return the position of a number computed from literals; None for other expressions.
 
-    That is the position of the literal if there is only one, else of the whole expression.
+    It is the position of the literal if there is only one, and of the whole expression otherwise.
     """
     if not isinstance(expr, (ir.Operation, ir.Call)) or not of_literals(expr):
         return None
@@ -21,7 +21,7 @@ def computed(expr: ir.Expr) -> ir.Pos | None:
 
 
 def of_literals(expr: ir.Expr) -> bool:
-    """Return whether an expression is composed of literals and mathematical constants, by any functions."""
+    """Return whether an expression is composed of literals and mathematical constants; any functions may be applied."""
     if isinstance(expr, ir.Const):
         return isinstance(expr.value, (int, float, str))
     if isinstance(expr, ir.Attribute):

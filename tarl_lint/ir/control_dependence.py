@@ -18,22 +18,22 @@ Branch = tuple[int, str]  # number of the condition's statement, outcome
 
 Raising = Mapping[int, Iterable[str]]
 
-NEAR: Final = 100  # branches stored per statement; the others are found through these
+NEAR: Final = 100  # branches stored per statement; the other branches are found through these
 NOTHING_RAISES: Raising = {}
 ALL: Final = frozenset(["Exception", "BaseException"])
 
 
 @dataclass(slots=True)
 class Control:
-    """For each statement: the branches on which it depends directly, and those on which it depends in any way.
+    """For each statement, the branches on which it depends directly (`direct`) or in any way (`closure`).
 
-    Of very many branches only the nearest are stored; `far` are the statements for which this is so.
+    If there are very many branches, only the nearest are stored; `far` has the statements for which this is so.
     """
 
     direct: Mapping[int, frozenset[Branch]]
     closure: Mapping[int, frozenset[Branch]]
     far: frozenset[int]
-    always: frozenset[int]  # statements that run whenever the function is entered
+    always: frozenset[int]  # statements that always run when the function is entered
 
 
 @dataclass(slots=True)
@@ -44,7 +44,7 @@ class _Graph:
     raising: Raising = field(default_factory=dict)
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
-    )  # inner ones first; where each `finally` begins
+    )  # where each `finally` begins; inner ones come first
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target
@@ -57,10 +57,11 @@ class _Exits:
     on_break: int = EXIT
     on_continue: int = EXIT
     on_raise: int = EXIT  # EXIT if there is no handler
-    handlers: tuple[tuple[frozenset[str], int], ...] = ()  # exception names of each handler, none for all
+    # exception names of each handler; empty if it handles all
+    handlers: tuple[tuple[frozenset[str], int], ...] = ()
 
     def of(self, name: str) -> int:
-        """Return the target of an exception: the handler that names it, else one for all, else the first."""
+        """Return the target of an exception: the handler that names it, else one that handles all, else the first."""
         if not self.handlers:
             return self.on_raise
         named = [entry for names, entry in self.handlers if name and name in names]
@@ -87,7 +88,7 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
-    """Add statements to the graph, last first; return the number of the first."""
+    """Add statements to the graph, from last to first; return the number of the first one."""
     for statement in reversed(body):
         follow = _statement(graph, statement, follow, exits)
     return follow
@@ -103,7 +104,7 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
         if not s.endless:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
         elif not _breaks(s.body):
-            graph.link(s.id, "never", EXIT)  # so that every statement reaches the exit
+            graph.link(s.id, "never", EXIT)  # needed so that every statement reaches the exit
     elif isinstance(s, ir.Try):
         return _try(graph, s, follow, exits)
     elif isinstance(s, ir.With):
@@ -122,21 +123,21 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
 
 
 def raised(expr: ir.Expr | None) -> str:
-    """Return the name of the raised class, "" if unknown."""
+    """Return the name of the raised class; "" if it is unknown."""
     if isinstance(expr, ir.Call):
         expr = expr.function
     return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
 
 
 def taken(types: ir.Expr | None) -> frozenset[str]:
-    """Return the names of the classes that a handler catches, none for all."""
+    """Return the names of the classes that a handler catches; empty if it catches all."""
     parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
     names = frozenset(raised(part) for part in parts)
     return frozenset() if names & (ALL | {""}) else names
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
-    """Add a `try`, whose own statement represents the unknown choice of a handler; return its number."""
+    """Add a `try`; its own statement represents the unknown choice of a handler. Return its number."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
     takes = tuple((taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
@@ -151,7 +152,7 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
 
 
 def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
-    """Remove the dependence of a `finally` on branches inside its `try`: it always runs."""
+    """Remove the dependence of a `finally` on branches inside its `try`, since a `finally` always runs."""
     blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
     inside = {s.id for block in blocks for s in _all(block)}
     inside.add(attempt.id)
@@ -218,7 +219,7 @@ def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
 
 
 def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
-    """Return the direct control dependence: n depends on branch (a, b) if n is on every path from b, not from a."""
+    """Return the direct control dependence: n depends on branch (a, b) if n is on every path from b, but not from a."""
     found: dict[int, set[Branch]] = {n: set() for n in order}
     for node in order:
         ways = graph.edges[node]
@@ -231,7 +232,7 @@ def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> 
 
 
 def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
-    """Return for each statement the branches on which it depends in any way; of very many, the nearest."""
+    """Return for each statement all branches on which it depends; if there are very many, the nearest."""
     closed: dict[int, frozenset[Branch]] = {}
     for node, branches in direct.items():
         found = dict.fromkeys(sorted(branches))

@@ -40,7 +40,7 @@ ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 def only_tells(expr: ast.expr, prints: bool) -> bool:
     """Return whether an expression statement only prints or logs, without any other effect.
 
-    `prints`: `print` is Python's built-in function.
+    `prints` says that `print` is Python's built-in function.
     """
     if not isinstance(expr, ast.Call) or not _tells(expr.func, prints):
         return False

@@ -60,7 +60,7 @@ class Expressions:
         self.module = module
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
-        """Lower one expression; one without its own form becomes an operation on its parts."""
+        """Lower one expression; an expression without a form of its own becomes an operation on its parts."""
         method = LOWER.get(type(node))
         if method is not None:
             return method(self, node, scope)
@@ -141,7 +141,7 @@ class Expressions:
     def _comprehension(
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
     ) -> ir.Expr:
-        """Lower in place: its targets become locals of the function, under unique names."""
+        """Lower a comprehension in place: its targets become locals of the function, under unique names."""
         before, slot = dict(scope.renamed), scope.next()
         loops: list[tuple[ir.Expr, ir.Expr, Sequence[ir.Expr]]] = []
         for generator in node.generators:

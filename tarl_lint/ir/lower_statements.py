@@ -185,7 +185,7 @@ class Lowering(Expressions):
         return [ir.Delete(scope.next(), position(node), self.all(node.targets, scope))]
 
     def match(self, node: ast.Match, scope: Scope) -> list[ir.Stmt]:
-        """Lower to a chain of conditions; captured names are assigned the subject's parts."""
+        """Lower a `match` to a chain of conditions; captured names are assigned parts of the subject."""
         subject = self.expr(node.subject, scope)
         orelse: list[ir.Stmt] = []
         once: list[ir.Stmt] = []
@@ -253,7 +253,7 @@ if hasattr(ast, "TryStar"):
 
 
 def _annotated(node: ast.ClassDef) -> Iterator[str]:
-    """Yield the names that a class body annotates, without those that stay in the class."""
+    """Yield the names that a class body annotates, without names that stay in the class."""
     for part in node.body:
         if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
             kind = ast.unparse(part.annotation)

@@ -33,7 +33,7 @@ def captures(
 
 
 def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower) -> Iterator[ir.Expr]:
-    """Yield the conditions under which a pattern matches; none if it always does."""
+    """Yield the conditions under which a pattern matches; no condition if it always matches."""
     if isinstance(pattern, ast.MatchValue):
         yield ir.Operation("==", [subject, lower(pattern.value)], where)
     elif isinstance(pattern, ast.MatchSingleton):

@@ -1,4 +1,4 @@
-"""The compact form of functions: few kinds of statements and expressions, with resolved names."""
+"""The compact form of functions: it has few kinds of statements and expressions, and resolved names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Const:
 
 @dataclass(slots=True, eq=False)
 class Name:
-    """A variable; for a free variable, `level` counts the enclosing functions up to its owner."""
+    """A variable; for a free variable, `level` is the number of enclosing functions up to the one that owns it."""
 
     name: str
     scope: Scope
@@ -56,7 +56,7 @@ class Slice:
 
     parts: Sequence[Expr]
     pos: Pos
-    bounds: Sequence[Expr | None] = ()  # of `lower:upper:step`, None for each that is left out
+    bounds: Sequence[Expr | None] = ()  # the parts of `lower:upper:step`; None for each part that is left out
 
 
 @dataclass(slots=True, eq=False)
@@ -72,7 +72,10 @@ class Call:
 
 @dataclass(slots=True, eq=False)
 class Operation:
-    """Any operator: the result contains the data of all parts. `operator` names those that are folded."""
+    """Any operator: the result contains the data of all parts.
+
+    `operator` is set for operators that constant folding knows.
+    """
 
     operator: str
     parts: Sequence[Expr]
@@ -92,7 +95,7 @@ class Choice:
 
 @dataclass(slots=True, eq=False)
 class SequenceDisplay:
-    """A tuple, list or set display."""
+    """A tuple, list or set literal."""
 
     items: Sequence[Expr]
     pos: Pos
@@ -101,7 +104,7 @@ class SequenceDisplay:
 
 @dataclass(slots=True, eq=False)
 class MappingDisplay:
-    """A dict display; key None stands for `**`."""
+    """A dict literal; key None stands for `**`."""
 
     items: Sequence[tuple[Expr | None, Expr]]
     pos: Pos
@@ -110,7 +113,7 @@ class MappingDisplay:
 
 @dataclass(slots=True, eq=False)
 class Comprehension:
-    """List, set, dict comprehension or generator expression; a dict yields its values."""
+    """A comprehension or generator expression; that of a dict yields its values."""
 
     loops: Sequence[tuple[Expr, Expr, Sequence[Expr]]]
     key: Expr | None
@@ -229,7 +232,7 @@ class Evaluate(Stmt):
 
 @dataclass(slots=True, eq=False)
 class If(Stmt):
-    """`if`, one arm of `match`, `assert` (whose arm raises)."""
+    """`if`, one arm of `match`, or `assert` (whose `else` raises)."""
 
     test: Expr
     body: Sequence[Stmt]
@@ -331,5 +334,5 @@ class Program:
     body: Sequence[Stmt]
     function: Function
     package: str = ""
-    takes_part: bool = True  # its words suggest that it subscribes or publishes
+    takes_part: bool = True  # whether its words suggest that it subscribes or publishes
     stars: list[str] = field(default_factory=list)

@@ -14,7 +14,7 @@ EXIT: Final = 0
 def postdominators(edges: Mapping[int, Mapping[str, int]], order: Sequence[int]) -> dict[int, int]:
     """Return for each statement its immediate postdominator.
 
-    `edges` maps statements to their successors, `order` lists the statements.
+    `edges` maps statements to their successors; `order` lists the statements.
     """
     before: dict[int, list[int]] = {}
     for node in order:
@@ -85,7 +85,7 @@ def _finished(before: Mapping[int, Sequence[int]]) -> list[int]:
 
 
 def passed(start: int, end: int, nearest: Mapping[int, int]) -> Iterator[int]:
-    """Yield the postdominators of one statement, up to another one."""
+    """Yield the postdominators of one statement, up to another statement."""
     while start not in (end, EXIT):
         yield start
         start = nearest[start]

@@ -25,10 +25,11 @@ class Scope:
     globals: set[str] = field(default_factory=set)
     nonlocals: set[str] = field(default_factory=set)
     counter: int = 0  # slots and statement numbers handed out
-    renamed: dict[str, str] = field(default_factory=dict)  # comprehension targets, while lowered
+    # comprehension targets, while the comprehension is lowered
+    renamed: dict[str, str] = field(default_factory=dict)
     around: dict[str, str] = field(default_factory=dict)  # the parent's names at this definition
-    plain: bool = False  # no expression in the file binds a name or yields
-    prints: bool = False  # for a module: `print` is Python's built-in function
+    plain: bool = False  # whether no expression in the file binds a name or yields
+    prints: bool = False  # for a module: whether `print` is Python's built-in function
 
     def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
         """Return the stored name, its kind, and the number of enclosing functions up to its owner."""
@@ -62,7 +63,7 @@ class Scope:
 
 
 def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
-    """Add the names that statements bind to `scope`. Return whether one of them yields."""
+    """Add the names that statements bind to `scope`. Return whether one of the statements yields."""
     yields = False
     for node in _own_statements(body) if scope.plain else _own_nodes(body):
         if isinstance(node, ast.Name):
@@ -86,7 +87,7 @@ def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
 
 
 def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the descendants, without those of nested functions, classes and comprehension targets."""
+    """Yield the descendants, without nested functions, classes and comprehension targets."""
     pending = list(body)
     while pending:
         node = pending.pop()
@@ -100,12 +101,12 @@ def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
 
 
 def plain(text: str) -> bool:
-    """Return whether a file's text shows that no expression binds a name or yields."""
+    """Return whether the text of a file shows that none of its expressions binds a name or yields."""
     return ":=" not in text and "yield" not in text
 
 
 def _own_statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the same nodes, without those inside expressions except targets."""
+    """Yield the same nodes, but of expressions only assignment targets."""
     pending = list(body)
     while pending:
         node = pending.pop()

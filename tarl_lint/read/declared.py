@@ -1,4 +1,4 @@
-"""Entry points that packages declare: classes of plugins and simulators, functions of console scripts.
+"""Find entry points that packages declare: classes of plugins and simulators, functions of console scripts.
 
 `plugin.xml`, robot descriptions, `setup.py`, `setup.cfg`, `pyproject.toml` and `CMakeLists.txt` are read as text;
 nothing is run.
@@ -20,8 +20,8 @@ SETTINGS: Final = ("setup.py", "setup.cfg", "pyproject.toml")
 NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
-)  # files that name plugin descriptions with other names
-LARGEST: Final = 500_000  # bytes of a description
+)  # files that refer to plugin descriptions, whose own names vary
+LARGEST: Final = 500_000  # limit on a description, bytes
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")
 
@@ -30,11 +30,11 @@ class Declarations:
     """The declarations of each package, read once. Paths are absolute."""
 
     def __init__(self) -> None:
-        self._packages: dict[str, str] = {}  # directory → enclosing package, "" for none
+        self._packages: dict[str, str] = {}  # directory → enclosing package; "" if there is none
         self._named: dict[str, dict[str, set[str]]] = {}
 
     def of(self, path: str, module: str) -> tuple[str, ...]:
-        """Return the names in a module that its package declares as entry points."""
+        """Return the names in a module that the module's package declares as entry points."""
         package = self._package(os.path.dirname(path))
         if not package:
             return ()
@@ -92,7 +92,7 @@ def _descriptions(package: str) -> Iterator[str]:
 
 
 def _read(path: str) -> str:
-    """Return the text of a file, "" if it is missing or too large."""
+    """Return the text of a file; "" if it is missing or too large."""
     try:
         if not os.path.isfile(path) or os.path.getsize(path) > LARGEST:  # noqa: PTH202
             return ""

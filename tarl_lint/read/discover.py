@@ -1,4 +1,4 @@
-"""Find the files to analyse and their names; count what is skipped, for the report."""
+"""Find the files to analyse and their module names; count skipped files for the report."""
 
 # ruff: noqa: PTH100, PTH110, PTH112, PTH120, PTH123
 # Paths are strings here: trees are large, and Path objects cost several times as much.
@@ -31,13 +31,13 @@ _CPP_NODE = (
     b"RCLCPP_COMPONENTS_REGISTER_NODE",
 )
 _LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
-_ENOUGH = 200_000  # bytes read of a file that is only counted
+_ENOUGH = 200_000  # bytes to read of a file that is only counted
 
 
 class SourceFile(NamedTuple):
     """A file to analyse: its place, its displayed path, its dotted name, whether it is `__init__.py`.
 
-    `started` are the entry points in it that its package declares.
+    `started` are the entry points in the file that its package declares.
     """
 
     path: Path
@@ -66,7 +66,7 @@ class Discovery:
 
 
 def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> Discovery:
-    """Return the Python files at and below `paths`; a path that is named itself is included even if excluded.
+    """Return the Python files at and below `paths`. A path in `paths` itself is included even if patterns exclude it.
 
     Raises UsageError for a path that does not exist, unless its text comes from standard input.
     """
@@ -106,7 +106,7 @@ class _Walk:
         self._files.setdefault(real, path)
 
     def follow_links(self) -> None:
-        """Search the targets of links that were not reached otherwise."""
+        """Search the targets of links, except targets that were reached without the link."""
         while self._links:
             path, ignores = self._links.pop(0)
             if not os.path.isdir(path):
@@ -180,7 +180,7 @@ def _absolute(path: Path) -> str:
 
 
 def _not_ours(path: str, name: str) -> bool:
-    """Return whether tools created a directory: hidden, virtual environments, colcon's output."""
+    """Return whether a directory was created by a tool: hidden directories, virtual environments, colcon's output."""
     if name.startswith(".") or name in _NEVER:
         return True
     if name in _COLCON and not os.path.exists(f"{path}/__init__.py"):
@@ -189,7 +189,7 @@ def _not_ours(path: str, name: str) -> bool:
 
 
 def _leads_above_itself(path: str) -> bool:
-    """Return whether a link leads to a directory that contains it, an endless loop."""
+    """Return whether a link leads to a directory that contains the link, which would be an endless loop."""
     parent = os.path.realpath(os.path.dirname(path))
     target = os.path.realpath(path)
     return parent == target or parent.startswith(target.rstrip("/") + "/")
@@ -199,7 +199,7 @@ def _exists(path: Path) -> bool:
     """Return whether a path exists; a circular link does not."""
     try:
         return path.exists()
-    except OSError:  # circular links, Python 3.12 and older
+    except OSError:  # raised for circular links by Python 3.12 and older
         return False
 
 
@@ -261,7 +261,7 @@ def _above(directory: str) -> Iterator[str]:
 
 def _missing(path: Path) -> str:
     """Return the message for a missing path, with a suggestion."""
-    import difflib  # imported only for mistakes
+    import difflib  # imported only after a mistake
 
     if path.is_symlink():
         target = path.readlink()

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-DIRECTORIES: Final = None  # component for any number of directories, including none
+DIRECTORIES: Final = None  # component that stands for any number of directories, including none
 Component = re.Pattern[str] | None
 
 
@@ -20,10 +20,10 @@ class Pattern:
     directories_only: bool
 
     def matches(self, path: str) -> bool:
-        """Return whether the pattern matches a relative path, in time at most proportional to path × pattern."""
+        """Return whether the pattern matches a relative path. The time is at most proportional to path × pattern."""
         names = path.split("/")
         at = place = 0
-        retry: tuple[int, int] | None = None  # backtracking point: the last `**` takes one more directory
+        retry: tuple[int, int] | None = None  # backtrack: the last `**` takes one more directory
         while place < len(names):
             component = self.components[at] if at < len(self.components) else _NOTHING
             if component is DIRECTORIES:
@@ -48,7 +48,7 @@ class Ignore:
     patterns: tuple[Pattern, ...]
 
     def verdict(self, path: str, *, is_directory: bool) -> bool | None:
-        """Return whether an absolute path is excluded, None if no pattern matches. The last match wins."""
+        """Return whether an absolute path is excluded; None if no pattern matches. The last match wins."""
         prefix = self.directory.rstrip("/") + "/"
         if not path.startswith(prefix):
             return None
@@ -60,7 +60,10 @@ class Ignore:
 
 
 def ignored(path: str, ignores: Sequence[Ignore], *, is_directory: bool) -> bool:
-    """Return whether a path is excluded: the nearest file with a match decides (`ignores`: nearest last)."""
+    """Return whether a path is excluded.
+
+    The nearest .gitignore file with a match decides; it is the last in `ignores`.
+    """
     verdicts = (ignore.verdict(path, is_directory=is_directory) for ignore in reversed(ignores))
     return next((v for v in verdicts if v is not None), False)
 
@@ -100,7 +103,7 @@ _ANYTHING: Final = re.compile(".*", re.DOTALL)
 
 
 def _components(text: str) -> tuple[Component, ...]:
-    """Return the components of a pattern: one per directory, and one for the name at the end.
+    """Return the components of a pattern: one for each directory, and one for the name at the end.
 
     `*` and `?` match inside a component, `**` matches several components.
     """
@@ -123,7 +126,10 @@ def _components(text: str) -> tuple[Component, ...]:
 
 
 def _component(pieces: Sequence[str]) -> re.Pattern[str]:
-    """Return a regular expression for a name. Matching each piece at its first occurrence needs no backtracking."""
+    """Return a regular expression for a name.
+
+    Each piece matches at its first possible place, so no backtracking is needed.
+    """
     first, *rest = pieces
     if not rest:
         return re.compile(first, re.DOTALL)

@@ -1,7 +1,6 @@
-"""Sources of installed packages named in the settings: read as files of a virtual environment, never imported.
+"""Find the sources of the installed packages in the settings; they are read from a virtual environment, never imported.
 
-`pyvenv.cfg`, the site-packages and the lines of `.pth` files that contain a path are read; lines with code are
-ignored.
+Only `pyvenv.cfg`, site-packages and lines with paths in `.pth` files are read; lines with code are ignored.
 """
 
 from __future__ import annotations
@@ -88,7 +87,10 @@ def _ours(finding: Finding, theirs: Set[str]) -> bool:
 
 
 def search_path(home: Path) -> list[Path]:
-    """Return the directories in which a virtual environment finds packages. Raises ConfigError if it is not one."""
+    """Return the directories in which a virtual environment finds packages.
+
+    Raises ConfigError if the directory is not a virtual environment.
+    """
     try:
         text = (home / "pyvenv.cfg").read_text("utf-8", errors="replace")
     except OSError:
@@ -106,7 +108,7 @@ def search_path(home: Path) -> list[Path]:
 
 
 def _listed(site: Path) -> Iterator[Path]:
-    """Yield the directories that `.pth` files add, as for editable installs; lines with code are ignored."""
+    """Yield the directories that `.pth` files add, for example for editable installs; lines with code are ignored."""
     for file in sorted(site.glob("*.pth")):
         try:
             lines = file.read_text("utf-8", errors="replace").splitlines()
@@ -134,7 +136,7 @@ def _scripts(site: Path, name: str) -> Iterator[Script]:
 
 
 def version(sites: Iterable[Path], name: str) -> str:
-    """Return the version of the distribution that contains a package, "" if unknown."""
+    """Return the version of the distribution that contains a package; "" if it is unknown."""
     for site in sites:
         for directory in sorted(site.glob("*.dist-info")):
             if _holds(directory, name):

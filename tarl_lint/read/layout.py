@@ -12,8 +12,8 @@ from pathlib import Path
 class Layout:
     """Names modules and packages; examines each directory once. Paths are absolute.
 
-    The nearest import root counts: a script's own directory, the directory that holds the outermost package
-    (`src/`, `include/`, `scripts/` alike), or the `package_dir` in setup.py or setup.cfg.
+    The nearest import root counts. It is a script's own directory, the directory that holds the outermost package
+    (whatever its name: `src/`, `include/`, `scripts/`), or a `package_dir` in setup.py or setup.cfg.
     """
 
     def __init__(self) -> None:
@@ -31,11 +31,11 @@ class Layout:
         return f"{prefix}.{stem}" if prefix else stem, False
 
     def ros_package(self, path: str) -> str:
-        """Return the name in the nearest package.xml above a file, "" if there is none."""
+        """Return the name in the nearest package.xml above a file; "" if there is none."""
         return self._ros_of(os.path.dirname(path))
 
     def _prefix(self, directory: str) -> str:
-        """Return the prefix of module names in a directory, "" at an import root."""
+        """Return the prefix of module names in a directory; "" at an import root."""
         if directory not in self._prefixes:
             self._prefixes[directory] = self._ask_prefix(directory)
         return self._prefixes[directory]
@@ -68,7 +68,7 @@ class Layout:
 
 
 def _manifest_name(directory: Path) -> str:
-    """Return the name in the package.xml of a directory, "" without one."""
+    """Return the name in the package.xml of a directory; "" if there is no such file."""
     if not (directory / "package.xml").is_file():
         return ""
     from tarl_lint.workspace.manifests import manifest

@@ -1,4 +1,4 @@
-"""Resolve module names to files, also if several files have the same name."""
+"""Resolve module names to files, even if several files have the same name."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Final, Generic, Protocol, TypeVar
 
 LIBRARIES: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
-)  # described by the catalog
+)  # the catalog describes these
 
 KNOWN: Final = (
     sys.stdlib_module_names | LIBRARIES | {"smach", "typing_extensions"}
-)  # their classes receive no data
+)  # classes of these packages receive no data
 
 
 def unfollowed(classes: Iterable[str]) -> tuple[str, ...]:
@@ -57,7 +57,7 @@ class Index(Generic[M]):
             self._by_name.setdefault(module.name, []).append(module)
 
     def find(self, name: str, importer: Named) -> M | None:
-        """Return the module that `importer` imports: of several, the one with the longest common path.
+        """Return the module that `importer` imports; of several with that name, the one with the longest common path.
 
         Packages in the catalog are never resolved to source files, even if these are among the files.
         """
@@ -69,7 +69,7 @@ class Index(Generic[M]):
         return max(candidates, key=lambda m: (_shared(m.path, importer.path), m.path))
 
     def _beside(self, name: str, importer: Named) -> list[M]:
-        """Return the modules beside a file of a package that is run as a script."""
+        """Return the modules in the directory of a package's file that is run as a script."""
         package = importer.name if importer.is_package else importer.name.rpartition(".")[0]
         if not package or name.partition(".")[0] in sys.stdlib_module_names:
             return []

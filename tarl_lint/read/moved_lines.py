@@ -1,6 +1,6 @@
-"""Compare two texts of a file, as far as an analysis has read the first one.
+"""Compare two texts of a file in the parts that an analysis has read of the first one.
 
-Where they agree, the analysis of the second text has the same result on other lines.
+If these parts agree, an analysis of the second text has the same result on other lines.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ class DifferenceError(Exception):
 
 
 def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | None:
-    """Return where the lines that an analysis has read are in a new text, counted from 1; None if it must run again.
+    """Return where the lines that an analysis has read are in a new text, from 1; None if it must run again.
 
-    Each of these lines has the same characters and the same order as before.
+    These lines have the same characters and the same order as before.
     """
     if reading.whole or any(question(new) is not known for question, known in reading.answers):
         return None
@@ -38,7 +38,7 @@ def moved_lines(old: str, new: str, reading: Reading) -> Mapping[int, int] | Non
         return None
     changed = comparison.changed
     if changed and any(_qualnames(tree)[name] > 1 for tree in (former, latter) for name in changed):
-        return None  # statements with equal texts are numbered through functions of equal names
+        return None  # statements with equal texts are numbered across functions of equal names
     places = sorted(comparison.lines.items())
     return dict(places) if all(a < b for (_, a), (_, b) in pairwise(places)) else None
 
@@ -48,7 +48,7 @@ class _Comparison:
 
     def __init__(self, old: list[str], new: list[str], reading: Reading) -> None:
         self.lines: dict[int, int] = {}
-        self.changed: set[str] = set()  # unread functions with another body
+        self.changed: set[str] = set()  # unread functions whose body differs
         self._old = old
         self._new = new
         self._unread = reading.unread
@@ -80,7 +80,7 @@ class _Comparison:
                 yield getattr(one, part, None), getattr(other, part, None)
 
     def _place(self, one: ast.AST, other: ast.AST) -> None:
-        """Pair the lines of two nodes; of a compound statement only those of its header."""
+        """Pair the lines of two nodes; of a compound statement, only the lines of its header."""
         first, there = getattr(one, "lineno", None), getattr(other, "lineno", None)
         if first is None or there is None:
             return
@@ -97,9 +97,9 @@ class _Comparison:
             self._pair(line, there + line - first)
 
     def _header(self, first: int, there: int, body: int) -> None:
-        """Pair the first line of a header, and the following ones as far as they are equal.
+        """Pair the first line of a header, and the following lines as far as they are equal.
 
-        The nodes in a header pair their own lines. The others may contain its colon.
+        The nodes in a header pair their own lines. Of the other lines, one may contain the header's colon.
         """
         self._pair(first, there)
         for line in range(first + 1, body):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-LARGEST: Final = 2_000_000  # bytes; Python's own parser takes 200 times as much memory
+LARGEST: Final = 2_000_000  # bytes; Python's parser takes about 200 times as much memory
 TOO_DEEP: Final = "The code is nested too deeply to be {}: split the expression, or exclude the file."
 
 
@@ -27,10 +27,11 @@ class Module:
     tree: ast.Module
     is_package: bool = False
     started: tuple[str, ...] = ()  # entry points declared by the package
-    installed: bool = False  # in a followed package: nothing in it is started or reported
+    # whether it is part of an installed package: nothing in it is started or reported
+    installed: bool = False
 
     def answer(self, question: Callable[[str], bool]) -> bool:
-        """Return the answer to a question about the text.
+        """Return the answer of a function that reads the text.
 
         The analysis reads the text only here, so that an editor session knows which edits change no answer.
         """
@@ -134,7 +135,8 @@ def parsed(script: Script) -> Module | SourceError:
     path = script.path
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # invalid escapes and the like are left to other linters
+            # warnings about invalid escapes and the like are left to other linters
+            warnings.simplefilter("ignore")
             tree = ast.parse(script.text)
     except SyntaxError as error:
         return _syntax_error(path, script.text, error)
@@ -159,7 +161,8 @@ def _decode(path: str, data: bytes) -> str | SourceError:
             line,
             f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8.",
         )
-    except (LookupError, UnicodeError) as error:  # such as rot13, which does not decode bytes to text
+    # for encodings such as rot13, which do not decode bytes to text
+    except (LookupError, UnicodeError) as error:
         return SourceError(path, 1, f"Unknown encoding: {error}. Save the file as UTF-8.")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 

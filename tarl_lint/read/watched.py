@@ -1,8 +1,8 @@
 """Modules that record what an analysis reads of them: bodies of functions, and answers about the text.
 
-A run that reads neither a function's body nor the whole text does not depend on them. Reading is recorded where it
-happens, so that code that reads in a new way is recorded, too. The statements of reports are looked up unrecorded: they
-only show what the analysis has read.
+A run that has read neither a function's body nor the whole text does not depend on that body. Reads are recorded
+where they happen, so that code which reads in a new way is also recorded. Looking up statements for a report is not
+recorded, since a report only shows what the analysis has read.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ class Body(list[ast.stmt]):
 
 @dataclass(frozen=True)
 class Reading:
-    """The parts of one file that an analysis did not read, and its questions about the text with their answers.
+    """What an analysis did not read of one file, and its questions about the text with their answers.
 
-    `unread` are the functions whose bodies were not read; with `whole`, the whole text was.
+    `unread` are the functions whose bodies were not read. `whole` says that the whole text was read.
     """
 
     unread: frozenset[Place]
@@ -81,7 +81,7 @@ class Watched(Module):
         return known
 
     def reading(self) -> Reading:
-        """Return what was read of the module since it is watched."""
+        """Return what was read of the module since watching began."""
         unread = frozenset(
             (function.lineno, function.col_offset)
             for function in _functions(self.tree.body)
@@ -91,7 +91,7 @@ class Watched(Module):
 
 
 def watched(module: Module) -> Watched:
-    """Return a module that records from now on what is read of it; it shares the syntax tree."""
+    """Return a module that records from now on what is read of it; it shares the syntax tree with the given one."""
     for function in [*_functions(module.tree.body)]:
         function.body = Body(unwatched(function.body))
     return Watched(
@@ -101,18 +101,18 @@ def watched(module: Module) -> Watched:
 
 
 def displayed(module: Module) -> str:
-    """Return a module's text without recording it: to display statements that the analysis has read."""
+    """Return a module's text without recording the read; used to display statements that the analysis has read."""
     text: str = object.__getattribute__(module, "text")
     return text
 
 
 def unwatched(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
-    """Return a function's statements without recording it."""
+    """Return a function's statements without recording the read."""
     return body.copy() if isinstance(body, Body) else body
 
 
 def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-    """Yield the functions defined by statements and by those inside them, unrecorded."""
+    """Yield the functions defined by statements, also by nested ones, without recording the read."""
     pending = [*body]
     while pending:
         node = pending.pop()

@@ -22,7 +22,8 @@ FORMATS: Final[Mapping[str, str]] = {
     "mermaid": "tarl_lint.report.mermaid:report",
 }
 FOR_PEOPLE: Final = frozenset({"text", "concise", "github"})
-LINE_BY_LINE: Final = FOR_PEOPLE | {"dot", "mermaid"}  # line feeds in topics must not break lines there
+# a line feed in a topic must not break a line in these formats
+LINE_BY_LINE: Final = FOR_PEOPLE | {"dot", "mermaid"}
 
 
 def render(name: str, result: Result, view: View) -> Iterator[Line]:

@@ -25,7 +25,7 @@ def publish_calls(findings: Sequence[Finding]) -> Iterator[tuple[tuple[Finding, 
 def publish_call(
     group: Sequence[tuple[Finding, Flow]], source: Sequence[str], view: View, *, paths: bool
 ) -> Iterator[Line]:
-    """Yield one publish call: heading, code frame, then each flow that ends in it (with its taint list)."""
+    """Yield one publish call: heading, code frame, then each flow that ends in it, with its taint list."""
     sink = group[0][1].sink
     explicit = any(flow.kind == "explicit" for _, flow in group)
     yield _heading(sink)
@@ -102,7 +102,7 @@ def taint_list(flow: Flow, view: View) -> Iterator[Line]:
 
 
 def shown_steps(flow: Flow, view: View) -> Sequence[Step]:
-    """Return the steps to show: the registration and the shortest chain of a long list, else all."""
+    """Return the steps to show: of a long list the registration and the shortest chain, otherwise all steps."""
     if view.all_steps or len(flow.steps) <= _LONG or not flow.chain:
         return flow.steps
     registration = [step for step in flow.steps if step.role == "register"]

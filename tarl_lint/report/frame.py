@@ -26,12 +26,12 @@ def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterat
 
 
 def lines_of(text: str) -> list[str]:
-    """Split a text into lines as Python counts them: a form feed does not end a line."""
+    """Split a text into lines as Python counts them; a form feed does not end a line."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _numbers(source: Sequence[str], span: Span) -> list[int]:
-    """Return the line numbers to show: some context before, no leading blank lines, part of a tall span."""
+    """Return the line numbers to show: some context without leading blank lines, then the span or part of it."""
     before = list(range(max(1, span.line - BEFORE), span.line))
     while before and not source[before[0] - 1].strip():
         before.pop(0)

@@ -17,7 +17,10 @@ _GRAVEST: Final[Sequence[Level]] = ("note", "warning", "error")
 
 
 def report(result: Result, view: View) -> Iterator[Line]:
-    """Yield annotations, most severe first because GitHub shows ten of a kind, then the closing lines."""
+    """Yield annotations and the closing lines.
+
+    The most severe come first, since GitHub shows only ten of each kind.
+    """
     noted = [*_errors(result), *_flows(result), *_hazards(result), *_unused(result), *_incomplete(result)]
     for grade in reversed(_GRAVEST):
         for own, span, title, text in noted:

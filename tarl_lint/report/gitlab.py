@@ -21,7 +21,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 
 def document(result: Result) -> list[dict[str, Any]]:
-    """Return unreadable files, new findings and incomplete programs; each fingerprint occurs once."""
+    """Return unreadable files, new findings and incomplete programs. Each fingerprint occurs once."""
     errors = [
         _entry(UNREADABLE, e.message, of_error(e), Span(e.path, e.line, 1, e.line, 1), "warning")
         for e in result.errors

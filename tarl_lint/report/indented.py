@@ -1,6 +1,6 @@
-"""Indented JSON, identical to `json.dumps(value, indent=1)` but several times as fast.
+"""Indented JSON, identical to that of `json.dumps(value, indent=1)` but written several times as fast.
 
-With indentation, Python's own encoder uses generators, which took longer than the analysis on large reports.
+Python's own encoder uses generators if it has to indent, which took longer than the analysis on large reports.
 """
 
 from __future__ import annotations

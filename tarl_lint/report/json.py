@@ -18,7 +18,7 @@ OfStep = Callable[[Step], object]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document, indented and in ASCII, so that no terminal or pipe can alter it."""
+    """Yield the document, indented and in ASCII, which no terminal or pipe can alter."""
     known: dict[Step, Written] = {}  # flows share most of their steps
 
     def written(step: Step) -> Written:
@@ -47,7 +47,7 @@ def _document(result: Result, of_step: OfStep) -> dict[str, Any]:
 
 
 def incomplete(result: Result) -> dict[str, Any]:
-    """Return the key `incomplete` with the programs that exhausted their budget; nothing if there are none."""
+    """Return the key `incomplete` with the programs that exhausted their budget; empty if there are none."""
     cut = result.statistics.cut
     each = [{"path": c.path, "node": c.node, "message": c.message} for c in cut]
     return {"incomplete": each} if each else {}

@@ -13,7 +13,8 @@ from tarl_lint.report.flows import taint_list
 from tarl_lint.report.line import ASCII, Line, View, location, plain, unbroken
 from tarl_lint.run.runner import UNREADABLE, Result
 
-_ILLEGAL: Final = r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # in XML 1.0
+# characters that XML 1.0 does not allow
+_ILLEGAL: Final = r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 _ENTITIES: Final = {
     "&": "&amp;",
     "<": "&lt;",
@@ -69,7 +70,7 @@ def _case(finding: Finding, result: Result) -> _Case:
 
 
 def _numbered(cases: list[_Case]) -> list[_Case]:
-    """Number cases of equal name; line numbers would rename them after every edit."""
+    """Number cases of equal name. Line numbers are not used, since they would rename cases after every edit."""
     seen: Counter[tuple[str, str]] = Counter()
     made = []
     for case in cases:

@@ -9,10 +9,10 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Flow
 from tarl_lint.report.line import Line, Style, View, columns
 
-MANY: Final = 6  # publish calls; with fewer, the report fits on a screen
+MANY: Final = 6  # publish calls; a report with fewer of them fits on a screen
 _WIDE: Final = 110  # columns without a terminal
 _WIDEST_NAME: Final = 30
-_ALTERNATIVES: Final = 4  # topics of one call; more are abbreviated
+_ALTERNATIVES: Final = 4  # topics of one call; if there are more, they are abbreviated
 
 
 def overview(flows: Sequence[Flow], view: View) -> Iterator[Line]:

@@ -20,7 +20,7 @@ from tarl_lint.report.upload_limits import EVERYTHING, Cut, cuts, taken
 from tarl_lint.run.runner import UNREADABLE, Result
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-ROOT: Final = "%SRCROOT%"  # known to GitHub as the top of the repository
+ROOT: Final = "%SRCROOT%"  # GitHub resolves this name to the top of the repository
 _IMPORTANCE: Final[Mapping[Dependence, str]] = {
     "data": "essential",
     "control": "important",
@@ -178,7 +178,7 @@ def _result(
 
 
 def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
-    """Return the fingerprints of a result. GitHub uses the first, which must be unique within a file."""
+    """Return the fingerprints of a result. GitHub uses the first fingerprint, which must be unique within a file."""
     name = "tarlFlow/v1" if finding.flow else "tarlHazard/v1"
     own = {name: finding.fingerprint} if finding.fingerprint else {}
     return {"primaryLocationLineHash": identity, **own}

@@ -41,12 +41,12 @@ def hints(result: Result, view: View) -> Iterator[Line]:
 
 
 def is_single(result: Result) -> bool:
-    """Return whether there is a single new flow; the report then shows its statements."""
+    """Return whether there is a single new flow, whose statements the report then shows."""
     return sum(f.flow is not None for f in result.new) == 1
 
 
 def not_analysed(result: Result) -> Iterator[Line]:
-    """Yield one line about code that was not analysed, none if everything was."""
+    """Yield one line about code that was not analysed; no line if everything was analysed."""
     missed = list(_missed(result))
     if missed:
         yield ((f"Not analysed: {', '.join(missed)}.", "quiet"),)
@@ -81,7 +81,7 @@ def _silenced(result: Result) -> Iterator[Line]:
 
 
 def _count_files(result: Result) -> str:
-    """Return the summary of a run with neither flow nor hazard rules enabled."""
+    """Return the summary of a run in which no rule for flows or hazards is enabled."""
     if result.kinds or result.reports_hazards:
         return ""
     return f"{many(result.statistics.files, 'file')} read; no rule for flows or hazards is enabled."

@@ -56,7 +56,7 @@ def _errors(result: Result) -> Iterator[Line]:
 
 
 def _findings(result: Result, view: View) -> Iterator[Line]:
-    """Yield the findings of each package; of many flows, only the first and the number of the rest."""
+    """Yield the findings of each package; of many flows, only the first ones and the number of the others."""
     if not result.new:
         return
     from tarl_lint.report.packages import grouped

@@ -25,7 +25,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Part:
-    """Publish calls of one file that are reached from the same topics, in the same way (`kind`).
+    """Publish calls of one file that the same topics reach in the same way (`kind`).
 
     One box thus represents many flows, and every path through a box is a flow.
     """
@@ -68,7 +68,7 @@ def picture(result: Result) -> Picture:
 
 
 def _names(flows: Sequence[tuple[Finding, Flow]]) -> Mapping[str, Topic]:
-    """Return the topics by key; different spellings get one label, with the slash if any has it."""
+    """Return the topics by key. Different spellings of a topic get one label, with a slash if any of them has one."""
     every = {topic for _, flow in flows for end in (flow.source, flow.sink) for topic in _topics(end)}
     return {topic.key: topic for topic in sorted(every, reverse=True)}
 
@@ -92,7 +92,7 @@ def _parts(
 
 
 class _Likeness(NamedTuple):
-    """The common key of publish calls that share a box."""
+    """The key that publish calls in the same box have in common."""
 
     path: str
     owner: str

@@ -1,7 +1,7 @@
 """GitHub's limits for SARIF files, and how to reduce a large report to them.
 
-Limits as documented for uploads to code scanning (read in 2026): 10 MB compressed by gzip; 25,000 results a run, of
-which the 5,000 most severe are shown; 10,000 locations of thread flows a result, of which 1,000 are shown.
+Limits for uploads to code scanning, as documented in 2026: 10 MB after compression by gzip. 25,000 results in a run,
+of which the 5,000 most severe are shown. 10,000 locations of thread flows in a result, of which 1,000 are shown.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MOST_BYTES: Final = 10_000_000  # compressed
 
 @dataclass(frozen=True)
 class Cut:
-    """How much of a report is written: a number of results, and the maximum length of lists of steps shown in full."""
+    """How much of a report is written: the number of results, and the longest list of steps shown in full."""
 
     results: int
     steps: int

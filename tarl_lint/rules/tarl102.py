@@ -1,8 +1,8 @@
 """TARL102: a subscribed topic decides what, or whether, a node publishes.
 
 The publish call sends no data of the message, but a condition on the message chooses between constants, or between
-publishing and not publishing (an *implicit* flow). A statement that merely follows a loop does not depend on the loop,
-and the mere arrival of a message is not a condition.
+publishing and not publishing (an *implicit* flow). A statement does not depend on a loop merely because it follows
+the loop. The mere arrival of a message is not a condition.
 """
 
 from __future__ import annotations

@@ -149,7 +149,7 @@ VALID: Final = (
 def ruled_out(side: Side) -> bool:
     """Return whether no state can be guarded in one place and unguarded in another.
 
-    This is so if the group creates no lock, or if each state is guarded either at all of its uses or at none.
+    This is so if the group creates no lock, or if each state is guarded at all of its uses or at none of them.
     """
     return not any(map(MADE.search, side.texts)) or always_or_never_guarded(side.modules)
 
@@ -174,7 +174,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
-    """Return an access in another thread that holds a lock, if at least one of the two writes."""
+    """Return an access in another thread that holds a lock, if at least one of the two accesses writes."""
     others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
     return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 

@@ -7,10 +7,11 @@ follows them. Clamp the value at the reported line, where it is computed.
 
 A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
 
-A message counts as sensor data by its type (`LaserScan`, `Odometry`, `Imu` …), a plain number by its topic (`/range`,
-`/cte`). Other messages may be decisions, such as commands, goals and parameters, and are not reported. Neither
-are values that pass through code outside the analysed files, nor speeds that may be measurements: a Float64 on `/speed`
-computed from ticks, from `twist`, or from a distance and a time.
+The type of a message decides whether it counts as sensor data (`LaserScan`, `Odometry`, `Imu` …); for a plain number,
+the topic decides (`/range`, `/cte`). Other messages may be decisions, such as commands, goals and parameters, and are
+not reported. Two kinds of values are not reported either: values that pass through code outside the analysed files,
+and speeds that may be measurements, such as a Float64 on `/speed` computed from ticks, from `twist`, or from a
+distance and a time.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """TARL203: a subscription has no effect.
 
 The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
-what it stores. The subscription wastes bandwidth and time, and often a line is missing that its author believes to be
+what it stores. The subscription wastes bandwidth and time. Often a line is missing that the author believes to be
 there. Callbacks that ignore the message but do something when it arrives are not reported, nor are callbacks that
 intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
 """
@@ -94,7 +94,7 @@ ACTIONS: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether the group subscribes to nothing, or passes on no function without effect."""
+    """Return whether the group subscribes to nothing, or all functions that it passes on have an effect."""
     if not side.hears:
         return True
     idle = [f for m in side.modules for f in _functions(m.tree.body) if not acting(f)]
@@ -102,7 +102,7 @@ def ruled_out(side: Side) -> bool:
 
 
 def _handed_on(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that are used otherwise than by calling them, and the texts, which may name a method."""
+    """Yield the names that are not only called, and the texts, which may name a method."""
     called = {id(n.func) for n in walk(tree) if isinstance(n, ast.Call)}
     for node in walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -163,7 +163,7 @@ def _meant(function: Function) -> bool:
 
 
 def acting(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Return whether a function is not an idle callback: it declares so, acts, or returns a value."""
+    """Return whether a function cannot be reported: it declares that it is idle, acts, or returns a value."""
     if node.decorator_list or any(a.arg.startswith("_") for a in node.args.args):
         return True
     return any(_acts(p) or _returns(p) for statement in node.body for p in walk(statement))
@@ -228,6 +228,6 @@ def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Ev
 
 
 def _defined(name: str, evidence: Evidence) -> bool:
-    """Return whether a function has the name: a property's setter does more than store."""
+    """Return whether a function has the name; it may be the setter of a property, which does more than store."""
     marker = f"def {name}("
     return any(m.contains(marker) for m in evidence.machine.modules.values())

@@ -81,7 +81,7 @@ def ruled_out(side: Side) -> bool:
 
 
 def _all_publish(module: Module, text: str) -> bool:
-    """Return whether every publisher is stored under a name of its own, on which something is published."""
+    """Return whether every publisher is stored under a name of its own that is used to publish."""
     if not any(maker in text for maker in MAKERS):
         return True
     mentioned, names = 0, list[str]()
@@ -122,7 +122,7 @@ def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
     if call is None or statement is None:
         return True
     if any(keyword.arg == "event_callbacks" for keyword in call.keywords):
-        return True  # its purpose is to detect subscribers
+        return True  # the publisher serves to detect subscribers
     if isinstance(statement, ast.Expr):
         return False
     targets: list[ast.expr] = []
@@ -175,7 +175,7 @@ def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Return whether a publish call uses only publishers other than this one, although the name is the same."""
+    """Return whether a publish call on the same name uses only other publishers than this one."""
     place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
     record = evidence.machine.sinks.get((read.path, place))
     if record is None or (path, pos) in record.publishers or read.path != path:

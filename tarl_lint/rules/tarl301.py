@@ -1,14 +1,14 @@
 """TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
 
-The two ends were meant to be connected: one of them has a namespace more than the other (`/cmd_vel` and
-`/robot/cmd_vel`), or one letter differs, and their types are equal. The robot starts without an error and does not
-move. The keyboard teleoperation of the Kobuki did nothing for this reason
+The two ends were probably meant to be connected. Their types are equal, and one of them has a namespace more than the
+other (`/cmd_vel` and `/robot/cmd_vel`), or one letter differs. The robot starts without an error and does not move.
+For this reason, the keyboard teleoperation of the Kobuki had no effect
 (https://github.com/aliasrobotics/RVD/issues/581), and robots stand still when they are launched in a namespace but
 the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Nothing is reported if a node of the launch file was not read, or if its topics are computed: it might be the other
-end. A subscription without any near publisher is not reported either, because sensors and simulators are often
-started elsewhere.
+Nothing is reported if a node of the launch file was not read, or if its topics are computed, since that node might be
+the other end. A subscription is not reported either if no publisher has a similar name, because sensors and
+simulators are often started elsewhere.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription that misses a publisher by its name only."""
+    """Yield a hazard for each subscription that only its name keeps from a publisher."""
     if not system.complete:
         return
     published, subscribed = (
@@ -142,9 +142,9 @@ def findings(system: System) -> Iterator[Finding]:
             if them is not who and single(beyond) == single(end) and spelled_alike(name, other)
         )
         if near:
-            message = f"{who.name} subscribes to {name} ({end.type}), which nobody publishes; "
+            message = f"{who.name} subscribes to {name} ({end.type}), which no node publishes; "
             message += (
                 " and ".join(f"{node} publishes {other}" for other, node in near)
-                + ", which nobody subscribes to"
+                + ", to which no node subscribes"
             )
             yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -2,7 +2,7 @@
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
 service `~home` of the node `arm` is `/arm/home`, not `/home`. Nothing is reported if a node of the launch file was
-not read, or if no server has nearly that name: it may be started elsewhere.
+not read. Nor is anything reported if no server has a similar name, since the server may be started elsewhere.
 """
 
 from __future__ import annotations
@@ -79,6 +79,6 @@ def findings(system: System) -> Iterator[Finding]:
             if other not in called and single(beyond) == single(end) and spelled_alike(name, other)
         )
         if name not in served and near and single(end):
-            message = f"{who.name} calls {name} ({end.type}), which nobody offers; "
+            message = f"{who.name} calls {name} ({end.type}), which no node offers; "
             message += " and ".join(f"{node} offers {other}" for other, node in near)
             yield at_end(CODE, who, end, message, topic_text(end.in_code))

@@ -1,11 +1,11 @@
 """TARL305: two nodes publish commands on the same topic.
 
-The last message wins, so the robot follows both nodes in turn, and jerks. Give each node a topic of its own, and let
+The last message wins, so the robot jerks as it follows both nodes in turn. Give each node a topic of its own, and let
 a multiplexer such as `twist_mux` choose. Clearpath's robots had this defect: the game controller and the autonomous
 control published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
 
-The rule covers messages such as `Twist` if, in both nodes, a subscribed topic decides when they are published. It
-leaves out nodes whose condition is known only on the robot, because one may replace the other.
+The rule covers commands such as `Twist` if a subscribed topic decides in both nodes when they are published. It
+leaves out nodes that are started under a condition known only on the robot, because one may replace the other.
 """
 
 from __future__ import annotations

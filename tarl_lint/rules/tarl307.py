@@ -83,7 +83,7 @@ _OF_ROS: Final = frozenset(
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each parameter that no node has for which it is set."""
+    """Yield a hazard for each parameter that none of the nodes has for which it is set."""
     carriers: dict[Setting, list[Instance]] = {}
     for instance in system.instances:
         for setting in instance.node.settings:
@@ -107,7 +107,7 @@ def _lacks(instance: Instance, name: str) -> bool:
 
 
 def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
-    """Yield the names of the parameters that a setting gives a node of its own."""
+    """Yield the names of the parameters that a setting gives to one node only."""
     above = setting.name.lstrip("~").strip("/")
     if setting.yaml is None or above:
         yield above
@@ -115,11 +115,11 @@ def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
     try:
         parsed = content(setting)
     except (NoYamlError, UnreadableError):
-        return  # the report says so
+        return  # the report mentions the problem
     named = list(sections(parsed))
     if not named and isinstance(parsed, dict):
         yield from map(str, parsed)
     for pattern, values in named:
-        # a section for all nodes is meant for those that have the parameter
+        # a section for all nodes is meant for the nodes that have the parameter
         if not is_wildcard(pattern) and any(matches(pattern, one.name) for one in instances):
             yield from dotted(values)

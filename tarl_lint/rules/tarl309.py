@@ -1,10 +1,10 @@
 """TARL309: code uses a field that the message type does not have.
 
-The callback raises AttributeError at its first message; rospy logs this and goes on, so the rest of the robot runs
-without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
+The callback raises AttributeError at its first message; rospy logs the error and goes on, so the rest of the robot
+runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. A
-callback must receive the message or a function must create it, and the variable must hold nothing else.
+The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. Only
+variables count that hold nothing but a message: one that a callback receives or that the function creates.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each use of an absent field, once for a program."""
+    """Yield a hazard for each use of an absent field; a program is reported once, even if several nodes run it."""
     from difflib import get_close_matches  # slow to import; reports import every rule
 
     for interface in {

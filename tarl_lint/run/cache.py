@@ -1,8 +1,8 @@
 """Cache of results by content, settings and version. A problem with it never fails a run.
 
 One file contains the entries of the last run on the same paths with the same settings. Its first line is the digest
-of the rest, so a damaged file is not read. The file is written under another name and renamed, so concurrent runs
-only replace each other's file.
+of the rest, so a damaged file is not read. The file is written under another name and then renamed, so concurrent
+runs only replace each other's file.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ class Report:
 class Cache:
     """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored.
 
-    Of the entries that a run does not use, `spare` are kept. With `adapts`, reports are adapted to edits.
+    `spare` is the number of entries that are kept although a run does not use them. With `adapts`, reports are
+    adapted to edits.
     """
 
     adapts = False
@@ -72,7 +73,7 @@ class Cache:
             self._load(file)
 
     def report(self, key: str) -> Report | None:
-        """Return the report stored under a key, None if there is none."""
+        """Return the report stored under a key; None if there is none."""
         packed = self.entry(key)
         if packed is None:
             return None
@@ -83,24 +84,24 @@ class Cache:
         )
 
     def put(self, key: str, report: Report) -> None:
-        """Store a report, unless it contains an internal error, which the next version may not have."""
+        """Store a report, unless it contains an internal error: the next version may not have that error."""
         if not any(error.bug for error in report.errors):
             parts = packed(report.findings), packed(report.errors), packed(report.cut), list(report.ended)
             self.put_entry(key, list(parts))
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:  # noqa: ARG002 - for others
-        """Return a report of earlier texts of the files that still holds, None if there is none."""
+        """Return a report for earlier texts of the files that still holds; None if there is none."""
         return None
 
     def edited(self, digests: Mapping[str, str]) -> frozenset[str]:  # noqa: ARG002 - for others
-        """Return the files that are not as in the last run, by their digests; none if they are not known."""
+        """Return the files whose digests differ from the last run; empty if there was no last run."""
         return frozenset()
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep what the analysis behind a report has read, if `adapts`."""
+        """Keep what the analysis of a report has read, if `adapts`."""
 
     def entry(self, key: str) -> Any:
-        """Return what is stored under a key, None if there is nothing."""
+        """Return what is stored under a key; None if there is nothing."""
         found = self._reports.get(key)
         if found is not None:
             self._used[key] = found
@@ -112,7 +113,7 @@ class Cache:
             self._used[key] = entry
 
     def plan(self, key: str) -> Sequence[str]:
-        """Return the keys of the reports of a whole run, empty if one is missing."""
+        """Return the keys of the reports of a whole run; empty if one of them is missing."""
         keys = self._plans.get(key, [])
         return keys if all(k in self._reports for k in keys) else []
 
@@ -136,14 +137,14 @@ class Cache:
                 write_whole(ignore, "*\n")
             write_whole(self._file, f"{digest([text])}\n{text}")
         except OSError:
-            self._file = None  # not writable: the next run is as slow as this one
+            self._file = None  # the directory is not writable, so the next run is as slow as this one
 
     def _load(self, file: Path) -> None:
         try:
             stated, _, text = file.read_text("utf-8").partition("\n")
             kept = json.loads(text) if stated == digest([text]) else None
         except (OSError, ValueError, RecursionError):
-            return  # missing or damaged: start empty
+            return  # the file is missing or damaged, so start with an empty cache
         if isinstance(kept, list) and [type(part) for part in kept] == [dict, dict]:
             self._reports, self._plans = kept
 

@@ -1,4 +1,4 @@
-"""Pause of the garbage collector, which finds nothing while trees and graphs only grow."""
+"""Pause the garbage collector, which would find nothing while trees and graphs only grow."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ MANY_LINES: Final = 30_000  # lines to analyse; below this, starting processes t
 
 @dataclass(frozen=True)
 class Task:
-    """Files to be analysed together, or one that only needs to be parsed."""
+    """Files to be analysed together, or a single file that only needs to be parsed."""
 
     scripts: tuple[Script, ...]
     analyse: bool
@@ -44,10 +44,10 @@ def examine(
     tell: Tell = silent,
     partly: Partly | None = None,
 ) -> Report:
-    """Return the findings in the files, independent of the number of processes (None: chosen by the size).
+    """Return the findings in the files, which do not depend on the number of processes (None: chosen by the size).
 
-    `partly` gets what is known after 1, 2, 4, … of several analyses. Then programs that are run from an edited file
-    come first, and small ones before large ones.
+    `partly` gets the report so far after 1, 2, 4, … of several analyses. With `partly`, programs that are run from an
+    edited file come first, then small ones before large ones.
     """
     digests = {
         s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
@@ -94,17 +94,17 @@ def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
 
 @dataclass(frozen=True)
 class _Progressive:
-    """Reports what is known while programs are still to be analysed."""
+    """Reports what has been found while programs are still to be analysed."""
 
     partly: Partly
     edited: frozenset[str]
 
     def turn(self, task: Task) -> tuple[bool, int]:
-        """Return the priority of a program: from an edited file first, then small ones."""
+        """Return the priority of a program: programs from an edited file first, then small programs."""
         return task.scripts[-1].path not in self.edited, task.lines
 
     def tell(self, tasks: Sequence[Task], found: Sequence[Report | None], done: int) -> None:
-        """Report what is found, after 1, 2, 4, … analyses, since each report takes time."""
+        """Report what has been found so far, only after 1, 2, 4, … analyses, since each report takes time."""
         pending = [task for task, report in zip(tasks, found, strict=True) if report is None]
         if not pending or done & (done - 1):
             return
@@ -137,7 +137,7 @@ def _reports(
 
 
 def _known(task: Task, key: str, cache: Cache) -> Report | None:
-    """Return the report of a task if it is known, or if that of earlier texts of its files still holds."""
+    """Return the report of a task if it is cached, or if the report for earlier texts of its files still holds."""
     report = cache.report(key)
     if report is None and task.analyse:
         report = cache.adapted(task.scripts)
@@ -147,7 +147,7 @@ def _known(task: Task, key: str, cache: Cache) -> Report | None:
 
 
 def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
-    """Return the number of processes: limited by the number of groups and by the size of the largest."""
+    """Return the number of processes, which is limited by the number of groups and the size of the largest group."""
     wanted = sum(task.analyse for task in tasks)
     if jobs is None:
         lines = [task.lines for task in tasks]
@@ -182,14 +182,14 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell, cache
 
 
 class _Parsed:
-    """Parses files, those of several tasks once."""
+    """Parses files; a file of several tasks is parsed once."""
 
     def __init__(self, tasks: Sequence[Task] = ()) -> None:
         self._left = Counter(script.path for task in tasks for script in task.scripts)
         self._known: dict[str, Module | SourceError] = {}
 
     def module(self, script: Script) -> Module | SourceError:
-        """Return the parsed file, or the reason why there is none."""
+        """Return the parsed file, or the reason why it cannot be parsed."""
         found = self._known.get(script.path) or _parsed(script)
         self._left[script.path] -= 1
         if self._left[script.path] > 0:

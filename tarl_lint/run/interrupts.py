@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Block Ctrl-C, also in processes started meanwhile, until they call `end_silently`."""
+    """Block Ctrl-C in this process; processes started meanwhile block it until they call `end_silently`."""
     import signal  # needed only with several processes
 
     mask = getattr(signal, "pthread_sigmask", None)

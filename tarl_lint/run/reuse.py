@@ -1,6 +1,6 @@
-"""Reports of an editor session that still hold after an edit of something that their analysis did not read.
+"""Reports of an editor session that still hold after an edit, because their analysis did not read what was edited.
 
-An edit of comments, of blank lines, or of functions that a program does not use moves lines only.
+An edit of comments, of blank lines, or of functions that a program does not use only moves lines.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.run.cache import Report
 from tarl_lint.settings.config import Config
 
-KEPT_ANALYSES: Final = 4  # of each program; each is compared with the edited text
+KEPT_ANALYSES: Final = 4  # number of analyses kept for each program; each is compared with the edited text
 Moves = Mapping[str, Mapping[int, int]]  # file → line → line after the edit
 
 
 class LineLostError(Exception):
-    """A line of a report is not among the lines whose new places are known."""
+    """The new place of a line of a report is not known."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class _Analysis:
 class Analyses:
     """The last analyses of each program in an editor session, by the path of its last file, newest first.
 
-    After an edit is undone, the next one is compared with an analysis before the undone one.
+    Several are kept for the case that an edit is undone: the next edit is then compared with the analysis before it.
     """
 
     def __init__(self, config: Config) -> None:
@@ -43,18 +43,18 @@ class Analyses:
         self._last: dict[str, tuple[_Analysis, ...]] = {}
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep a report and what its analysis has read, by file; unless a file could not be analysed."""
+        """Keep a report, and what its analysis has read of each file, unless a file could not be analysed."""
         if readings and not report.errors and two_sided([s.text for s in scripts], self._config):
             made, path = _Analysis(tuple(scripts), readings, report), scripts[-1].path
             self._last[path] = (made, *self._last.get(path, ()))[:KEPT_ANALYSES]
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:
-        """Return the report that an analysis of the files would return, None if this takes an analysis."""
+        """Return the report that an analysis of the files would return; None if only an analysis can tell."""
         each = (self._moved(last, scripts) for last in self._last.get(scripts[-1].path, ()))
         return next((report for report in each if report is not None), None)
 
     def _moved(self, last: _Analysis, scripts: Sequence[Script]) -> Report | None:
-        """Return the report of an analysis with the lines of edited texts, None if an edit can change it."""
+        """Return the report of an analysis, with the lines of the edited texts; None if an edit may change it."""
         if [s.path for s in last.scripts] != [s.path for s in scripts]:
             return None
         moves: dict[str, Mapping[int, int]] = {}

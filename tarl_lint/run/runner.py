@@ -1,4 +1,7 @@
-"""One run: discover, parse, analyse, silence, subtract the baseline. A file that fails is an error entry."""
+"""One run: discover files, parse and analyse them, silence findings, subtract the baseline.
+
+A file that fails is an error entry.
+"""
 
 from __future__ import annotations
 
@@ -50,13 +53,13 @@ class Result:
     """The result of a run, from which all reports are made.
 
     `findings` are sorted by place and have a fingerprint and a status; `silenced` are those silenced by comments.
-    `found` are the findings in the form of a baseline, `vanished` and `kept` the further entries of the baseline.
-    `unmatched` are messages about settings without effect. `followed` are the analysed installed packages, `ended`
-    the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
-    Without `has_endpoints`, no file contains a word that subscribes or publishes.
-    `left_out` counts findings disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default.
-    Without `names_errors`, text reports count unreadable files without listing them. Only flows of the `kinds` were
-    requested, and hazards if `reports_hazards`. New findings with codes in `failing` fail the run.
+    `found` are the findings in the form of a baseline. `vanished` and `kept` are the other entries of the baseline.
+    `unmatched` are messages about settings without effect. `followed` are the installed packages that were analysed.
+    `ended` are the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
+    `has_endpoints` is false if no file contains a word that subscribes or publishes. `left_out` counts findings
+    disabled by `per-file-ignores`. `off_by_default` counts findings of rules that are off by default. Unless
+    `names_errors`, text reports count unreadable files without listing them. `kinds` are the kinds of flows that were
+    requested; `reports_hazards` says whether hazards were. New findings with codes in `failing` fail the run.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -99,9 +102,9 @@ def run(
 ) -> Result:
     """Lint the files at and below the paths, reporting progress to `tell`.
 
-    `buffers` maps absolute paths to the texts of unsaved files in an editor; `known` is a cache to use
-    instead of the one on disk. `early` gets results while programs are still to be analysed, with the paths of the
-    files whose findings are final.
+    `buffers` maps absolute paths to the texts of unsaved files in an editor; `known` is a cache to use instead of the
+    one on disk. `early` gets incomplete results while programs are still to be analysed, with the paths of the files
+    whose findings are final.
 
     Raises UsageError if there is nothing to lint, BaselineError if the baseline is unusable, AnalysisBug if the
     analysis crashed.
@@ -182,7 +185,10 @@ def _result(report: Report, files: _Files, config: Config) -> Result:
 
 
 def _in_vain(comment: Suppression, config: Config) -> bool:
-    """Return whether all rules that a comment may silence are enabled; without a code, these are the default rules."""
+    """Return whether all rules that a comment may silence are enabled.
+
+    A comment without a code silences the default rules.
+    """
     rules = comment.rules if comment.code else [r for r in comment.rules if r not in OFF_BY_DEFAULT]
     return all(map(config.enabled, rules))
 
@@ -193,7 +199,7 @@ def exceeds(result: Result, config: Config) -> bool:
 
 
 def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
-    """Return the codes of new findings that `fail_on` fails on: each level includes the ones before it."""
+    """Return the codes of new findings for which `fail_on` fails the run; each level includes the earlier levels."""
     codes = {f.code for f in findings if f.status == "new"}
     hazards = {code for code in codes if code.startswith("TARL2")}
     levels = {
@@ -252,7 +258,7 @@ def _examine(
 
 
 def _accepted(options: Options, config: Config) -> Baseline:
-    """Load the baseline, if there is one; it may be missing if it is about to be written."""
+    """Load the baseline, if there is one. It may be missing if this run writes it."""
     path = config.baseline
     if path is None or (options.write_baseline and not path.exists()):
         return Baseline()
@@ -260,7 +266,7 @@ def _accepted(options: Options, config: Config) -> Baseline:
 
 
 class _Identities:
-    """Computes the fingerprints of findings from their ROS package and the place of the baseline."""
+    """Computes the fingerprints of findings; they depend on the ROS package and the place of the baseline."""
 
     def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
         self._files = {file.shown: file for file in files}
@@ -301,11 +307,12 @@ def _judge(
 ) -> Callable[[Accepted], bool]:
     """Return a function that tells whether this run can judge that an accepted finding is gone.
 
-    `unasked` are the fingerprints of findings of rules that are off by default: older baselines contain them.
+    `unasked` are the fingerprints of findings of rules that are off by default; older baselines contain such
+    findings.
     """
     home = _home(config)
 
-    @lru_cache(maxsize=1)  # used only by baselines with entries
+    @lru_cache(maxsize=1)  # only baselines with entries use it
     def analysed() -> set[str]:
         unreadable = {error.path for error in errors}
         return {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
@@ -316,7 +323,7 @@ def _judge(
 
     def judged(entry: Accepted) -> bool:
         if entry.fingerprint.code.startswith("TARL3"):
-            return False  # only a run with --launch finds these
+            return False  # only runs with --launch have these findings
         asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
         return asked and all(map(settled, entry.files))
 

@@ -1,7 +1,7 @@
 """Worker processes. They cannot import linted files, and Ctrl-C ends them silently.
 
-Workers are forked if possible: a copy of this process has its modules and its `sys.path`, so it imports nothing. A
-spawned worker starts with the working directory on its path, before any code of tarl-lint runs; on Windows, which
+Workers are forked if possible: a copy of this process has its modules and `sys.path`, so it need not import anything.
+A spawned worker has the working directory on its import path before any code of tarl-lint runs. On Windows, which
 cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the calling
 program has more, no workers are used.
 """
@@ -28,7 +28,7 @@ Answer = TypeVar("Answer")
 def in_processes(
     perform: Callable[[Work], Answer], work: Sequence[Work], sizes: Sequence[int], workers: int, tell: Tell
 ) -> list[Answer] | None:
-    """Return the answers in the order of the work, or None if no process can be started safely.
+    """Return the answers in the order of the work; None if no process can be started safely.
 
     The largest tasks start first, so that no large one runs alone at the end.
     """
@@ -57,7 +57,7 @@ def _pool(workers: int) -> ProcessPoolExecutor | None:
         return None
     try:
         return ProcessPoolExecutor(workers, context, end_silently)
-    except (ImportError, NotImplementedError, OSError):  # the system has no semaphores
+    except (ImportError, NotImplementedError, OSError):  # raised if the system has no semaphores
         return None
 
 

@@ -1,1 +1,1 @@
-"""The settings of a run: keys of pyproject.toml, checked values, wrappers, ignores by file."""
+"""The settings of a run: keys of pyproject.toml, checked values, wrappers, and rules ignored in some files."""

@@ -46,7 +46,7 @@ class Options:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     stdin: Stdin | None = None
     cache: bool = True
-    jobs: int | None = None  # processes; None chooses the number by the size of the run
+    jobs: int | None = None  # number of processes; None chooses it by the size of the run
 
 
 @dataclass(frozen=True)
@@ -54,15 +54,14 @@ class Config:
     """Settings of one run. `Config()` is valid: every rule, nothing excluded, no baseline.
 
     `select`, `extend_select` and `ignore` contain rule codes or prefixes (`TARL1`); an empty `select` means all
-    rules. A rule that is off by default is enabled only by its full code.
-    `exclude` contains patterns as in .gitignore; they and a named baseline are relative to `root`.
-    `per_file_ignores` contains such patterns with the codes that are disabled in matching files.
-    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); results of sanitizers are not tainted.
-    `wrappers` are functions that subscribe, publish or wait like a function of ROS.
-    `remaps` are pairs of topic names: in the code, and at launch.
-    With `tf2`, look-ups of transforms are sources too.
-    `follow_installed` names packages in the virtual environment `python` that are analysed too.
-    `origins` maps each key to its origin: "default", "command line" or the settings file.
+    rules. A rule that is off by default is enabled only by its full code. `exclude` contains patterns as in
+    .gitignore. These patterns and a named baseline are relative to `root`. `per_file_ignores` contains such patterns
+    with the codes that are disabled in matching files. `sources`, `sinks` and `sanitizers` are qualified names
+    (`robot.bus.listen`); results of sanitizers are not tainted. `wrappers` are functions that subscribe, publish or
+    wait like a function of ROS. `remaps` are pairs of topic names: the name in the code, and the name at launch. With
+    `tf2`, look-ups of transforms are also sources. `follow_installed` names packages in the virtual environment
+    `python` that are also analysed. `origins` maps each key to its origin: "default", "command line" or the settings
+    file.
     """
 
     root: Path | None = None
@@ -121,7 +120,7 @@ def resolve(options: Options) -> Config:
         return typed if typed is not None else table.get(key, default)
 
     def extended(key: str, added: tuple[str, ...], typed: Any = None) -> Any:
-        """Return the value from `choose`, extended by an --extend option."""
+        """Return the value that `choose` returns, extended by an --extend option."""
         chosen = choose(key, typed, ())
         if added:
             before = origins[key]
@@ -163,7 +162,7 @@ def common_directory(paths: Sequence[Path]) -> Path:
     places = [os.path.abspath(p) for p in paths] or [os.getcwd()]  # noqa: PTH100, PTH109 - also for missing files
     try:
         common = Path(os.path.commonpath(places))
-    except ValueError:  # different drives on Windows
+    except ValueError:  # the paths are on different drives of Windows
         return Path.cwd()
     return common if common.is_dir() else common.parent
 
@@ -186,7 +185,10 @@ def find_settings(start: Path) -> Path | None:
 
 
 def _mentions_us(path: Path) -> bool:
-    """Return whether the bytes mention the table: most files then need no TOML parser, which is slow to import."""
+    """Return whether the bytes mention the table.
+
+    Most files do not, and need no TOML parser, which is slow to import.
+    """
     if not path.is_file():  # opening a named pipe would block
         return False
     try:
@@ -212,7 +214,7 @@ def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
 
 
 def _table(path: Path, data: bytes) -> dict[str, Any] | None:
-    """Parse TOML and return the table, None if there is none. Raises ConfigError for invalid TOML."""
+    """Parse TOML and return the table; None if there is none. Raises ConfigError for invalid TOML."""
     document = _parse_toml(path, data)
     tool = document.get("tool")
     if isinstance(tool, dict) and TABLE in tool:
@@ -234,12 +236,12 @@ def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
     toml = importlib.import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
         return cast("dict[str, Any]", toml.loads(data.decode("utf-8-sig")))
-    except ValueError as error:  # includes bytes that are not UTF-8
+    except ValueError as error:  # also raised for bytes that are not UTF-8
         raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
 
 
 def _check(path: Path, key: str, value: Any) -> Any:
-    """Return a value in the form of `Config`. Raises ConfigError with the key, or a suggestion for it."""
+    """Return a value in the form of `Config`. Raises ConfigError, which names the key or suggests another one."""
     if key not in KEYS:
         meant = suggestion(key.replace("_", "-"), KEYS)
         raise ConfigError(
@@ -257,8 +259,8 @@ def _check(path: Path, key: str, value: Any) -> Any:
 
 def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: float = 0.72) -> str:
     """Return ": did you mean 'x'?" if a known word is similar, else a full stop."""
-    import difflib  # imported only for mistakes
+    import difflib  # imported only after a mistake
 
-    bare = {name.lstrip("-"): name for name in known}  # the common prefix "--" must not count as similarity
+    bare = {name.lstrip("-"): name for name in known}  # the common prefix "--" would make all options similar
     close = difflib.get_close_matches(word.lstrip("-"), list(bare), n=1, cutoff=cutoff)
     return f": did you mean {bare[close[0]]!r}?" if close else "."

@@ -15,7 +15,7 @@ FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
 
 @dataclass(frozen=True)
 class Wrapper:
-    """A function that does the same as the ROS function `like`; the other fields give the places of its arguments.
+    """A function that does the same as the ROS function `like`. The other fields are the places of its arguments.
 
     A number is a position, a string a keyword; None means the same place as in `like`.
     """
@@ -41,7 +41,7 @@ def _patterns(value: Any) -> tuple[str, ...] | None:
 
 
 def check_pattern(pattern: str) -> str:
-    """Return a pattern. Raises ValueError if it has backslashes, which would match nothing."""
+    """Return a pattern. Raises ValueError if it has backslashes, since such a pattern would match nothing."""
     if re.search(r"\\(\w|$)", pattern):
         meant = pattern.replace("\\", "/")
         raise ValueError(f"{pattern!r} has backslashes: patterns are written as in .gitignore: {meant!r}.")
@@ -54,14 +54,14 @@ def _codes(value: Any) -> tuple[str, ...] | None:
 
 
 def _names(value: Any) -> tuple[str, ...] | None:
-    """Return dotted names such as `robot.bus.listen`, None if one has no module."""
+    """Return dotted names such as `robot.bus.listen`; None if one of them has no module."""
     names = _texts(value)
     good = names is not None and all("." in name and _identifiers(name) for name in names)
     return names if good else None
 
 
 def _packages(value: Any) -> tuple[str, ...] | None:
-    """Return names of packages as imported, None if one contains dots."""
+    """Return names of packages as imported; None if one of them contains dots."""
     names = _texts(value)
     return names if names is not None and all(name.isidentifier() for name in names) else None
 

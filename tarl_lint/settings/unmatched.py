@@ -1,4 +1,4 @@
-"""Names in the settings that no file mentions: a misspelt name would otherwise have no effect, silently."""
+"""Find names in the settings that no file mentions; a misspelt name would otherwise silently have no effect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wrappers from the settings, as facts of the catalog."""
+"""Turn the wrappers in the settings into facts of the catalog."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KINDS: Final = frozenset(
 
 @cache
 def facts(wrappers: tuple[Wrapper, ...]) -> Mapping[str, Fact]:
-    """Return qualified name → fact. Raises ConfigError if `like` names nothing that can be wrapped."""
+    """Return qualified name → fact. Raises ConfigError if `like` is not a function that can be wrapped."""
     return {wrapper.name: _fact(wrapper) for wrapper in wrappers}
 
 

@@ -50,7 +50,7 @@ Side = Literal["above", "below", "both"]
 
 
 def limits(statement: ast.AST, ours: frozenset[str]) -> bool:
-    """Return whether the value that a statement computes is limited, or may be by code outside the analysed files."""
+    """Return whether a computed value is limited, or may be limited by code outside the analysed files."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Call) and _limiting(node, ours):
             return True
@@ -91,16 +91,16 @@ def call_name(call: ast.Call) -> str:
 
 
 def _looked_up(node: ast.Subscript) -> bool:
-    """Return whether a computed index selects the element, as in a table of speeds."""
+    """Return whether a computed index selects an element, for example of a table of speeds."""
     table = node.value
     name = table.attr if isinstance(table, ast.Attribute) else getattr(table, "id", "")
     return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp)) and name not in MEASURED
 
 
 def side(test: ast.expr, *, holds: bool) -> Side:
-    """Return where a value lies if a condition on it holds, or does not: above something, below it, or either.
+    """Return where a value lies if a condition on it holds, or fails: above something, below something, or `both`.
 
-    Conditions that are not understood count as `both`, so that nothing is concluded from them.
+    A condition that is not understood gives `both`, so that nothing is concluded from it.
     """
     if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
         return side(test.operand, holds=not holds)

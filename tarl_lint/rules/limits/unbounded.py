@@ -1,4 +1,4 @@
-"""Values from a subscription whose magnitude nothing limits."""
+"""Find values from a subscription whose magnitude nothing limits."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Magnitudes:
         return written is not None and self.evidence.limited(written.node)
 
     def _holds_below(self, condition: int, way: str, node: int) -> bool:
-        """Return whether a node is only reached if a condition bounds its value from above."""
+        """Return whether a node is reached only if a condition bounds its value from above."""
         test = self._test(condition)
         if test is None or not any(comparisons(test)) or not self._about(condition, test, node):
             return False
@@ -85,7 +85,7 @@ class Magnitudes:
         return holds is None or side(test, holds=holds) != "above"
 
     def _guarded(self, node: int, dep: int) -> bool:
-        """Return whether a comparison on `dep` can replace it by another value at `node`."""
+        """Return whether a comparison of `dep` can replace `dep` by another value at `node`."""
         mine = self.graph.branches[dep]
         for other in self.graph.data[node]:
             if other != dep and any(self._compares(b, dep) for b in self.graph.branches[other] - mine):

@@ -21,7 +21,7 @@ CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict",
 class Access:
     """An access in the source, with the locks held around it in its function.
 
-    `constant`: the access stores a constant, like a flag.
+    `constant` says that the access stores a constant, as for a flag.
     """
 
     node: ast.Attribute | ast.Name
@@ -43,7 +43,7 @@ class Access:
 
 
 def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Access]:
-    """Yield the accesses in a function to attributes of its receiver (its name, "" for none) and to globals."""
+    """Yield the accesses in a function to globals, and to attributes of its receiver (its name; "" for none)."""
     shared = _globals(outline) - _locals(function)
     for node in _own(function):
         if isinstance(node, ast.Attribute):

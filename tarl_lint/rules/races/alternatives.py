@@ -1,4 +1,4 @@
-"""Threads of which a program starts one or the other: callbacks registered in opposite branches of an `if`."""
+"""Find threads of which only one is started: callbacks registered in opposite branches of an `if`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def never_both(evidence: Evidence, first: object, second: object) -> bool:
 
 
 def _ways(evidence: Evidence, thread: tuple[object, ...]) -> dict[ast.If, bool]:
-    """Return the conditions around the registration of a callback, and whether they have to hold."""
+    """Return the conditions around the registration of a callback, each with the outcome that leads to it."""
     what = thread[0] if thread else None
     if not isinstance(what, tuple) or len(what) != 3 or not isinstance(what[1], str):
         return {}

@@ -1,4 +1,4 @@
-"""Names of state that is used with a lock and without one, from the syntax alone: only they can be a hazard."""
+"""Find names of state that is used both with and without a lock, by syntax alone. Only these can be a hazard."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tarl_lint.trees import last_name, walk
 def always_or_never_guarded(modules: Sequence[Module]) -> bool:
     """Return whether no attribute or global is used both under a lock and without one.
 
-    Uses during construction count as neither. Where code under a lock calls a function of the modules, which may use
-    anything, the answer is no.
+    Uses during construction do not count. If code under a lock calls a function of the modules, the answer is no,
+    since that function may use anything.
     """
     outlines = [Outline(module.tree) for module in modules]
     ours = {d.name for outline in outlines for d in outline.definitions}
@@ -37,7 +37,7 @@ def _under_locks(outline: Outline) -> Iterator[ast.Call]:
 
 
 def _accesses(outline: Outline) -> Iterator[Access]:
-    """Yield the accesses of all functions but `__init__` to attributes of anything named like a receiver."""
+    """Yield the accesses of all functions except `__init__` to attributes of variables named like a receiver."""
     receivers = {_first(d) for d in outline.definitions if isinstance(d, FUNCTIONS)}
     for function in walk(outline.tree):
         if isinstance(function, FUNCTIONS) and getattr(function, "name", "") != "__init__":
@@ -46,7 +46,7 @@ def _accesses(outline: Outline) -> Iterator[Access]:
 
 
 def _at_module_level(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that the module itself uses, which the main program may do at any time."""
+    """Yield the names that the top level of the module uses; the main program may do so at any time."""
     pending: list[ast.AST] = [tree]
     while pending:
         node = pending.pop()

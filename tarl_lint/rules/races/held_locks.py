@@ -1,4 +1,4 @@
-"""Locks held at a place in a function, from the syntax of that function alone."""
+"""Find the locks held at a place in a function, by the syntax of that function alone."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
 
 
 def lock_name(expr: ast.expr, outline: Outline) -> str:
-    """Return the last part of a lock's name; of a condition, that of its lock; "" for anything else."""
+    """Return the last part of a lock's name; for a condition variable, that of its lock; "" for anything else."""
     if isinstance(expr, ast.Call):
         expr = expr.func.value if isinstance(expr.func, ast.Attribute) else expr.func
     name = last_name(expr)
@@ -79,7 +79,8 @@ def lock_name(expr: ast.expr, outline: Outline) -> str:
 def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
     """Return the locks that the function takes after a node that only decides whether to return early.
 
-    `if self.stamp == self.seen: return` before `with self.lock:` only saves time; the value that counts is read later.
+    In `if self.stamp == self.seen: return` before `with self.lock:`, the test only saves time. The value that counts
+    is read later, under the lock.
     """
     current = node
     for outer in outline.around(node):

@@ -23,7 +23,7 @@ State = tuple[object, str]  # an object with one of its attributes, or a module 
 class Spot:
     """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `asked` are locks that the function takes later, if this access only decides on an early return.
+    `asked` are the locks that the function takes later; empty unless this access only decides on an early return.
     """
 
     path: str
@@ -37,7 +37,8 @@ class Spot:
 class Use:
     """One access to shared state in one thread: the access first, then the calls that lead to it.
 
-    `name` is as in the source (`self.pose`, `pose`); `constant`: the access stores a constant, like a flag.
+    `name` is as in the source (`self.pose`, `pose`). `constant` says that the access stores a constant, as for a
+    flag.
     """
 
     name: str
@@ -81,7 +82,7 @@ class Locking:
                 if state is None:
                     continue
                 if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
-                    continue  # the call may run before the threads start
+                    continue  # whether the call may run before the threads start
                 use = self._use(access, frame, thread, callers)
                 found.setdefault(state, {})[use] = None
         return {state: list(uses) for state, uses in found.items()}
@@ -96,7 +97,7 @@ class Locking:
         return Use(name, (spot, *callers), thread, access.writes, access.constant, access.how)
 
     def _callers(self, frame: Frame) -> tuple[list[Spot], bool]:
-        """Return the calls that lead to a frame, the nearest first, and whether one of them is in a loop."""
+        """Return the calls that lead to a frame, nearest first, and whether one of these calls is in a loop."""
         spots: list[Spot] = []
         repeated = False
         current: Frame = frame
@@ -130,7 +131,8 @@ class Locking:
 def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
     """Yield the accesses without a lock, each with the place where the lock is missing.
 
-    That is the access itself or, if other calls reach the access with a lock, the call that does not hold it.
+    This place is the access itself. If other calls reach the access with a lock, it is the call that does not hold
+    the lock.
     """
     held = {(s.path, s.pos) for use in uses for s in use.spots if s.locks}
     locks = frozenset(lock for use in uses for lock in use.locks)
@@ -143,7 +145,7 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
 
 
 class Harm:
-    """Decides whether an access without a lock can go wrong beside one with the lock.
+    """Decides whether an access without a lock can go wrong while another thread accesses the state under the lock.
 
     Python replaces a reference atomically: a single read of a value that is only ever replaced sees the old or the
     new one. A store is lost only if another thread changes the value in place or relies on it across several accesses.
@@ -165,7 +167,7 @@ class Harm:
                     self._read.setdefault(_by(use), set()).add(state)
 
     def between(self, state: State, use: Use, guarded: Use) -> bool:
-        """Return whether `use`, without a lock, can go wrong beside `guarded`."""
+        """Return whether `use`, which holds no lock, can go wrong while another thread does `guarded`."""
         if use.how == "length":
             return False
         if use.writes:
@@ -189,7 +191,7 @@ def _by(use: Use) -> tuple[object, ...]:
 
 
 def _state(access: Access, frame: Frame, receiver: Obj | None) -> State | None:
-    """Return the state that is accessed; None during its construction, and if it is unknown."""
+    """Return the state that is accessed; None if it is under construction or unknown."""
     if access.is_global:
         return frame.module, access.name
     return None if receiver is None or _making(frame, receiver) else (receiver, access.name)
@@ -221,7 +223,7 @@ def _receiver_name(frame: Frame) -> str:
 
 
 def _making(frame: Frame, receiver: Obj) -> bool:
-    """Return whether the object is under construction, so that no other thread knows it."""
+    """Return whether the object is under construction; no other thread can then access it."""
     current: Frame | None = frame
     while current is not None:
         if current.function.name == "__init__" and _receiver(current) is receiver:

@@ -1,4 +1,7 @@
-"""Thread of a function: each rospy callback has its own; rclpy's share one unless the executor and groups differ."""
+"""Find the thread of a function.
+
+Each rospy callback has its own; rclpy callbacks share one unless executor and groups allow more.
+"""
 
 from __future__ import annotations
 
