@@ -32,6 +32,23 @@ def test_links_lead_to_files(page: Path) -> None:
     assert not missing
 
 
+def anchors(page: Path) -> set[str]:
+    """Return the anchors that the headings of a page get, as GitHub and the site make them."""
+    titles = re.findall(r"^#+ (.+)$", page.read_text("utf-8"), re.MULTILINE)
+    texts = [re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title).lower() for title in titles]
+    return {re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", text).strip()) for text in texts}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_anchors_are_headings_of_their_page(page: Path) -> None:
+    links = re.findall(r"\]\(((?:[\w./-]+\.md)?)#([^)\s]+)\)", page.read_text("utf-8"))
+    assert [
+        f"{name}#{anchor}"
+        for name, anchor in links
+        if anchor not in anchors(page.parent / name if name else page)
+    ] == []
+
+
 def test_every_mentioned_flag_exists() -> None:
     mentioned = {flag for page in PAGES for flag in re.findall(r"--tarl-[a-z]+", page.read_text("utf-8"))}
     assert mentioned
