@@ -2,10 +2,10 @@
 
     python benchmarks/acceptance.py [--runs 400]
 
-Missions are drawn, not simulated: the total of a successful mission is normal with mean `ratio` × 10, a failed one
-earns as little as the worst recorded one, -10. Designed missions earn 10 on average and never fail; a share of their
-variance is determined by the seed, so that pairing can remove it. A repair is right if it loses less than 5 % of the
-designed reward on average, including failures, and fails in less than 5 % of its missions.
+Missions are drawn, not simulated. The total of a successful mission is normal with mean `ratio` × 10; a failed
+mission earns -10, as little as the worst recorded one. Designed missions earn 10 on average and never fail. The seed
+determines a share of their variance, which pairing can therefore remove. A repair is right if it loses less than 5 %
+of the designed reward on average, including failures, and fails in less than 5 % of its missions.
 """
 
 from __future__ import annotations

@@ -2,9 +2,10 @@
 
     python benchmarks/bound_coverage.py [--repetitions 2000]
 
-Rows are distributions of an episode's total, columns numbers of episodes. A cell is the share of lower / upper bounds
-that held. Exact bounds must hold in at least 94 %, within the error of the benchmark; approximate ones have no goal.
-A loss compares 200 recorded episodes with new episodes of the same world; their number is in the column.
+Rows are distributions of an episode's total; columns are numbers of episodes. A cell is the share of lower / upper
+bounds that held. Exact bounds must hold in at least 94 % of the samples, within the error of the benchmark.
+Approximate bounds have no goal. A loss compares 200 recorded episodes with new episodes of the same world; the column
+says how many new ones.
 """
 
 from __future__ import annotations
@@ -36,10 +37,10 @@ from pytest_tarl.seeds import generator
 CONFIDENCE = 0.95
 GOAL = 0.94
 EPISODES = (8, 20, 50, 200)
-ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range, which are slow to compute
+ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range; these bounds are slow to compute
 OFFLINE = 200
 QUANTILE = 0.05
-LIMIT = 0.01  # margin of an acceptance, as a share of the range
+LIMIT = 0.01  # margin of an acceptance test, as a share of the range
 TRUTH = 2_000_000  # draws from which the true mean or quantile is computed
 
 Generator = np.random.Generator
@@ -78,7 +79,7 @@ class World:
 
     @property
     def declared(self) -> Range | None:
-        """Return a range that contains all totals, None if there is none."""
+        """Return a range that contains all totals; None if there is none."""
         return DRAWN[self.name][1]
 
     @cached_property
@@ -106,7 +107,7 @@ class World:
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Return whether bets of an acceptance stay below the limit for n episodes that lose exactly the margin."""
+        """Return whether the bets of an acceptance test stay below the limit if n episodes lose exactly the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin

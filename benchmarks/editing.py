@@ -1,10 +1,10 @@
-"""Measure the language server's latency: first for a tree, then after edits of one file.
+"""Measure the latency of the language server: first for a whole tree, then after edits of one file.
 
     python benchmarks/editing.py TREE [--files 12] [--seed 0] [--all]
 
-Files are drawn from those with a diagnostic, or with --all from all. Each is edited in three ways: a comment line
+Files are drawn from those with a diagnostic; with --all, from all files. Each file is edited in three ways: a comment
 before a random statement, a statement in a random function, and a statement at the end. Times are CPU seconds of the
-linter until all findings are known, and until those of the edited file are; the protocol adds milliseconds.
+linter until all findings are known, and until the findings of the edited file are. The protocol adds milliseconds.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main() -> None:
     workspace = Workspace([root])
 
     def timed(buffers: Mapping[Path, str], edited_path: str = "") -> tuple[float, float, Result]:
-        """Return the seconds until the findings of an edited file are final, those of the whole run, and the result."""
+        """Return the seconds until the edited file's findings are final, those of the whole run, and the result."""
         begun = time.process_time()
         finals: list[float] = []
 
@@ -74,7 +74,7 @@ def main() -> None:
 
 
 def edited(text: str, kind: str, rng: random.Random) -> str:
-    """Return a text with an added line; where there is no function, a statement goes to the end."""
+    """Return a text with an added line; if the file has no function, the statement is added at the end."""
     lines = text.split("\n")
     statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
     functions = [node for node in statements if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]

@@ -1,7 +1,7 @@
 """Measure `tarl ingest` and `tarl fleet` on a simulated fleet whose changes are known.
 
     python benchmarks/fleet.py [--robots 1000] [--missions 100] [--logs 20] [--seed 0]
-    python benchmarks/fleet.py --robots 10000 --data DIR     # write the data set and its recording, nothing else
+    python benchmarks/fleet.py --robots 10000 --data DIR     # only write the data set and its recording
 
 Robots drive past ten places, dry or wet, at 40 sites. Three things differ from the recorded world:
 
@@ -11,8 +11,9 @@ Robots drive past ten places, dry or wet, at 40 sites. Three things differ from 
 - a repair of the release, rolled out to every other robot of its sites in the last sixth: it undoes the loss at all of
   them but one, where it does nothing
 
-Groups are asked for by version and site, by site, and by site and week, since a season is not in the first of them. For
-comparison, the z-score of each robot's and group's mean reward against the recorded episodes, with |z| > 3 as an alarm.
+Groups are formed by version and site, by site, and by site and week. A season does not show in the first of these
+groupings. For comparison, the script also computes the z-score of the mean reward of each robot and group against the
+recorded episodes; |z| > 3 is an alarm.
 """
 
 from __future__ import annotations
@@ -54,9 +55,9 @@ SENSORS = (
     Sensor("place", topic="/place", field="data", low=0, high=PLACES, bins=PLACES),
     Sensor("wet", topic="/wet", field="data"),
 )
-BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and between two missions of a robot, in s
+BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and time between two missions of a robot, in s
 ALARM = 3.0  # |z|
-REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it does nothing
+REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it has no effect
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and its truth; missions are numbered from 0, -1 for never."""
+    """A robot and what truly changed for it. Missions are numbered from 0; -1 means never."""
 
     number: int
     site: int
@@ -82,12 +83,12 @@ class Robot:
 
     @property
     def name(self) -> str:
-        """Return its name in the data set."""
+        """Return the robot's name in the data set."""
         return f"r{self.number:05}"
 
     @property
     def first(self) -> int:
-        """Return its first mission that is not as recorded; -1 without one."""
+        """Return the robot's first mission that differs from the recorded world; -1 if there is none."""
         return min((one for one in (self.onset, self.released, self.season) if one >= 0), default=-1)
 
     def world(self, mission: int) -> World:
@@ -106,7 +107,7 @@ class Robot:
 
 
 def fleet(robots: int, missions: int, seed: int) -> list[Robot]:
-    """Draw the truth of each robot."""
+    """Draw what truly changes for each robot."""
     rng = generator(seed, "fleet/truth")
     drifted = set(rng.choice(robots, max(1, robots // 100), replace=False).tolist())
     onsets = rng.integers(int(0.3 * missions), int(0.7 * missions), robots).tolist()
@@ -173,7 +174,7 @@ def rows(robots: list[Robot], missions: int, seed: int) -> Iterator[tuple[str, R
 
 
 def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Origin) -> tuple[int, float]:
-    """Write the data set as `tarl ingest` does, in portions of robots; return its bytes and the CPU seconds of it."""
+    """Write the data set as `tarl ingest` does, some robots at a time; return its bytes and the CPU seconds it took."""
     size, spent = 0, 0.0
     for begin in range(0, len(robots), 200):
         parts: dict[tuple[str, str], list[Row]] = {}
@@ -259,12 +260,12 @@ def command(*arguments: object) -> tuple[float, str]:
 
 
 def peak() -> float:
-    """Return the largest memory of any command so far in MB."""
+    """Return the largest memory that any command has used so far, in MB."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 
 def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float]) -> None:
-    """Print which robots were named, beside the z-scores."""
+    """Print which robots were named, by TARL and by their z-scores."""
     truth = {one.name: one for one in robots}
     named = {"e-BH, missions differ": {*told["drifted"]}, "e-BH, below a bound": {*told["below"]}}
     named["e-BH, either"] = named["e-BH, missions differ"] | named["e-BH, below a bound"]
@@ -309,7 +310,7 @@ def key_of(by: str, robot: Robot, mission: int, missions: int) -> tuple[str, ...
 
 
 def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...], dict[str, float]]:
-    """Return, by group and kind of change in it, the time of the change."""
+    """Return the time of each change, by group and kind of change."""
     found: dict[tuple[str, ...], dict[str, float]] = {}
     for robot in robots:
         for n in range(missions):
@@ -321,7 +322,7 @@ def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...]
 
 
 def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[Robot], missions: int) -> None:
-    """Print which groups were found by verdict, by onset and by z-score, and how far off the onsets are."""
+    """Print which groups were found by verdict, by onset and by z-score, and the error of the onsets."""
     truth = changes(by, robots, missions)
     mean, spread = float(recorded.total.mean()), float(recorded.total.std(ddof=1))
     named = {*told["groups_drifted"], *told["groups_below"]}

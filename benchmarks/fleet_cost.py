@@ -2,9 +2,9 @@
 
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
-The measurements are those of docs/benchmarks/fleet.md, section "A fleet"; --measured replaces them by others, such as
-`--measured 100000:20.1:500 1000000:80.2:1300` (missions, CPU seconds and peak memory in MB of a question). Prices are
-assumptions in dollars: replace them by those of your provider.
+The measurements are those of docs/benchmarks/fleet.md, section "A fleet". `--measured 100000:20.1:500
+1000000:80.2:1300` replaces them by others: the missions, CPU seconds and peak memory in MB of a question. Prices are
+assumptions in dollars; replace them by those of your provider.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
-BYTES = 193  # a mission without taint lists, stored
-INGESTED = 2000  # missions a CPU second
-SCORES = 26 + 16  # bytes that a worker returns for a mission: a byte a score, and its number
-TAKEN = 26 + 25  # bytes of a mission that a task takes: its scores and results
+BYTES = 193  # stored bytes of a mission without taint lists
+INGESTED = 2000  # missions per CPU second
+SCORES = 26 + 16  # bytes that a worker returns for a mission: its number, and one byte for each score
+TAKEN = 26 + 25  # bytes that a task receives for a mission: its scores and results
 PARALLEL = 0.75  # share of a question's CPU time that runs on workers
-TRANSFER = 1.25e9  # bytes a second between the client and the workers (10 Gbit/s)
+TRANSFER = 1.25e9  # bytes per second between the client and the workers (10 Gbit/s)
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Line:
 
 
 def fitted(missions: list[float], values: list[float]) -> Line:
-    """Fit a line by least squares of the relative errors."""
+    """Fit a line that minimises the squares of the relative errors."""
     weight = 1.0 / np.array(values)
     columns = np.stack([np.ones(len(missions)), np.array(missions)], axis=1)
     fixed, each = np.linalg.lstsq(columns * weight[:, None], np.ones(len(values)), rcond=None)[0].tolist()
@@ -70,7 +70,7 @@ def main() -> None:
     print(f"  a question: {hours:,.1f} core hours, {hours * order.core_hour:,.2f} dollars")
     print(f"  of these on one machine, whatever the cluster: {(1 - PARALLEL) * hours:,.1f} core hours")
     print(f"  memory of the machine that asks: {peak.at(many) / 1000:,.0f} GB")
-    moved = many * (SCORES + 2 * TAKEN)  # robots and groups are judged in tasks of their own
+    moved = many * (SCORES + 2 * TAKEN)  # robots and groups are judged in separate tasks
     print(f"  scores from and to the workers: {moved / 1e9:,.0f} GB, {moved / TRANSFER / 60:,.0f} minutes")
 
 

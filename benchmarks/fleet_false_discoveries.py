@@ -1,11 +1,12 @@
-"""Measure the false discovery rate of the robots that `tarl fleet` names, over many simulated fleets with known truth.
+"""Measure the false discovery rate of the robots that `tarl fleet` names, over many simulated fleets.
 
     python benchmarks/fleet_false_discoveries.py [--fleets 100] [--robots 100] [--missions 60]
 
-Each fleet has a recording of its own, of the world of benchmarks/fleet.py. In the first half of the fleets, a tenth of
-the robots drift from a random mission on (a place costs reward, 15 % of the missions fail); in the second half, none
-does, and a fleet's share of false discoveries is 1 if any is named. Missions are drawn as statistics and judged by
-the functions that the command calls. For comparison, the z-score of each robot's mean reward, with |z| > 3 as an alarm.
+Each fleet has its own recording of the world of benchmarks/fleet.py. In the first half of the fleets, a tenth of the
+robots drift from a random mission on: a place costs reward, and 15 % of the missions fail. In the second half, no
+robot drifts, so a fleet's share of false discoveries is 1 if any robot is named. Missions are drawn as statistics and
+judged by the functions that the command calls. For comparison, the script also computes the z-score of each robot's
+mean reward; |z| > 3 is an alarm.
 """
 
 from __future__ import annotations
@@ -30,14 +31,14 @@ from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.seeds import generator
 
 Q = 0.05
-SHARE = 10  # one of so many robots drifts
+SHARE = 10  # one robot in this many drifts
 METHODS = ("missions differ", "below a bound", "z-score")
 
 
 def drawn(
     rng: np.random.Generator, drifted: np.ndarray[tuple[int], np.dtype[np.bool_]], cells: int
 ) -> Sample:
-    """Return missions as `drive` of benchmarks/fleet.py runs them; `drifted` tells in which the place costs reward."""
+    """Return missions as `drive` of benchmarks/fleet.py runs them; in those in `drifted`, the place costs reward."""
     count = len(drifted)
     wet = rng.random(count) < 0.3
     stays = rng.random((count, PLACES)) < 0.5

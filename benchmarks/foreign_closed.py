@@ -30,7 +30,7 @@ _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 
 def warm_up() -> None:
-    """Import the modules that every test needs, so that forked processes need not."""
+    """Import the modules that every test needs, so that forked processes need not import them."""
     import numpy  # noqa: F401
     import pytest  # noqa: F401
 

@@ -1,4 +1,4 @@
-"""Messages as a new user would write them: some value in every field, and complete images, scans and clouds."""
+"""Messages as a new user would write them: every field has some value, and images, scans and clouds are complete."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _fill(message: Any, step: int, depth: int) -> None:
 
 
 def fields_of(value: Any) -> bool:
-    """Return whether a value is a message with fields to fill; times are not."""
+    """Return whether a value is a message with fields to fill; a time is not."""
     kind = type(value).__name__
     return (
         kind not in ("Time", "Duration")

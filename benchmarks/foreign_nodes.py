@@ -2,11 +2,11 @@
 
     python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--counted N --seed N] [--keep SCRATCH] [--json FILE]
 
-Each FOLDER contains checkouts, one folder per repository. They are copied to a scratch folder. Each script gets a
-minimal simulation test: start it, then publish messages on the topics that it subscribes to, for a few virtual
+Each FOLDER contains checkouts, one folder per repository. The checkouts are copied to a scratch folder. Each script
+gets a minimal simulation test: start it, then publish messages on the topics that it subscribes to, for a few virtual
 seconds. Each test runs in its own process with a time limit and restricted access: no programs, no network, no files
-outside the scratch folder. Counted separately, with the reason: scripts in Python 2, tests, and scripts that need a GPU
-library or the SDK of a device that is not installed.
+outside the scratch folder. Scripts in Python 2, tests, and scripts that need a GPU library or a device's SDK that is
+not installed are counted separately, with the reason.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:
 
 
 def report(outcomes: Sequence[Outcome]) -> None:
-    """Print the figures, the missing features by group, and the scripts counted separately."""
+    """Print the figures, the missing features by group, and the scripts that are counted separately."""
     ran = [one for one in outcomes if not one.apart]
     started = [one for one in ran if one.starts]
     print(
@@ -190,7 +190,9 @@ def report(outcomes: Sequence[Outcome]) -> None:
 def main() -> None:
     """Run the scripts and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    parser.add_argument("folders", type=Path, nargs="+", help="folders of checkouts, one folder a repository")
+    parser.add_argument(
+        "folders", type=Path, nargs="+", help="folders of checkouts, one folder per repository"
+    )
     parser.add_argument("--only", default="", help="run the scripts whose path contains this")
     parser.add_argument("--counted", type=int, help="run scripts in random order until this many are counted")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random order")

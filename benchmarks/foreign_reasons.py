@@ -1,4 +1,4 @@
-"""Classify failures of node scripts: name the missing feature, or the reason to count the script separately."""
+"""Classify failures of node scripts: find the missing feature, or the reason to count the script separately."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def why(fails: str) -> str:
 
 
 def set_apart(fails: str, repository: Path) -> str:
-    """Return why a script is counted separately: Python 2, a display, or a package not available here or in ROS."""
+    """Return why a script is counted separately: it needs Python 2, a display, or a package that is not available."""
     old = PYTHON_2.search(fails)
     if old is not None:
         return f"Python 2 only ({old[1]})"

@@ -1,4 +1,7 @@
-"""Find the node scripts of checked-out repositories, and which of them to count separately. Nothing is executed."""
+"""Find the node scripts of checked-out repositories, and those among them that are counted separately.
+
+Nothing is executed.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +83,7 @@ def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
 
 
 def script(repository: Path, path: Path, entry: str | None) -> Script | None:
-    """Return the file as a node script, None if it is not one."""
+    """Return the file as a node script; None if it is not one."""
     text = path.read_text("utf-8", errors="replace")
     if path.name == "setup.py" or path.name.endswith(".launch.py") or not MADE_BY.search(text):
         return None
@@ -111,7 +114,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def _runs(statement: ast.stmt) -> bool:
-    """Return whether a top-level statement may start a node: the guard of a script, or a call."""
+    """Return whether a top-level statement may start a node: the `__main__` guard, or a call."""
     if isinstance(statement, ast.If):
         return re.search(r"__name_", ast.unparse(statement.test)) is not None
     text = "" if isinstance(statement, ast.FunctionDef | ast.ClassDef) else ast.unparse(statement)

@@ -1,10 +1,11 @@
-"""Measure false alarms and power of the verdict, and the contents of the region, over many repetitions.
+"""Measure the false alarms and the power of the verdict, and how well the region fits, over many repetitions.
 
     python benchmarks/gate.py [--repetitions 500] [--worlds track lane …] [--sizes 0 0.2 1]
 
-Eight small worlds and the two examples. For each world, and each way in which a sensor can show the drift, a pool of
-missions is simulated for every size of the drift. Pairs of samples (designed, drifted) are then drawn repeatedly from
-the pools and compared. For reference: a two-sample Kolmogorov-Smirnov test on total reward, and a threshold of 10 %.
+The worlds are eight small ones and the two examples. For each world and each way in which a sensor can show the
+drift, a pool of missions is simulated for every size of the drift. Pairs of samples (designed, drifted) are then
+drawn repeatedly from the pools and compared. Reference methods are a two-sample Kolmogorov-Smirnov test on total
+reward, and a threshold of 10 %.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), drifting
+POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), and drifting (False)
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
 
@@ -77,7 +78,7 @@ def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZE
         for repetition in range(repetitions):
             draws = seeds.generator(repetition, f"{world}/{mode}/{size}")
             order = draws.permutation(designed.episodes)
-            # Without drift both samples come from one pool but share no mission.
+            # Without drift, both samples come from the same pool but share no mission.
             chosen = order[-ONLINE:] if size == 0.0 else draws.permutation(there.sample.episodes)[:ONLINE]
             recordings = drawn(designed, order[:OFFLINE]), drawn(there.sample, chosen)
             judged.append(_judged(*recordings, there.changed, draws))
@@ -113,7 +114,7 @@ def line(row: Row) -> str:
 
 
 def summary(found: Sequence[Row]) -> str:
-    """Return the mean over worlds by mode and size."""
+    """Return the means over all worlds, by mode and size."""
     lines = ["| the drift's sensor | size | degraded | p_drift | KS | 10 % |", "|---|---|---|---|---|---|"]
     for mode, size in dict.fromkeys((row.mode, row.size) for row in found):
         alike = [row for row in found if (row.mode, row.size) == (mode, size)]
@@ -131,7 +132,9 @@ def main() -> None:
     parser.add_argument("--repetitions", type=int, default=500)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--worlds", nargs="+", default=[*WORLDS, *EXAMPLES], choices=[*WORLDS, *EXAMPLES])
-    parser.add_argument("--sizes", nargs="+", type=float, default=SIZES, help="sizes of the drift; 0 is none")
+    parser.add_argument(
+        "--sizes", nargs="+", type=float, default=SIZES, help="sizes of the drift; 0 means no drift"
+    )
     arguments = parser.parse_args()
     asked = [
         *product([name for name in arguments.worlds if name in WORLDS], MODES),

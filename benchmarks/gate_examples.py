@@ -24,7 +24,7 @@ class Example:
     """A test of the examples; its drift goes from 1 (as designed) down to the value in the marker."""
 
     test: str
-    mode: Mode  # how its sensors show the drift
+    mode: Mode  # how the sensors of the example show the drift
 
 
 EXAMPLES = {
@@ -56,14 +56,15 @@ class Recording:
 
 
 def recorded(name: str, size: float, episodes: int) -> Pool:
-    """Run missions of an example. The cells that its drift changes are unknown."""
+    """Run missions of an example. It is not known which cells the drift changes."""
     example = EXAMPLES[name]
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / name
         shutil.copytree(FOLDER / name, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
         recording = Recording(size, episodes)
         test = str(copy / example.test)
-        plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]  # without the terminal plugin there is no -q
+        # the option -q belongs to the terminal plugin
+        plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]
         pytest.main([*plain, "--rootdir", str(copy), test], [recording])
     return Pool(recording.found[0], frozenset())
 

@@ -34,8 +34,8 @@ class Pool:
 def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
     """Run missions of one of the small worlds.
 
-    The sensor that shows the drift's place is hidden from the comparison, harmless (the same in both worlds) or novel
-    (true only where something drifts).
+    The sensor that shows where the drift acts is hidden from the comparison, harmless (the same in both worlds), or
+    novel (true only where something drifts).
     """
     samples, exposed = [], dict[Cell, list[bool]]()
     for index in range(episodes):

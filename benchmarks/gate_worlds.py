@@ -1,4 +1,4 @@
-"""Eight small simulated missions for gate.py: sensor bins, rewards, and where a drift acts.
+"""Eight small simulated worlds for gate.py: sensor bins, rewards, and where a drift acts.
 
 The drift goes from 0 (as designed) to 1. A mission yields, step by step, the bins of its sensors, its reward, and
 whether the drift acts at this place or time (if there is a drift).

@@ -1,8 +1,8 @@
-"""Run labelled real nodes, instrumented, in the in-process ROS: do they start, receive, publish and record every step?
+"""Run labelled real nodes in the in-process ROS, and print whether they start, publish and record every step.
 
 Run `python benchmarks/labelled_nodes.py LABELS.json CHECKOUTS`, where CHECKOUTS contains `owner__repository/path` for
-each labelled node. Nothing is downloaded or written below CHECKOUTS: each node gets a test in a scratch folder, which
-runs with `--tarl-record`. Nodes that need OpenCV run only if `cv2` can be imported.
+each labelled node. Nothing is downloaded, and nothing is written below CHECKOUTS. Each node gets a test in a scratch
+folder, which runs with `--tarl-record`. Nodes that need OpenCV run only if `cv2` can be imported.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def test_node(tarl, monkeypatch, tmp_path):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of one node: its steps (`sites`) on `lists` taint lists, the `missing` ones, or why it does not run."""
+    """Result of a node: the number of its `sites` on `lists` taint lists, `missing` steps, or why it does not run."""
 
     name: str
     api: str
@@ -73,7 +73,7 @@ def run(label: dict[str, Any], checkouts: Path) -> Outcome:
     except SyntaxError as error:
         return Outcome(outcome.name, outcome.api, reason=f"Python 2: line {error.lineno}, {error.msg}")
     if path.name not in WORLDS:
-        return Outcome(outcome.name, outcome.api, reason="no world was written for it")
+        return Outcome(outcome.name, outcome.api, reason="no world was written for this node")
     with tempfile.TemporaryDirectory() as folder:
         return record(outcome, path, Path(folder))
 

@@ -2,10 +2,10 @@
 
     python benchmarks/launch_files.py FOLDER... --ros1 PYTHON[:PATH] --ros2 PYTHON[:PATH...] [--show N]
 
-Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch,
-`--ros2` one with the sources of launch, launch_xml, launch_yaml and launch_ros; use both in a disposable
-environment, since they execute launch files. Arguments without a default get the value `true`. The figures count
-nodes (package, program, namespace, name), remappings and parameters: the share on which both agree. Outputs of
+Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interpreter with Debian's python3-roslaunch.
+`--ros2` is one with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable
+environment, since they execute launch files. Arguments without a default get the value `true`. The figures are the
+shares of nodes (package, program, namespace, name), remappings and parameters on which both agree. Outputs of
 commands, files outside the checkout, and launch files that the original refuses are counted separately.
 """
 
@@ -34,7 +34,7 @@ ORACLES = Path(__file__).parent / "launch_oracles"
 COMMAND = "<what a command prints>"
 Fact = tuple[str, ...]  # kind and values
 _ENVIRONMENT = re.compile(r"\$\(env (\w+)\)")
-_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # what the original cannot know either
+_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # what roslaunch and launch cannot know either
 
 
 def main() -> None:

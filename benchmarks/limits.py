@@ -1,9 +1,9 @@
-"""Measure time and memory at very large sizes: do they grow in proportion, and where is the limit?
+"""Measure time and memory at very large sizes, to see whether they grow in proportion and where the limit is.
 
-`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process, and prints CPU seconds, the
-peak of resident memory, and both per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100 MB, 10,000
-sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if time or memory per
-unit more than triples from the second size to the last.
+`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. It prints CPU seconds and
+the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100
+MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if time or
+memory per unit more than triples from the second size to the last.
 """
 
 from __future__ import annotations
@@ -117,7 +117,10 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 
 
 def recording(size: int) -> str:
-    """Save and load a recording of about `size` MB; episodes after the 500th repeat earlier ones with other seeds."""
+    """Save and load a recording of about `size` MB.
+
+    Episodes after the 500th repeat earlier episodes under other seeds.
+    """
     count = max(2, size * 1_000_000 // EPISODE)
     distinct = [world(range(seed, seed + 1), 400, 20, 1500) for seed in range(min(count, 500))]
     told: list[str] = []
@@ -143,7 +146,7 @@ def recording(size: int) -> str:
 
 
 def copied(one: Sample, seed: int) -> Sample:
-    """Return an episode under another seed, in memory of its own."""
+    """Return a copy of an episode under another seed that shares no memory with it."""
     return replace(copy.deepcopy(one), seeds=(seed,))
 
 

@@ -1,10 +1,10 @@
 """Score the analysis against CodeQL's own data-flow tests: `python benchmarks/lint_codeql.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/codeql (only python/ql/test/library-tests/dataflow is read). In those tests the
-variable SOURCE and a few literals are sources, arguments of SINK and SINK_F are sinks, and comments state which flows
-exist (`flow=`), which of them CodeQL misses (`MISSING`) and which it invents (`SPURIOUS`). Both are passed to the
-analysis as settings: the variable becomes a call of a configured source, the functions configured sinks. Files are
-scored if CodeQL tests them for plain data flow and they need no models of library functions.
+CHECKOUT is a checkout of github/codeql (only python/ql/test/library-tests/dataflow is read). In those tests, the
+variable SOURCE and a few literals are sources, and arguments of SINK and SINK_F are sinks. Comments state which flows
+exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows it invents (`SPURIOUS`). The analysis gets
+both by its settings: the variable becomes a call of a configured source, and the functions are configured sinks. Only
+files are scored that CodeQL tests for plain data flow and that need no models of library functions.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ COMMENT = re.compile(
     r"(?P<how>MISSING:|SPURIOUS:)|flow=(?P<quote>[\"'])(?P<what>.*?)(?:, l:?(?P<offset>[-+]?\d+))? -> .*?(?P=quote)"
     r"|(?P<bare>\bflow\b(?!=))"
 )
-ANY = 0  # line of a source that the comment does not state
+ANY = 0  # any line, for a source whose line the comment does not state
 
 Pair = tuple[int, int]  # lines of source and sink
 
@@ -81,7 +81,7 @@ def expected(text: str) -> Expected:
 
 
 def prepared(text: str, wanted: Expected) -> str:
-    """Return the file with sources as calls, without its own definitions, and with calls of its tests at the end.
+    """Return the file with calls in place of sources, without its own definitions, and with calls of its tests.
 
     Line numbers do not change.
     """
@@ -146,9 +146,9 @@ def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) 
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file by lines, and the subset in which the value itself arrives.
+    """Return the explicit flows of a prepared file by lines, and those of them in which the value itself arrives.
 
-    The others pass a list or an object that contains the value, which is a flow for a publish call, but not for
+    The other flows pass a list or an object that contains the value. That is a flow for a publish call, but not for
     CodeQL's sinks.
     """
     module = parse(f"{name}.py", text.encode(), name)
@@ -184,7 +184,7 @@ def _argument_of(pos: Pos, call: Pos) -> bool:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the flows found in each file, then the shares next to CodeQL's."""
+    """Print the flows found in each file, then our shares next to CodeQL's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/codeql")
     parser.add_argument("--details", action="store_true", help="list all missed and invented flows")
@@ -229,7 +229,7 @@ def score(path: Path, folder: Path, details: bool, total: Counter[str]) -> None:
 
 
 def summary(total: Counter[str]) -> str:
-    """Return the shares, ours next to CodeQL's."""
+    """Return our shares next to CodeQL's."""
     real = total["real"] or 1
     return "\n".join(
         [

@@ -1,9 +1,9 @@
 """Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/vitsalis/PyCG. Its small programs come with their true calls. As in PyCG, a
-program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on the same
-programs, from the same checkout. For both tools only calls between functions of the programs count:
-builtins and libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
+CHECKOUT is a checkout of github/vitsalis/PyCG. It contains small programs with their true calls. As in PyCG, a
+program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on the same programs,
+from the same checkout. For both tools, only calls between functions of the programs count; calls of builtins and
+libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def inner_calls(edges: set[Edge], folder: Path) -> set[Edge]:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the shares, ours next to PyCG's."""
+    """Print our shares next to PyCG's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/vitsalis/PyCG")
     parser.add_argument("--details", action="store_true", help="list all missing and invented calls")

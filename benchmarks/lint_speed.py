@@ -2,12 +2,13 @@
 
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
-For every tree: lines, CPU seconds of `ast.parse` over all .py files, of tarl-lint without a cache, with a warm
-one, and of Semgrep with a taint rule from subscriber callbacks to publish; the ratios, and the peak memory of
-tarl-lint, including children. The last tree is copied under other package names and linted once, twice
-and four times as large. CPU time includes all processes; each figure is the minimum of the repetitions. Suitable
-public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from
-PyPI, the standard library. Python writes bytecode, as for an installed package.
+For every tree, it prints the number of lines, and the CPU seconds of `ast.parse` over all .py files, of tarl-lint
+without a cache and with a warm cache, and of Semgrep with a taint rule from subscriber callbacks to publish. It also
+prints their ratios, and the peak memory of tarl-lint, including child processes. The last tree is copied under other
+package names and linted at once, twice and four times its size. CPU time includes all processes; each figure is the
+minimum of the repetitions. Suitable public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages
+unpacked with `dpkg -x`, wheels from PyPI, the standard library. Python writes bytecode, as it does for an installed
+package.
 """
 
 from __future__ import annotations
@@ -162,7 +163,7 @@ def _not_python(directory: str, names: list[str]) -> list[str]:
 
 
 def start_up(repetitions: int) -> str:
-    """Return the cost of linting one clean file, above a bare start of Python."""
+    """Return the cost of linting one clean file, and the cost of starting Python alone."""
     with tempfile.TemporaryDirectory() as home:
         Path(home, "clean.py").write_text("def double(x):\n    return 2 * x\n")
         bare = least([sys.executable, "-c", "pass"], repetitions * 3)

@@ -1,11 +1,11 @@
 """Measure what function summaries could save: `python benchmarks/lint_summaries.py TREE [TREE ...]`.
 
-For each tree: CPU seconds of the interpretation, and of the function bodies that it executes, without nested calls;
-how much of that is the first run of a call context; and the part that a summary would save if applying one cost
-nothing. A summary is assumed to hold for all runs of a function with the same key:
+For each tree, it prints the CPU seconds of the interpretation, and of the function bodies that it executes, without
+nested calls. It also prints how much of that is the first run of a call context, and the part that a summary would
+save if applying one cost nothing. It assumes that a summary holds for all runs of a function with the same key:
 
 - *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The
-  result also depends on what the function reads elsewhere, so this is a bound that no correct summary reaches.
+  result also depends on what the function reads elsewhere, so no correct summary reaches this bound.
 - *reads*: the same for every value that the run read before storing to it, by kind of object and name of field.
 - *aliases*: also which of these objects are the same, by the paths that lead to them, and at which statements no
   source had arrived.
@@ -38,7 +38,7 @@ KEYS = ("arguments", "reads", "aliases")
 
 @dataclass
 class Names:
-    """Names of objects that do not depend on the call context."""
+    """Gives objects names that do not depend on the call context."""
 
     frame: Frame
     known: dict[Obj, Hashable] = field(default_factory=dict)

@@ -3,10 +3,11 @@
     python benchmarks/lint_truth.py draw TREES --seed 41 [--each 60] [--without FILE ...] [--judgements FILE]
     python benchmarks/lint_truth.py compare TREES benchmarks/lint_truth/JUDGED.json [--verbose]
 
-TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in its
-Python files, found in the syntax tree without the linter; the linter only shows which of them have a report. `draw`
-takes as many calls with a report as without one and prints them sorted by place, so that the list does not show which
-is which. `--without` names files of earlier draws (or a text with `file.py:line`), whose calls are excluded.
+TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in their
+Python files. These calls are found in the syntax tree, without the linter; the linter only says which of them have a
+report. `draw` takes as many calls with a report as without one and prints them sorted by place, so that the list does
+not show which is which. `--without` names files of earlier draws (or a text with `file.py:line`), whose calls are
+excluded.
 
 Judgements are made from the source alone, before `compare` runs. A judged call names its sources, each with its kind
 (`data` or `control`) and the lines of the path that every correct report must contain:
@@ -14,7 +15,8 @@ Judgements are made from the source alone, before `compare` runs. A judged call 
     {"seed": 41, "calls": {"repo/dir/node.py:30": {"from": [{"at": "12", "kind": "data", "path": ["20-22", "30"]}]}}}
 
 A place is a line of the call's file, or `path:line` below the repository. A call with `"skip": "why"` is not a
-publish call of ROS; `"uncalled": true` marks one in code that nothing in its tree calls (counted in a separate row).
+publish call of ROS. `"uncalled": true` marks a call in code that nothing in its tree calls; such calls are counted in
+a separate row.
 """
 
 from __future__ import annotations
@@ -54,7 +56,8 @@ class Place:
     def read(cls, text: str, beside: str = "") -> Place:
         """Return the place that `text` names: `path:line`, or a line of the file `beside`.
 
-        A path is relative to the directory of the trees if its first part equals that of `beside`, else to that part.
+        A path is relative to the directory of the trees if it begins with the same folder as `beside`, else to that
+        folder.
         """
         path, _, line = text.rpartition(":")
         home = beside.partition("/")[0]
@@ -179,7 +182,7 @@ class Truth:
 
 
 def lines(texts: Sequence[str], beside: str) -> Iterator[Place]:
-    """Yield the places that a judged path names: lines, ranges of lines, or either after a path and a colon."""
+    """Yield the places that a judged path names: lines or ranges of lines, also after a path and a colon."""
     for text in texts:
         path, _, span = text.rpartition(":")
         first, _, last = span.partition("-")

@@ -2,12 +2,12 @@
 
 `make mutants` inserts ten faults in each package of pytest_tarl, `make mutants OF=tarl_lint` in each of tarl_lint.
 Coverage contexts record which tests reach which line, including processes that tests start. Each fault goes into a
-copy of the checkout without the caches of TARL. It is caught if a test fails or the tests take far longer than without
-it; a test that fails without the fault, too, catches nothing. A fault that no test reaches is not caught.
-The tests of the file that is named after the module run first, then the others, each from the fastest to the slowest,
-until the next one exceeds `--budget`; a fault that survives these could still be caught by slower ones, so the share is
-a lower bound.
-The script prints the share of caught faults with its exact 95 % interval, and the surviving faults.
+copy of the checkout without the caches of TARL. The fault is caught if a test fails, or if the tests take far longer
+than without the fault. A test that also fails without the fault catches nothing. A fault that no test reaches is not
+caught. The tests of the file that is named after the module run first, then the other tests, in both cases from fast
+to slow, until the next test would exceed `--budget`. Slower tests might still catch a fault that survives these, so
+the share is a lower bound. The script prints the share of caught faults with its exact 95 % interval, and the
+surviving faults.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from sown_faults import Fault, faults
 
 ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
-ELSEWHERE = {"realros"}  # needs a real ROS: make test-ros1, make test-ros2
+ELSEWHERE = {"realros"}  # these tests need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-BUDGET = 120.0  # seconds of tests per fault, as measured without it
+BUDGET = 120.0  # seconds of tests per fault, as measured without the fault
 PATIENCE = 60.0  # seconds allowed beyond three times the duration of the tests without the fault
 SETTINGS = """[run]
 source = {source}
@@ -75,7 +75,7 @@ def main() -> None:
         nargs="*",
         default=[],
         metavar="FILE",
-        help="files to read the coverage from; one that does not exist gets the coverage of --tests",
+        help="files to read the coverage from; a file that does not exist is written with the coverage of --tests",
     )
     parser.add_argument(
         "--budget",
@@ -108,7 +108,7 @@ def main() -> None:
 
 
 def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) -> Reached:
-    """Return which tests reach which lines, measured or read from the files."""
+    """Return which tests reach which lines; measure it, or read it from the files."""
     if not keep:
         return measured(copy, package, tests)
     reached = Reached()
@@ -172,7 +172,7 @@ def pytest_runtest_setup(item):
 def sample(
     copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
 ) -> list[Fault]:
-    """Choose `each` faults per package, or `count` in all; files weighted by their number of possible faults."""
+    """Choose `each` faults per package, or `count` in all. Files are weighted by their number of possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
@@ -187,13 +187,16 @@ def sample(
 
 
 def precompiled(copy: Path) -> None:
-    """Compile the sources of the copy. Python compares the digest of a source, so a fault is never missed."""
+    """Compile the sources of the copy.
+
+    Python compares the digest of a source with the compiled one, so it never misses a fault.
+    """
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
 
 
 def collected(copy: Path, tests: Sequence[str]) -> None:
-    """Compile the tests of the copy by a collection, which runs none."""
+    """Compile the tests of the copy by collecting them, without running any."""
     command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", *tests]
     surroundings = {**environment(copy), "PYTHONDONTWRITEBYTECODE": ""}
     subprocess.run(command, cwd=copy, env=surroundings, check=False, stdout=subprocess.DEVNULL)
@@ -223,7 +226,7 @@ def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, 
 
 
 def tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
-    """Return pytest's exit status, and which test failed first, or nothing if pytest itself failed.
+    """Return pytest's exit status and the test that failed first; no test if pytest itself failed.
 
     Raises TimeoutExpired if the tests exceed the limit in seconds.
     """

@@ -1,9 +1,9 @@
-"""How much the world of each real node may change before its guarantee fails, in the words of a stress run.
+"""Print how much the world of each real node may change before its guarantee fails, as a stress run reports it.
 
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
     python benchmarks/node_margins.py TARGET [NODE ...]
 
-Each world has one direction, from its nominal value to its drift. The run may use 600 episodes, seed 1.
+Each world has a single direction, from its nominal value to its drift. The run may use 600 episodes, seed 1.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Measure the time that `observe` adds to a control cycle: p50, p99 and p99.9 of a loop with and without it.
 
 Run `python benchmarks/observe.py`. A cycle is the work of a node between a message and its command: the callback and
-the control law, 18 recorded lines. In each cycle the observer receives two sensors and a reward, as on a robot,
-while the log is written and synced. Blocks of both kinds alternate, each in its own process. A cycle's time runs
-from the moment at which it was due, so that delays by other threads count as well; `executing` runs from
-its first line. With `--realtime`, the loop has real-time priority (SCHED_FIFO) as control loops do, so that
-other programs do not count.
+the control law, 18 recorded lines. In each cycle the observer receives two sensors and a reward, as on a robot, while
+the log is written and synced. Blocks of both kinds alternate, each in its own process. The time of a cycle is
+measured from the moment at which it was due, so that delays by other threads count; `executing` is measured from its
+first line. With `--realtime`, the loop has real-time priority (SCHED_FIFO) as control loops do, so that other
+programs do not count.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def loop(cycle: Any, observer: Observer | None, cycles: int) -> tuple[list[float
     for number in range(cycles + WARM):
         value = (number % 100) / 10.0
         message = Message(value, number % 50 < 10)
-        due = max(due + int(PERIOD * 1e9), perf_counter_ns())  # a late cycle does not make others late
+        due = max(due + int(PERIOD * 1e9), perf_counter_ns())  # a late cycle does not make later cycles late
         sleep(max(0.0, (due - perf_counter_ns()) / 1e9))
         began = perf_counter_ns()
         if observer is not None:

@@ -1,14 +1,14 @@
-"""Run a simulated day of `observe` at 100 Hz as fast as possible: does memory grow, are steps lost?
+"""Run a simulated day of `observe` at 100 Hz as fast as possible, to see whether memory grows or steps are lost.
 
-`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one mission
-per hour, and rotates the log by size. It prints the resident memory of the node's process and of the writer by the
-hour, then reads the log back: each step must occur once, in order, and each second must have its steps. The exit status
-is 1 if one is missing, or if the median memory of the last quarter exceeds that of the second by more than --growth MB,
-or if the node's process holds more objects.
+`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one
+mission per hour, and rotates the log by size. It prints the resident memory of the node's process and of the writer
+every hour. Then it reads the log back: each step must occur once, in order, and each second must have all of its
+steps. The exit status is 1 if a step is missing, if the median memory of the last quarter exceeds that of the second
+quarter by more than --growth MB, or if the node's process holds more objects.
 
-The simulated clock stands still while more than a second of steps waits, as a robot's clock never runs ahead of the
-thread that takes the steps. Without that, the resident memory shows how far it ran ahead: the heap keeps the size that
-the largest backlog once needed, although the blocks in it are free.
+The simulated clock stands still while more than a second of steps waits for the observer's thread, since a robot's
+clock never runs ahead of that thread. Otherwise the resident memory would show how far the clock ran ahead: the heap
+keeps the size that the largest backlog needed, although its blocks are free.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def main() -> None:
 
 
 def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, float]], list[int], int]:
-    """Run the cycles; return the memory of both processes in MB and the blocks by sample, and the events dropped."""
+    """Run the cycles; return samples of the memory of both processes (MB) and of the blocks, and the events dropped."""
     clock, sizes, blocks = Clock(), [], list[int]()
     vars(observing)["monotonic"] = clock
     observer = Observer(SENSORS, log, ABOUT, rotation=rotation, following=True)
@@ -112,7 +112,7 @@ def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, f
         observer.step(float(number))
         clock.now += 1 / RATE
         while len(observer._times) > BEHIND or observer._outlet.unsent > 1 << 19:
-            sleep(0.0005)  # wait for the thread and the disk, as the simulated clock is faster
+            sleep(0.0005)  # the simulated clock is faster than the thread and the disk, so wait for them
     observer.end(passed=True)
     observer.close()
     sizes.append((resident("self"), sizes[-1][1]))

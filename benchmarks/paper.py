@@ -3,9 +3,9 @@
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
 For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared
-in the unchanged world (40 episodes), and repaired. It is also recorded and compared in mud with two lines swapped, and
-with gain and wheels in other units (0.5 instead of 5, the same motion). The true extent of the mud comes from the
-world, not from a sensor. The line follower is recorded, compared at dusk and repaired as well.
+in the unchanged world (40 episodes), and repaired. It is also recorded and compared in mud with two lines swapped,
+and with gain and wheels in other units (0.5 instead of 5, which gives the same motion). The true extent of the mud
+comes from the world, not from a sensor. The line follower is also recorded, compared at dusk and repaired.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def _watched_mud() -> list[bool]:
 
 
 def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool]) -> list[list[int]]:
-    """Return the muddy cells: in mud on at least half of their steps, and at least 5 % of all steps in mud."""
+    """Return the muddy cells, which have half or more of their steps in mud, and 5 % or more of all steps in mud."""
     counts: dict[Cell, list[bool]] = {}
     for seed in online.sample.seeds:
         mud.clear()
@@ -211,7 +211,7 @@ def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str
 
 
 def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> dict[str, str]:
-    """Return the code of the site with the largest slice difference, for each way to learn the utility."""
+    """Return the code of the site with the largest difference of slices, for each way to learn the utility."""
     before, after = aligned(offline.sample, online.sample)
     chosen = {*region.cells, *region.novel}
     rows = np.array([i for i, cell in enumerate(before.cells) if cell in chosen], dtype=np.int64)

@@ -1,8 +1,8 @@
-"""Compare tilings with the table: region and first culprit of both on the two examples.
+"""Compare the tiled utility with the table: the region and the first culprit of both, on the two examples.
 
     python benchmarks/parametric.py            # three seeds, about two minutes
 
-Only the tilings of the examples' sensor x differ between the runs.
+The runs differ only in the tilings of the sensor x.
 """
 
 from __future__ import annotations

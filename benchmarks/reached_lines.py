@@ -1,4 +1,4 @@
-"""Which tests reach which lines, as read from coverage's contexts."""
+"""Which tests reach which lines, read from the contexts of coverage."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Reached:
         return sorted({name for number, name in enumerate(self.tests) if bits >> number & 1})
 
     def within(self, budget: float, tests: Iterable[str], module: str) -> list[str]:
-        """Return passing tests that together take at most `budget` seconds, and at least one.
+        """Return passing tests that together take at most `budget` seconds, but at least one test.
 
-        First those of the file that is named after the module, then the others, each from the fastest.
+        Tests of the file that is named after the module come first, then the others, both from fast to slow.
         """
         own = f"test_{Path(module).stem}.py"
 
@@ -41,7 +41,7 @@ class Reached:
         return passing[: max(1, bisect_right(ends, budget))]
 
     def add(self, other: Reached) -> None:
-        """Add what other tests reach."""
+        """Add the lines that other tests reach."""
         shift = len(self.tests)
         self.tests += other.tests
         for place, bits in other.lines.items():
@@ -49,13 +49,13 @@ class Reached:
         self.seconds |= other.seconds
 
     def write(self, file: Path) -> None:
-        """Write all to a file that `read` reads."""
+        """Write everything to a file that `read` reads."""
         lines = [[*place, f"{bits:x}"] for place, bits in self.lines.items()]
         file.write_text(json.dumps({"tests": self.tests, "lines": lines, "seconds": self.seconds}))
 
 
 def read(file: Path) -> Reached:
-    """Read a file of `Reached.write`."""
+    """Read a file that `write` has written."""
     data = json.loads(file.read_text())
     lines = {(path, line): int(bits, 16) for path, line, bits in data["lines"]}
     return Reached(data["tests"], lines, data["seconds"])

@@ -1,9 +1,10 @@
-"""Draw sentences at random from what users and contributors read, for a judgement of the wording.
+"""Draw random sentences from everything that users and contributors read, to judge the wording.
 
     python benchmarks/readers_sample.py [--sentences 100] [--seed 0]
 
-The pool holds the sentences of README, docs, rule pages, docstrings, comments, messages and help texts, page templates
-and names of tests. Each kind has the same share of the sample, since there are far more docstrings than messages.
+The pool holds the sentences of README, docs, rule pages, docstrings, comments, messages and help texts, page
+templates and names of tests. Each kind of text has the same share of the sample, since there are far more docstrings
+than messages.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def main() -> None:
 
 
 def sample(root: Path, sentences: int, seed: int) -> list[tuple[str, str, str]]:
-    """Return (kind, place, sentence) of a stratified random sample; the same seed gives the same one for a tree."""
+    """Return a stratified random sample as (kind, place, sentence); the same tree and seed give the same sample."""
     pools: dict[str, list[tuple[str, str, str]]] = {}
     for kind, place, sentence in sorted(set(everything(root))):
         pools.setdefault(kind, []).append((kind, place, sentence))
@@ -52,7 +53,7 @@ def sample(root: Path, sentences: int, seed: int) -> list[tuple[str, str, str]]:
 
 
 def everything(root: Path) -> Iterator[tuple[str, str, str]]:
-    """Yield (kind, place, sentence) of all that is read."""
+    """Yield (kind, place, sentence) for everything that is read."""
     pages = [*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/*.md")]
     for path in sorted(pages):
         kind = "rule page" if path.parent.name == "rules" else "docs"
@@ -94,7 +95,8 @@ def _of_code(place: str, text: str) -> Iterator[tuple[str, str, str]]:
     last = 0
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
-            beside = bool(token.line[: token.start[1]].strip())  # a comment behind code stands alone
+            # a comment at the end of a line of code is a block of its own
+            beside = bool(token.line[: token.start[1]].strip())
             if block and (beside or token.start[0] != last + 1):
                 yield from _of("comment", place, [" ".join(block)])
                 block = []

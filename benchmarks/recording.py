@@ -1,8 +1,9 @@
 """Measure the cost of recording, next to its peers in one run.
 
 `python benchmarks/recording.py` prints the tables. Each program runs bare, with an empty hook (the least possible
-overhead), as the plugin instruments it, under coverage.py's C tracer and under slipcover (which keeps its probes:
-without them it would stop counting), alternately; the best run of each counts. Times are CPU times of the process.
+overhead), as the plugin instruments it, under coverage.py's C tracer, and under slipcover. Slipcover keeps its
+probes, since it would stop counting without them. The runs alternate, and the best of each kind counts. Times are CPU
+times of the process.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.learning.statistics import sample
 
-os.environ["COVERAGE_CORE"] = "ctrace"  # newer Pythons would use sys.monitoring
+os.environ["COVERAGE_CORE"] = "ctrace"  # newer versions of Python would use sys.monitoring
 TURNS = 60
 ROUNDS = 2_000  # about ten thousand events, as in an episode
 STEPS = 200
@@ -87,7 +88,7 @@ LOADING = ("for _ in range(rounds)", "for i in range(rounds)", "node.step(")
 
 
 def sites_of(tree: ast.Module) -> dict[Offset, int]:
-    """Return every statement inside functions, except the loops that only drive the program."""
+    """Return all statements inside functions, except the loops that only drive the program."""
     sites: dict[Offset, int] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef) and node.name != "__init__":
@@ -172,7 +173,7 @@ def covered(source: str, file: Path) -> float:
 
 
 def control_step() -> tuple[float, float]:
-    """Return microseconds of a step of a pymunk world with a controller of 20 sites: bare, recorded."""
+    """Return the microseconds of a step of a pymunk world with a controller of 20 sites: bare, and recorded."""
     sites = "\n".join(f"    v{i} = {'x' if i % 2 else 'node.kp'} * {i + 0.5}" for i in range(20))
     source = f"def control(node, x):\n{sites}\n    return v19\n"
     plain = prepared(compile(source, "<program>", "exec"), {}, "control")
@@ -187,7 +188,7 @@ def control_step() -> tuple[float, float]:
 
 
 def called(control: Callable[[Any, float], float]) -> float:
-    """Return microseconds per call of the controller alone, as the noise of world steps would hide them."""
+    """Return the microseconds per call of the controller alone; the noise of world steps would hide them."""
     node = SimpleNamespace(kp=0.4)
     start = time.process_time()
     for i in range(STEPS):
@@ -213,7 +214,7 @@ def stepped(control: Callable[[Any, float], float]) -> float:
 
 
 def finishing() -> tuple[float, float]:
-    """Return million events per second from the buffer to a trace, and from the buffer to statistics."""
+    """Return how many million events per second go from the buffer to a trace, and from the buffer to statistics."""
     best = [float("inf")] * 2
     for _ in range(10):
         recorder = Recorder()
@@ -232,7 +233,7 @@ def finishing() -> tuple[float, float]:
 
 
 def importing(source: str, sites: int) -> tuple[float, float, float]:
-    """Return milliseconds to load the code of a module with `sites` sites: cold, cached, and Python's own cache."""
+    """Return the milliseconds to load the code of a module with `sites` sites: cold, cached, from Python's cache."""
     sys.dont_write_bytecode = False
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "node.py"
@@ -255,7 +256,9 @@ def importing(source: str, sites: int) -> tuple[float, float, float]:
 
 
 def starting() -> tuple[float, float]:
-    """Return CPU milliseconds of a pytest run of one empty test without other plugins: without ours, and with it.
+    """Return the CPU milliseconds of a pytest run of one empty test, without our plugin and with it.
+
+    No other plugins are active.
 
     Both are medians of alternating runs, because single runs differ by more than the cost of the plugin.
     """
@@ -289,7 +292,7 @@ def main() -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="one run of everything, to test the script; the figures mean nothing",
+        help="run everything once, to test the script; the figures mean nothing",
     )
     if parser.parse_args().quick:
         TURNS, RUNS, STARTS = 1, 1, 2  # the first start does not count

@@ -1,7 +1,7 @@
 """Measure episodes per second (100 control steps each) of small rospy and rclpy nodes, in-process and on a real ROS.
 
 Run `python benchmarks/ros.py`, with the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1 setup-ros2`) for the
-real ones. Every episode must take the same path to the last bit, also on the real ROS.
+real ones. Every episode must take the same path to the last bit, even on the real ROS.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> 
 
 
 def real(library: str) -> Callable[[], Ros] | None:
-    """Return a factory of the real ROS for an episode, None if it is not installed."""
+    """Return a factory that runs an episode on the real ROS; None if it is not installed."""
     if PathFinder.find_spec(library) is None:
         return None
     if library == "rospy":
@@ -111,7 +111,7 @@ def measured(
     path: list[float],
     seconds: float,
 ) -> tuple[float, float, bool]:
-    """Return episodes per CPU second and per second of wall time, and whether all took this path."""
+    """Return episodes per CPU second and per second of wall time, and whether all episodes took this path."""
     same, count, cpu, wall = True, 0, process_time(), perf_counter()
     while process_time() - cpu < seconds:
         same &= episode(program, odometry, make()) == path
@@ -139,7 +139,7 @@ def main() -> None:
             if make is None:
                 print(f"real {name:<11}{'not installed here':>16}")
                 continue
-            episode(program, odometry, make())  # warm-up: connections are made once
+            episode(program, odometry, make())  # warm-up, in which connections are made
             cpu, wall, same = measured(program, odometry, make, path, seconds)
             told = "that of the embedded ROS, to the last bit" if same else "ANOTHER"
             print(f"{kind + ' ' + name:<16}{cpu:>16.1f}{wall:>12.1f}{1e6 / cpu / STEPS:>15.1f}   {told}")

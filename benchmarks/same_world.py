@@ -1,12 +1,12 @@
-"""Measure how often a world appears to differ from itself: record, then compare with new seeds, by command line.
+"""Measure how often a world appears to differ from itself, by recording it and comparing it with new seeds.
 
     python benchmarks/same_world.py [--comparisons 10] [--worlds shuttle …] [--committed] [--workers 2]
 
 Thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
-benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a
-`pytest --tarl-record` and a `pytest --tarl-online` with their own seeds; its result is read from the JSON that the
-second one writes. With `--committed` a world is recorded once and compared repeatedly, as in CI. Results are
-appended to a file (--found), and comparisons in it are not repeated, so a run can be interrupted and resumed.
+benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a `pytest --tarl-record` and a
+`pytest --tarl-online` with their own seeds. Its result is read from the JSON that the second command writes. With
+`--committed` a world is recorded once and compared repeatedly, as in CI. Results are appended to a file (--found).
+Comparisons in the file are not repeated, so a run can be interrupted and resumed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
 FOUND = HERE.parent / ".tarl-same-world.jsonl"
 BATCH = 10  # comparisons per process
-ONLINE_SEEDS = 1_000_000  # added to the number of a comparison, for seeds that no recording has
+ONLINE_SEEDS = 1_000_000  # added to the number of a comparison; it gives seeds that no recording has
 SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
 
 
@@ -94,7 +94,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
 
 
 def ran(world: World, *flags: str) -> None:
-    """Run pytest. Raises RuntimeError if it does not reach a verdict."""
+    """Run pytest. Raises RuntimeError if a run does not reach a verdict."""
     quiet = ("-q", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])
@@ -105,7 +105,7 @@ def ran(world: World, *flags: str) -> None:
 def batches(
     chosen: Iterable[str], asked: int, committed: bool, done: set[tuple[str, bool, int]]
 ) -> Iterator[tuple[str, list[int]]]:
-    """Yield batches of missing comparisons, in turns over all worlds."""
+    """Yield batches of missing comparisons, from all worlds in turn."""
     names = list(chosen)
     for first in range(0, asked, BATCH):
         for name in names:

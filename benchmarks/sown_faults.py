@@ -1,4 +1,4 @@
-"""Small faults in a source file: possible places, and the text with one of them inserted."""
+"""Small faults in a source file: the places where they are possible, and the text with one of them inserted."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def faults(path: Path, name: str) -> list[Fault]:
 
 
 def _last_line(statement: ast.stmt) -> int:
-    """Return the last line of a statement without the statements in it."""
+    """Return the last line of a statement, not counting the statements inside it."""
     if isinstance(statement, ast.Match):
         return statement.subject.end_lineno or statement.lineno
     inside: list[ast.stmt] = getattr(statement, "body", [])
@@ -135,7 +135,7 @@ class _Finder:
                 yield from self._block(case.body)
 
     def _guard(self, case: ast.match_case) -> Iterator[Fault]:
-        """Yield the faults of what follows the pattern of a case after `if`."""
+        """Yield the faults of the guard of a `case`: the condition after `if`."""
         assert case.guard is not None
         lines = tuple(range(case.pattern.lineno, (case.guard.end_lineno or case.guard.lineno) + 1))
         for fault in (

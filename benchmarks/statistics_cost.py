@@ -1,10 +1,10 @@
-"""Measure the cost of statistics and utility: from buffer to counts, from counts to q, and its growth.
+"""Measure the cost of statistics and utility: from buffer to counts, from counts to q, and how it grows.
 
     python benchmarks/statistics_cost.py            # about a minute
     python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
 
-Not called statistics.py, because that would shadow the standard module for scripts in this folder.
-Times are CPU times of this process, the minimum of several; the speed-up by workers is wall time.
+The file is not called statistics.py, because that would shadow the standard module for scripts in this folder. Times
+are CPU times of this process, the minimum of several; the speed-up by workers is wall time.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def growth() -> Iterator[str]:
 
 
 def cost(episodes: int, steps: int, cells: int, lists: int) -> tuple[float, float, float, float]:
-    """Return milliseconds to count and to solve, peak memory in MB and the size of the fixture in kB."""
+    """Return milliseconds to count and to solve, peak memory in MB, and the size of the recording in kB."""
     traces = [episode(seed, steps, cells, SITES) for seed in range(episodes)]
     members = [range(SITES)] * lists
 
@@ -139,7 +139,7 @@ def cost(episodes: int, steps: int, cells: int, lists: int) -> tuple[float, floa
 
 
 def stored(whole: Sample) -> int:
-    """Return the size of the fixture in bytes."""
+    """Return the size of the recording in bytes."""
     places = tuple(SitePlace(f"s{n}", "node.py", n, f"x = {n}", "data", "assign") for n in range(SITES))
     lists = tuple(TaintList(f"/in{i}", "/out", places) for i in range(len(whole.lists)))
     tables = tuple(np.full((len(whole.cells), SITES), np.nan) for _ in lists)
@@ -181,9 +181,9 @@ def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
 def speed_up() -> Iterator[str]:
     """Record the examples in one process and with two workers.
 
-    With two free cores, the ratio of wall times is the speed-up. Independent of other load is the CPU time
-    of the main process and of its workers: with one core per worker, a run takes the first plus its share of the
-    second.
+    With two free cores, the ratio of wall times is the speed-up. The CPU time of the main process and of its workers
+    does not depend on other load. With one core per worker, a run takes the CPU time of the main process plus its
+    share of that of the workers.
     """
     for example, test, episodes in RECORDINGS:
         what = f"{example}, {episodes} episodes"
@@ -195,7 +195,7 @@ def speed_up() -> Iterator[str]:
 
 
 def recorded_example(example: str, test: str, episodes: int, workers: int) -> tuple[float, float, float]:
-    """Return CPU seconds of a recording, of its workers, and wall seconds, all without pytest's start."""
+    """Return the CPU seconds of a recording and of its workers, and its wall seconds, without the start of pytest."""
     source = Path(__file__).resolve().parent.parent / "examples" / example
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder, example)

@@ -1,12 +1,13 @@
-"""Boundaries that a stress run finds, against an exhaustive grid, and how often it reports one where nothing breaks.
+"""Compare the boundaries that stress runs find with an exhaustive grid, and count false boundaries.
 
     python benchmarks/stress.py [TASK ...] [--harmless 25] [--grids FILE]
 
-Each task of benchmarks/drift, and the examples with one number as drift, has the direction from its nominal value to
-its drift. The grid has 41 values, each with 40 episodes on seeds of its own; its boundary is where the margin first
-crosses zero, interpolated. A line per task: both boundaries in shares of the range, their distance, the episodes of
-both. With `--harmless N`, N runs per task on the part of the range up to half of the grid's boundary. With `--grids`,
-each task's boundary of the grid is added to a JSON Lines file, and those that it holds are not measured again.
+The tasks are those of benchmarks/drift, and the examples whose drift is a single number. Each has one direction, from
+its nominal value to its drift. The grid has 41 values, each with 40 episodes on its own seeds. Its boundary is where
+the interpolated margin first crosses zero. A line for each task gives both boundaries in shares of the range, their
+distance, and the episodes of both. With `--harmless N`, each task also gets N runs on the part of the range up to
+half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
+boundaries in the file are not measured again.
 """
 
 from __future__ import annotations
@@ -37,11 +38,11 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed  # no
 from pytest_tarl.stressing.rays import rays  # noqa: E402
 from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 
-GRID, EPISODES = 41, 40  # values, and episodes at each
+GRID, EPISODES = 41, 40  # number of values, and episodes at each of them
 RECORDED = 100
-SHARE = 0.15  # of the grid's episodes that a stress run may use
-NEAR = 0.05  # of the range: how near the boundary must be to the grid's
-RISK = 0.05 / 3  # of a run with one ray: alpha over the ray, combinations, and nominal
+SHARE = 0.15  # share of the grid's episodes that a stress run may use
+NEAR = 0.05  # share of the range: how near the boundary must be to that of the grid
+RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, combinations, and nominal
 SIZE = "size"  # name of the only direction
 EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
 
@@ -80,7 +81,7 @@ def nominal_of(stage: Stage) -> str:
 
 
 def sized(stage: Stage, name: str) -> tuple[Sized, float, float]:
-    """Return a rollout by the size of a drift, its nominal size, and the size that the test declares."""
+    """Return a rollout that takes the size of a drift, the nominal size, and the size that the test declares."""
     text, value = nominal_of(stage), stage.marked.drifts[name].value
     return Sized(stage, name, isinstance(value, int) and "." not in text), float(text), float(value)
 
@@ -104,7 +105,7 @@ def recorded(rollout: Sized, nominal: float) -> Guarantee:
 
 
 def exhaustive(rollout: Sized, given: Guarantee, nominal: float, far: float) -> float | None:
-    """Return where the margin first crosses zero, as a share of the range; None if it never does."""
+    """Return where the margin first crosses zero, as a share of the range; None if it never crosses zero."""
     seeds = episode_seeds(12, "grid", EPISODES)
     before = run_at(rollout, nominal, seeds)
     last = 1.0
@@ -142,7 +143,10 @@ class Compared:
 
     @property
     def contains(self) -> bool:
-        """Return whether the interval contains the grid's boundary; without one, no boundary is the right answer."""
+        """Return whether the interval contains the grid's boundary.
+
+        If the grid has none, finding none is the right answer.
+        """
         if self.grid is None or self.found is None:
             return self.grid is None and self.found is None
         return (self.near or 0.0) <= self.grid <= self.far
@@ -165,7 +169,7 @@ class Grids:
     path: Path | None
 
     def boundary(self, task: str, measure: Callable[[], float | None]) -> float | None:
-        """Return a task's boundary; measure it if the file does not hold it."""
+        """Return a task's boundary; measure it if it is not in the file."""
         lines = self.path.read_text().splitlines() if self.path is not None and self.path.exists() else []
         known = dict(map(json.loads, lines))
         if task not in known:
@@ -203,7 +207,7 @@ def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
 
 
 def agrees(one: Compared) -> bool:
-    """Return whether both found a boundary near each other, or neither did."""
+    """Return whether both found boundaries that are near each other, or neither found one."""
     if one.grid is None or one.found is None:
         return one.grid is None and one.found is None
     return abs(one.grid - one.found) <= NEAR

@@ -1,16 +1,16 @@
-"""The nearest failing drift in four directions, by a stress run and by other searches with the same episodes.
+"""Find the nearest failing drift in four directions, by a stress run and by other searches with as many episodes.
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
 
-The worlds of stress_worlds.py, stress_worlds_2.py and, not used in development, stress_worlds_3.py are formulas. Each
-task of benchmarks/drift has its own drift, from the nominal value to that of the task, and three faults of the topic
-of its first numeric sensor: a bias, a latency and a dropout, of the same relative size in every task. Each method may
-run BUDGET episodes. A peer learns of each drift that it proposes the distance from nominal if the guarantee fails on
-PROBES common seeds, and otherwise the margin above the largest distance. A failure counts if fresh seeds confirm it,
-free of charge; each method may offer its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k +
-1).
+The worlds of stress_worlds.py, stress_worlds_2.py and stress_worlds_3.py are formulas; the last ones were not used in
+development. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the
+task, and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in
+every task. Each method may run BUDGET episodes. For each drift that it proposes, a peer is given a cost. If the
+guarantee fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the
+largest distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer
+its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1).
 """
 
 from __future__ import annotations
@@ -59,11 +59,11 @@ BUDGET = 600  # episodes of a run
 PROBES = 4  # episodes at a drift that a peer proposes
 OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
 RECORDED = 100
-RISK = 0.05  # of the test on fresh seeds
-SIZES = (16, 32, 64)  # fresh episodes after which it ends if it succeeds
+RISK = 0.05  # risk of the test on fresh seeds
+SIZES = (16, 32, 64)  # fresh episodes after which the test ends if it succeeds
 SIZE = "size"
 SCENARIO = "stress"
-LARGEST = 2.0  # no drift of four directions is farther
+LARGEST = 2.0  # no drift in four directions is farther from nominal
 FORMULA = Designation(
     (), (), min_success=0.95, tolerance=TOLERANCE
 )  # the test of a world of stress_worlds.py
@@ -71,7 +71,7 @@ PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
 class Numbered(Space):
-    """A space whose world takes a single number, as the tests of benchmarks/drift do."""
+    """A space whose world takes a single number, as in the tests of benchmarks/drift."""
 
     def world(self, point: Point) -> Any:
         """Return the value of the task's own drift."""
@@ -159,7 +159,10 @@ class Uniform:
 
 
 class Process:
-    """A peer in a process and an environment of its own, which writes a point and reads its cost, a JSON line each."""
+    """A peer in its own process and environment.
+
+    It writes a point and reads the cost of the point, each as a line of JSON.
+    """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
         python = home / Path(script).stem.removesuffix("_peer") / "bin" / "python"
@@ -213,7 +216,7 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
         assert isinstance(extent, Span)
         usual = nominal(extent)
         low, high = usual - extent.low, extent.high - usual
-        if low == 0.0 or high == 0.0:  # nominal is an end: use the absolute value
+        if low == 0.0 or high == 0.0:  # nominal is an end of the range, so use the absolute value
             found[name] = usual + (high - low) * min(abs(number), 1.0)
         else:
             found[name] = usual + (high if number > 0 else low) * min(max(number, -1.0), 1.0)
@@ -221,7 +224,7 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
 
 
 def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 600.0) -> list[Point]:
-    """Return the failing drifts of a peer's run, the nearest first; a process may take so many seconds."""
+    """Return the failing drifts of a peer's run, the nearest first, within a limit in seconds."""
     evaluator = one.evaluator(seed, BUDGET)
     failing: dict[float, Point] = {}
     with optimiser(method, len(one.space.extents), seed, home, seconds) as peer:
@@ -239,7 +242,7 @@ def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 60
 
 
 def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
-    """Return the distance of the nearest point that fails on fresh seeds; None if none does."""
+    """Return the distance of the nearest point that fails on fresh seeds; None if no point does."""
     judge = one.evaluator(10_000 + seed, 10**9)
     for k, point in enumerate(points[:OFFERS], 1):
         if judge.confirm(point, "judge", RISK / (k * (k + 1)), SIZES):
@@ -248,7 +251,7 @@ def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
 
 
 def at_least_as_near(own: float | None, other: float | None) -> bool:
-    """Return whether our distance is not larger; finding nothing is as good as nothing."""
+    """Return whether our distance is not larger; two methods that find nothing are equally good."""
     if own is None or other is None:
         return other is None
     return own <= other * (1 + 1e-9)
@@ -273,7 +276,7 @@ def _shown(value: float | None) -> str:
 
 
 def harmless_runs(runs: int) -> str:
-    """Return in how many runs a failure is reported although nothing in the space breaks the guarantee."""
+    """Return the number of runs that report a failure although nothing in the space breaks the guarantee."""
     one = recorded("harmless", Formula(harmless), world_space(), FORMULA)
     false = 0
     for number in range(1, runs + 1):
@@ -283,7 +286,7 @@ def harmless_runs(runs: int) -> str:
 
 
 def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
-    """Return a task's line: the median distance of each method, and how often ours is at least as near as each."""
+    """Return a task's line: the median distance of each method, and how often ours is at least as near."""
     cells = []
     for method, values in found.items():
         known = [value for value in values if value is not None]

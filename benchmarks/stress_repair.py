@@ -1,11 +1,11 @@
-"""How far repairs at the boundary move it, on the tasks of benchmarks/drift.
+"""Measure how far repairs at the boundary move the boundary, on the tasks of benchmarks/drift.
 
     python benchmarks/stress_repair.py [TASK ...] [--results FILE]
 
-Each task has one direction, from its nominal value to its drift. It is recorded, stressed with 246 episodes, repaired
-at the boundary and beyond, and stressed again, as `pytest --tarl-stress --tarl-repair` does; seed 1. A line per task:
-the interval of the boundary before and after as shares of the range, and what became of it. With `--results`, results
-are added to a JSON Lines file, and tasks that it holds are not run again.
+Each task has one direction, from its nominal value to its drift. The task is recorded, stressed with 246 episodes,
+repaired at the boundary and beyond, and stressed again, as `pytest --tarl-stress --tarl-repair` does with seed 1. A
+line for each task gives the interval of the boundary before and after the repair, as shares of the range, and the
+change. With `--results`, results are added to a JSON Lines file; tasks in the file are not run again.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Worlds of four directions as formulas, in which the nearest failing drift is known up to noise.
+"""Worlds of four directions, defined by formulas, in which the nearest failing drift is known up to noise.
 
-The reward has noise that a seed shares between drifts, as in a simulation, and a quarter as much that it does not. Each
-world takes a drift x in units of the ranges, 0 nominal, and random numbers, and returns whether the episode passes and
-its reward. The guarantee: 95 % of the episodes pass, and at most TOLERANCE of the reward is lost.
+The reward has noise that depends only on the seed, as in a simulation, and a quarter as much that also depends on the
+drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. It returns whether the
+episode passes, and its reward. The guarantee: 95 % of the episodes pass, and at most TOLERANCE of the reward is lost.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ def product(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def corner(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Fail, without a sign before, where the sum of three directions is large."""
+    """Fail where the sum of three directions is large; the reward does not change before."""
     return bool(np.abs(x[:3]).sum() + draws.normal(0.0, 0.03) < 1.2), 1.0
 
 
 def ellipsoid(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward by a quadratic form whose axes are no directions."""
+    """Lose reward by a quadratic form whose axes are not the directions."""
     along, across = (x[0] + x[1] + x[2]) / np.sqrt(3), (x[0] - x[1]) / np.sqrt(2)
     lost = (along / 0.45) ** 2 + (across / 0.9) ** 2 + (x[3] / 0.8) ** 2
     return True, 10.0 - TOLERANCE * float(lost) + draws.normal(0.0, NOISE)
@@ -93,6 +93,6 @@ class Formula:
 
 
 def space() -> Space:
-    """Return four directions, two of which go both ways."""
+    """Return four directions, two of which have positive and negative values."""
     spans = (Span(-0.5, 0.5, 0.0), Span(-0.5, 0.5, 0.0), Span(0.0, 1.0, 0.0), Span(0.0, 1.0, 0.0))
     return Space(dict(zip(NAMES, spans, strict=True)), {})

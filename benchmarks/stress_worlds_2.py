@@ -1,7 +1,7 @@
 """Further worlds of four directions, written after the search and not run while it was developed.
 
-They follow the conventions of stress_worlds.py: a drift x in units of the ranges, 0 nominal, of which the first two go
-from -0.5 to 0.5 and the last two from 0 to 1.
+They follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
+directions go from -0.5 to 0.5, the last two from 0 to 1.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ def loop(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def saturated(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose nothing until a weighted sum exceeds what a controller can make up for, and then quickly."""
+    """Lose nothing until a weighted sum exceeds what a controller can compensate, and then lose reward quickly."""
     excess = abs(x[0]) + 0.7 * x[2] + 0.4 * x[3] - 0.45
     return True, 10.0 - 4.0 * TOLERANCE * max(float(excess), 0.0) / 0.3 + draws.normal(0.0, NOISE)
 
 
 def one_sided(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward for one sign of each of two directions, and gain for the other one."""
+    """Lose reward for one sign of each of two directions, and gain reward for the other sign."""
     lost = 1.3 * x[0] - 1.1 * x[1] + 0.3 * x[2] * x[3]
     return True, 10.0 - TOLERANCE * float(lost) / 0.7 + draws.normal(0.0, NOISE)
 
 
 def forked(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward in a wide region far away, and in a narrow one nearby."""
+    """Lose reward in a wide region far from nominal, and in a narrow region near it."""
     wide = 1.2 * float(np.linalg.norm(x - [0.0, 0.0, 0.9, 0.9]) < 0.5)
     away = float(np.linalg.norm(x - [-0.3, 0.25, 0.25, 0.2]))
     narrow = 1.8 * float(np.exp(-((away / 0.25) ** 2)))

@@ -1,8 +1,8 @@
-"""Six more worlds of four directions, written without knowledge of the search and not run under it.
+"""Six more worlds of four directions, written without knowledge of the search and never run with it before.
 
-They follow the conventions of stress_worlds.py: a drift x in units of the ranges, 0 nominal, of which the first two go
-from -0.5 to 0.5 and the last two from 0 to 1. Each is a small simulation; its docstring names the shape of its
-failures.
+They follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
+directions go from -0.5 to 0.5, the last two from 0 to 1. Each is a small simulation; its docstring names the shape of
+its failures.
 
     python benchmarks/stress_worlds_3.py     # sample each world: nominal episodes and the share of drifts that fail
 """
@@ -47,7 +47,10 @@ def rotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def supplies(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Supply a load for 36 h from panel, turbine and battery; only large losses of several are too much. A corner."""
+    """Supply a load for 36 h from panel, turbine and battery; only large losses of several are too much.
+
+    A corner.
+    """
     sun, wind, battery = 1.0 - 1.6 * max(0.0, x[0]), 1.0 - 1.4 * max(0.0, x[1]), 1.0 - 0.55 * x[2]
     load, stored, dark = 0.30 + 0.02 * x[3], 3.5 * battery, 0.0
     for hour in range(36):
@@ -72,7 +75,10 @@ def aliased(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def bend(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Drive through a bend: too fast alone or wet alone does little, both together leave the road. An interaction."""
+    """Drive through a bend: speed or a wet road alone does little; with both, the car leaves the road.
+
+    An interaction.
+    """
     fast, camber, wet, load = 1.0 + 0.5 * x[0], 0.12 * x[1], x[2], 0.1 * x[3]
     grip = 0.95 - 0.5 * wet + draws.normal(0.0, 0.015)
     speed, off = 12.0 * fast + draws.normal(0.0, 0.1), 0.0

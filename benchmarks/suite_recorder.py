@@ -29,7 +29,7 @@ COUNTS = {"sites": 0, "events": 0, "files": 0}
 
 
 def every_site(file: Path, first: int) -> dict[tuple[int, int], int]:
-    """Return the places of every statement, handler, case and lambda body, numbered from `first`."""
+    """Return the places of all statements, handlers, cases and lambda bodies, numbered from `first`."""
     text = file.read_text(encoding="utf-8")
     lines, sites = text.split("\n"), dict[tuple[int, int], int]()
     for node in ast.walk(ast.parse(text)):
@@ -47,7 +47,7 @@ def begin() -> None:
     if folder := os.environ["SUITE_RECORDED"]:
         _record(Path(folder))
     try:
-        settings = import_module("hypothesis").settings  # from the suite's environment
+        settings = import_module("hypothesis").settings  # a module of the suite's environment
     except ImportError:
         return
     settings.register_profile("suites", deadline=None, derandomize=True, database=None)
@@ -102,4 +102,4 @@ def pytest_unconfigure() -> None:
 
 
 if "SUITE_RESULT" in os.environ:
-    begin()  # before any conftest.py imports the package
+    begin()  # this happens before any conftest.py imports the package

@@ -1,10 +1,10 @@
-"""Compare the flows of launched nodes with judgements made from the code, before the tool's report was seen.
+"""Compare the flows of launched nodes with judgements that were made from the code before anyone saw the report.
 
     python benchmarks/system_flows.py TREES [--judged benchmarks/system_flows_2.json]
 
-TREES holds the repositories of the judgements as folders `owner+name`, at the commits named there. A judgement is
-(node, topic, topic, kind) for each pair of ends between which data passes in one node; flows of nodes that are not
-Python are not judged. A flow is right if node, ends and kind agree.
+TREES holds the repositories of the judgements as folders `owner+name`, at the commits named there. There is a
+judgement (node, topic, topic, kind) for each pair of topics between which data passes in one node. Flows of nodes
+that are not Python are not judged. A flow is right if node, topics and kind agree.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Flow = tuple[str, str, str]
 
 
 def main() -> int:
-    """Print the figures of each launch file and of all."""
+    """Print the figures of each launch file, and of all launch files together."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("trees", type=Path)
     parser.add_argument("--judged", type=Path, default=JUDGED)

@@ -1,9 +1,10 @@
-"""Run test suites of other projects plain and with every statement recorded, and compare the outcomes test by test.
+"""Run test suites of other projects, plain and with every statement recorded, and compare each test's outcome.
 
-`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in a
-temporary environment, runs each suite twice and prints the tests whose outcome differs. If some do, the
-plain suite runs up to three times more, and then the files of the tests that still differ up to twenty times: an
-outcome that also occurs there is not due to recording. The exit status is 1 if recording changed an outcome.
+`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in
+a temporary environment, runs each suite twice and prints the tests whose outcome differs. If some outcomes differ,
+the plain suite runs up to three times more, and then the files of the tests that still differ run up to twenty times.
+An outcome that also occurs in a plain run is not due to recording. The exit status is 1 if recording changed an
+outcome.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN_RUNS = 4  # at most
-FILE_RUNS = 20  # plain runs of only the files whose tests still differ, at most
+FILE_RUNS = 20  # maximum number of plain runs of only the files whose tests still differ
 TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
 
 
@@ -151,7 +152,8 @@ def install(python: Path, *what: str) -> None:
 def sources(name: str, folder: Path, python: Path) -> Path:
     """Download a suite's sdist, check its digest and return the folder of its contents."""
     suite, store = SUITES[name], folder / name
-    install(python, f"{name}=={suite.version}", *suite.needs)  # its metadata, and what it needs
+    # the metadata of the suite, and the packages that it needs
+    install(python, f"{name}=={suite.version}", *suite.needs)
     wanted = ("--no-deps", "--no-binary", ":all:", "-d", str(store), f"{name}=={suite.version}")
     subprocess.run([python, "-m", "pip", "download", "-q", *wanted], check=True, capture_output=True)
     (archive,) = store.iterdir()
@@ -166,7 +168,7 @@ def sources(name: str, folder: Path, python: Path) -> Path:
 def compared(
     name: str, folder: Path, python: Path, keep: Path | None, only: tuple[str, ...] = ()
 ) -> list[str]:
-    """Print the row of a suite, or of some of its tests; return those whose outcome recording changed."""
+    """Print the row of a suite, or of some of its tests; return the tests whose outcome recording changed."""
     suite, at = SUITES[name], sources(name, folder, python)
     suite = replace(suite, tests=only or suite.tests)
     plain, plain_seconds = run(python, suite, at, folder, record=False)
@@ -210,7 +212,7 @@ def again(
 
 
 def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
-    """Return the tests with an outcome in `others` that they had in none of the runs."""
+    """Return the tests with an outcome in `others` that they did not have in any of the runs."""
     names = {name for one in (*runs, *others) for name in one}
     return sorted(
         name

@@ -1,11 +1,11 @@
-"""Print how fast the same test runs in the process, in lock-step on a real rclpy, and against an external simulator.
+"""Print how fast the same test runs in-process, in lock-step on a real rclpy, and against an external simulator.
 
     python benchmarks/three_worlds.py
 
-Needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one node,
-one sensor, two simulated seconds an episode in steps of 0.1 s. Each kind is recorded in a run of its own. CPU seconds
-are those of the test and all its processes, also of a simulator; the differences between a run of a few and a run of
-many episodes leave out what a run costs once.
+Needs rclpy (`make setup-ros2`, then `.venv-ros2/bin/python`). The test is the tank of tests/realros/external: one
+node, one sensor, two simulated seconds an episode in steps of 0.1 s. Each kind is recorded in a separate run. CPU
+seconds are those of the test and all its processes, including a simulator. The difference between a run of few and a
+run of many episodes excludes the fixed cost of a run.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FEW = 2
 
 
 def main() -> int:
-    """Print milliseconds an episode, by the wall clock and in CPU time, and the latter as multiple of the first."""
+    """Print the milliseconds per episode, in wall time, in CPU time, and in CPU time relative to the first kind."""
     argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0]).parse_args()
     first = 0.0
     print("| kind | ms an episode, wall | ms an episode, CPU | CPU, of the first |\n|---|---|---|---|")
@@ -44,7 +44,7 @@ def main() -> int:
 
 
 def _seconds(world: str, options: tuple[str, ...], episodes: int) -> tuple[float, float]:
-    """Record the test; return the seconds that it took, and those of the processors."""
+    """Record the test; return the wall seconds and the CPU seconds that it took."""
     with TemporaryDirectory() as name:
         folder = runpy.run_path(str(TANK))["write"](Path(name) / "tank", external=world != "inside")
         if world == "reset":

@@ -1,12 +1,12 @@
 """Measure `tarl watch`: false alarms over long streams, missions until a drift is detected, and cost.
 
-    python benchmarks/watch.py alarms [--streams 2000]     # no drift, a fresh fixture for each stream
+    python benchmarks/watch.py alarms [--streams 2000]     # no drift, a new recording for each stream
     python benchmarks/watch.py delays [--streams 20]       # a drift that begins at mission 0, 1,000 and 100,000
     python benchmarks/watch.py speed [--missions 1000000]  # the command on a log, CPU time and memory
 
-For comparison, two common methods: a two-sample Kolmogorov-Smirnov test of the totals of the last 40 missions
-against the recorded ones, at 5 %, repeated every ten missions; and two-sided CUSUM of the totals (k = 0.5, h = 5),
-standardised by mean and standard deviation of the recorded missions.
+Two common methods are run for comparison. One is a two-sample Kolmogorov-Smirnov test at 5 % of the totals of the
+last 40 missions against the recorded ones, repeated every ten missions. The other is a two-sided CUSUM of the totals
+(k = 0.5, h = 5), standardised by the mean and standard deviation of the recorded missions.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 ALPHA = 0.05
-LIFE = 1000  # missions of a stream without drift, and the maximum after a drift began
+LIFE = 1000  # missions of a stream without drift; also the maximum after a drift began
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
 DISTINCT = 5000  # distinct missions in the log of the speed test
@@ -55,13 +55,13 @@ class Alarms:
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return the missions from the start of a drift to the alarm; None without an alarm or with an earlier one."""
+        """Return the missions from the start of a drift to the alarm; None if no alarm or an earlier one was raised."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 
 
 def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
-    """Pass missions to a monitor; with `until` in portions, up to the first alarm."""
+    """Pass missions to a monitor; with `until`, pass them in portions and stop at the first alarm."""
     if not until:
         monitor.take(missions, np.zeros(missions.episodes))
         return
@@ -139,7 +139,7 @@ def cusum(offline: Floats, online: Floats) -> int | None:
 def false_alarms(streams: int, worlds: Sequence[str]) -> None:
     """Print how often each method raises an alarm without drift."""
     print(
-        f"{streams} streams of {LIFE} missions without drift, each with a fresh fixture; share with any alarm"
+        f"{streams} streams of {LIFE} missions without drift, each with a new recording; share with any alarm"
     )
     print("| world | streams | " + " | ".join(METHODS) + " |")
     print("|---|" + "---|" * (len(METHODS) + 1))
@@ -283,7 +283,7 @@ def _logged(folder: Path, missions: int) -> int:
 def _steps(
     cells: list[list[int]], places: np.ndarray[tuple[int], np.dtype[np.int32]], reward: Floats
 ) -> dict[str, object]:
-    """Return the record that an observer writes for a node without recorded sites."""
+    """Return the record that `observe` writes for a node without recorded sites."""
     none, nothing = np.empty(0, np.int32), np.empty(0)
     chunk = Chunk(tuple(map(tuple, cells)), none, nothing, none, none, none, places, reward)
     return steps_record(chunk, [], 0)

@@ -24,7 +24,7 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 OFFLINE = 200  # missions of a recording
-POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), drifting
+POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), and drifting (False)
 POOLED_EXAMPLE = {True: 1000, False: 300}
 FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals
 Rows = NDArray[np.int64]
@@ -58,7 +58,7 @@ WATCHED = (*WORLDS, *EXAMPLES, *SYNTHETIC)
 
 @dataclass(frozen=True)
 class Pools:
-    """Missions of one world, as designed and at one size of its drift, with a common table of cells."""
+    """Missions of one world, as designed and at one size of the drift, with a common table of cells."""
 
     designed: Sample
     drifting: Sample
@@ -66,7 +66,10 @@ class Pools:
 
 @cache
 def pools(world: str, size: float) -> Pools:
-    """Return the pools of a world; a size of 0 is no drift. Success is a total above the designed 3 % quantile."""
+    """Return the pools of a world; a size of 0 means no drift.
+
+    A mission succeeds if its total is above the designed 3 % quantile.
+    """
     designed, drifting = _pool(world, 0.0), _pool(world, size)
     least = float(np.quantile(designed.total, FAILING))
     cells = {*designed.cells, *drifting.cells}
@@ -79,7 +82,7 @@ def _pool(world: str, size: float) -> Sample:
     if world in WORLDS:
         found = simulated(world, "hidden", size, POOLED[size == 0.0]).sample
     elif world in EXAMPLES:
-        with ProcessPoolExecutor(1) as fresh:  # each example has its own module `world`
+        with ProcessPoolExecutor(1) as fresh:  # each example has a module `world` of its own
             found = fresh.submit(recorded, world, size, POOLED_EXAMPLE[size == 0.0]).result().sample
     else:
         draws = (SYNTHETIC[world](generator(n, world)) for n in range(POOLED[True]))
@@ -115,7 +118,7 @@ def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixt
 
 
 def stream(pool: Sample, cells: tuple[tuple[int, ...], ...], count: int, rng: Generator) -> Sample:
-    """Return `count` missions drawn with replacement, over these cells plus one for all others."""
+    """Return `count` missions drawn with replacement, over these cells and one cell for all others."""
     return _over(gathered(pool, rng.integers(pool.episodes, size=count)), pool, cells)
 
 
@@ -139,7 +142,7 @@ def gathered(pool: Sample, rows: Rows) -> Sample:
 
 
 def _over(chosen: Sample, pool: Sample, cells: tuple[tuple[int, ...], ...]) -> Sample:
-    """Return missions with cells numbered as in `cells`; all others get the number after the last."""
+    """Return missions with cells numbered as in `cells`; all other cells get the number after the last."""
     number = {cell: row for row, cell in enumerate(cells)}
     place = np.array([*(number.get(cell, len(cells)) for cell in pool.cells), END], np.int64)
     chain = chosen.chain
