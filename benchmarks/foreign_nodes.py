@@ -80,8 +80,10 @@ class Outcome:
         if not self.starts:
             return "does not start"
         if self.fails:
-            return "fails when it hears"
-        return " and ".join(["starts", *["hears"] * bool(self.hears), *["publishes"] * bool(self.publishes)])
+            return "fails when it receives"
+        return " and ".join(
+            ["starts", *["receives"] * bool(self.hears), *["publishes"] * bool(self.publishes)]
+        )
 
 
 class Told:

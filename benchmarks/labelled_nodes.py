@@ -52,7 +52,7 @@ class Outcome:
         if self.reason:
             return f"| {self.name} | {self.api} | no | {self.reason} |"
         done = (
-            f"{self.sites - len(self.missing)} of {self.sites} steps on {self.lists} lists"
+            f"{self.sites - len(self.missing)} of {self.sites} steps on {self.lists} taint lists"
             if self.sites
             else "no flows"
         )
@@ -120,7 +120,7 @@ def read(outcome: Outcome, ran: str, path: Path) -> Outcome:
 
 def _heard(ran: str) -> str:
     heard, _, sent = ran.strip().replace("'", "").partition("] ")
-    return f"hears {heard.strip('[') or 'nothing'}, publishes {sent.strip('{}')}"
+    return f"receives {heard.strip('[') or 'nothing'}, publishes {sent.strip('{}')}"
 
 
 def _why(output: str) -> str:
