@@ -51,11 +51,9 @@ class Outcome:
         """Return a row of the table."""
         if self.reason:
             return f"| {self.name} | {self.api} | no | {self.reason} |"
-        done = (
-            f"{self.sites - len(self.missing)} of {self.sites} steps on {self.lists} taint lists"
-            if self.sites
-            else "no flows"
-        )
+        lists = f"{self.lists} taint list{'s' * (self.lists != 1)}"
+        seen = self.sites - len(self.missing)
+        done = f"{seen} of {self.sites} steps on {lists}" if self.sites else "no flows"
         said = f"; not: {', '.join(self.missing)}" if self.missing else ""
         return f"| {self.name} | {self.api} | yes | {self.ran}; {done}{said} |"
 
