@@ -18,10 +18,12 @@ def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tup
     Without `origin`, chains begin where data enters the analysed nodes; without `target`, they end where it leaves
     them. A chain passes each topic once.
     """
+    hops = [
+        hop for hop in hops if hop.source != hop.sink
+    ]  # a topic that a node republishes is an end all the same
     from_topic: dict[str, list[Hop]] = {}
     for hop in hops:
-        if hop.source != hop.sink:
-            from_topic.setdefault(hop.source, []).append(hop)
+        from_topic.setdefault(hop.source, []).append(hop)
     starts = [slashed(origin)] if origin else _first(hops)
     wanted = {slashed(target)} if target else _last(hops)
     leading = _leading(hops, wanted)

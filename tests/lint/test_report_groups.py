@@ -1,0 +1,244 @@
+"""Groups, maps and identities of findings written down by hand."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from tarl_lint.model import Finding, Flow, Sink, Source, Span
+from tarl_lint.report import github, gitlab
+from tarl_lint.report.grading import level, of_error, own_level, told_apart
+from tarl_lint.report.line import ASCII, View, plain
+from tarl_lint.report.overview import _few, _wrapped, overview
+from tarl_lint.report.packages import TESTS_AND_EXAMPLES, grouped
+from tarl_lint.report.paint import glyphs_for, wants_colour, width_of, write
+
+SPAN = Span("src/a.py", 3, 1, 3, 9)
+
+
+def flow(source: str, sink: str, line: int = 1, kind="explicit") -> Flow:
+    at = Span("src/a.py", line, 1, line, 9)
+    topics = tuple(sink.split("|"))
+    return Flow(kind, Source("s", SPAN, (source,), "", "cb", "sub"), Sink("k", at, topics, "", "pub"), ())
+
+
+def finding(path: str = "src/a.py", package: str = "p", code: str = "TARL201", **changes) -> Finding:
+    one = Finding(code, Span(path, 3, 1, 4, 9), "a message", package=package)
+    return replace(one, **changes)
+
+
+def test_findings_are_grouped_by_package_with_tests_and_examples_last():
+    some = [
+        finding("b/x.py", "b"),
+        finding("a/tests/x.py", "a"),
+        finding("a/x.py", "a", flow=flow("/s", "/k")),
+        finding("a/y.py", "a"),
+        finding("a/y.py", "a", flow=flow("/s", "/k")),
+    ]
+    a, b, aside = grouped(some)
+    assert (a.name, a.findings, a.counted) == ("a", (some[2], some[3], some[4]), "2 flows, 1 hazard")
+    assert (b.name, b.counted) == ("b", "1 hazard")
+    assert (aside.name, aside.findings) == (TESTS_AND_EXAMPLES, (some[1],))
+    assert [group.name for group in grouped(some[:1])] == ["b"]
+    assert [group.name for group in grouped(some[1:2])] == ["a"]  # examples only
+    assert grouped([]) == ()
+
+
+@pytest.mark.parametrize(
+    ("path", "aside"),
+    [
+        ("tests/a.py", True),
+        ("src/test/a.py", True),
+        ("example/a.py", True),
+        ("demos/a.py", True),
+        ("tutorial/x/a.py", True),
+        ("samples/a.py", True),
+        ("src/test_a.py", True),
+        ("a_test.py", True),
+        ("src/a_test.cpp.py", False),
+        ("src/latest/a.py", False),
+        ("src/testing.py", False),
+        ("contest_a.py", False),
+    ],
+)
+def test_paths_of_tests_and_examples(path, aside):
+    groups = grouped([finding("src/robot.py"), finding(path)])
+    assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
+
+
+def test_the_map_names_carried_and_deciding_topics_of_each_published_one():
+    flows = [
+        flow("/scan", "/cmd", 1),
+        flow("/odom", "/cmd", 2),
+        flow("/odom", "/cmd", 2, "implicit"),
+        flow("/stop", "/cmd", 3, "implicit"),
+        flow("/map", "/a_topic_with_a_name_of_more_than_thirty", 4),
+        flow("/map", "/x", 5),
+        flow("/map", "/y", 6),
+    ]
+    told = [plain(line) for line in overview(flows, View())]
+    assert told == [
+        "Published topics, and the topics that reach them:",
+        "  /a_topic_with_a_name_of_more_than_thirty",
+        " " * 34 + "● data of    /map",
+        "  /cmd" + " " * 28 + "● data of    /odom, /scan",
+        " " * 34 + "◆ decided by /stop",
+        "  /x" + " " * 30 + "● data of    /map",
+        "  /y" + " " * 30 + "● data of    /map",
+        "",
+    ]
+    assert [*overview(flows[:-1], View())] == []  # five publish calls fit on a screen
+
+
+def test_names_of_a_map_are_wrapped_at_the_width_and_many_are_abbreviated():
+    assert [*_wrapped(["a", "b", "c"], 4)] == ["a,", "b,", "c"]
+    assert [*_wrapped(["a", "b", "c"], 5)] == ["a, b,", "c"]
+    assert [*_wrapped([], 6)] == []
+    assert [*_wrapped(["long name"], 2)] == ["long name"]
+    assert _few(("a", "b", "c", "d")) == "a or b or c or d"
+    assert _few(("a", "b", "c", "d", "e")) == "a or b or c or 2 others"
+    assert _few(()) == "?"
+
+
+def test_levels_of_flows_hazards_and_failing_rules():
+    result = SimpleNamespace(failing={"TARL101"})
+    assert [own_level(code) for code in ("TARL101", "TARL201", "TARL001")] == ["note", "warning", "warning"]
+    assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]
+
+
+def test_findings_with_one_fingerprint_are_numbered():
+    some = [
+        finding(fingerprint="f"),
+        finding(fingerprint="g"),
+        finding(fingerprint="f"),
+        finding(),
+        finding(),
+    ]
+    names = [name for _, name in told_apart(some)]
+    assert names[:3] == ["f:1", "g:1", "f:2"]
+    assert names[3].endswith(":1")
+    assert names[4] == names[3][:-1] + "2"
+    assert names[3][:-2] != next(name for _, name in told_apart([finding(code="TARL202")]))[:-2]
+    assert of_error(SimpleNamespace(path="a.py")) != of_error(SimpleNamespace(path="b.py"))
+
+
+def result(**changes):
+    every = {
+        "failing": set(),
+        "findings": (),
+        "new": (),
+        "errors": (),
+        "names_errors": True,
+        "unused": (),
+        "statistics": SimpleNamespace(cut=()),
+    }
+    return SimpleNamespace(**every | changes)
+
+
+CUT = SimpleNamespace(path="big.py", message="it was cut")
+BROKEN = SimpleNamespace(path="bad.py", line=7, message="it cannot be read")
+
+
+def test_the_code_quality_report_has_new_findings_errors_and_cut_programs():
+    some = (finding(fingerprint="f"), finding(fingerprint="g", status="accepted"))
+    found = gitlab.document(result(findings=some, errors=(BROKEN,), statistics=SimpleNamespace(cut=(CUT,))))
+    assert [(one["check_name"], one["severity"]) for one in found] == [
+        ("TARL001", "minor"),
+        ("TARL201", "minor"),
+        ("incomplete", "info"),
+    ]
+    assert found[1] == {
+        "description": "a message",
+        "check_name": "TARL201",
+        "fingerprint": "f:1",
+        "severity": "minor",
+        "location": {"path": "src/a.py", "lines": {"begin": 3, "end": 4}},
+    }
+    assert found[0]["location"] == {"path": "bad.py", "lines": {"begin": 7, "end": 7}}
+    assert found[2]["location"] == {"path": "big.py", "lines": {"begin": 1, "end": 1}}
+    assert len({one["fingerprint"] for one in found}) == 3
+    assert gitlab.document(result(errors=(BROKEN,), names_errors=False)) == []
+    failing = gitlab.document(result(findings=some, failing={"TARL201"}))
+    assert [one["severity"] for one in failing] == ["major"]
+
+
+def test_an_annotation_has_columns_within_one_line_only():
+    one_line = github._command("warning", SPAN, "a:b,c", "50 %\nof")
+    assert one_line == (
+        "::warning file=src/a.py,line=3,endLine=3,col=1,endColumn=9,title=a%3Ab%2Cc::50 %25%0Aof"
+    )
+    several = github._command("note", Span("a.py", 3, 1, 4, 9), "t", "x\ry")
+    assert several == "::notice file=a.py,line=3,endLine=4,title=t::x%0Dy"
+
+
+def test_annotations_of_errors_hazards_and_cut_programs():
+    told = result(
+        new=(finding(), finding(flow=flow("/s", "/k"))),
+        errors=(BROKEN,),
+        statistics=SimpleNamespace(cut=(CUT,)),
+    )
+    assert [*github._errors(told)] == [
+        ("warning", Span("bad.py", 7, 1, 7, 1), "TARL001", "it cannot be read")
+    ]
+    assert [*github._errors(result(errors=(BROKEN,), names_errors=False))] == []
+    assert [*github._hazards(told)] == [("warning", Span("src/a.py", 3, 1, 4, 9), "TARL201", "a message")]
+    assert [*github._incomplete(told)] == [
+        ("note", Span("big.py", 1, 1, 1, 1), "tarl-lint: incomplete", "it was cut")
+    ]
+    comment = SimpleNamespace(path="c.py", line=2, column=5, code="TARL101", rules=("TARL101",))
+    ((own, span, title, text),) = github._unused(result(unused=(comment,)))
+    assert (own, span, title) == ("note", Span("c.py", 2, 5, 2, 5), "tarl-lint")
+    assert text[0].isupper()
+
+
+class Stream:
+    """A stream with an encoding, on a terminal or not."""
+
+    def __init__(self, encoding, terminal: bool = False) -> None:
+        self.encoding, self.terminal, self.text = encoding, terminal, ""
+
+    def isatty(self) -> bool:
+        return self.terminal
+
+    def write(self, text: str) -> None:
+        self.text += text
+
+
+@pytest.mark.parametrize(
+    ("environment", "terminal", "expected"),
+    [
+        ({}, True, True),
+        ({}, False, False),
+        ({"FORCE_COLOR": "1"}, False, True),
+        ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, True, False),
+        ({"TERM": "dumb", "FORCE_COLOR": "1"}, True, False),
+        ({"NO_COLOR": ""}, True, True),
+    ],
+)
+def test_colours_are_used_on_terminals_unless_refused(environment, terminal, expected):
+    assert wants_colour(Stream("utf-8", terminal), environment) is expected
+
+
+@pytest.mark.parametrize(
+    ("encoding", "ascii_only"), [("utf-8", False), ("ascii", True), (None, True), ("no-such", True)]
+)
+def test_signs_are_those_of_the_encoding(encoding, ascii_only):
+    assert (glyphs_for(Stream(encoding)) == ASCII) is ascii_only
+
+
+def test_a_stream_without_a_terminal_has_no_width():
+    assert width_of(Stream("utf-8")) == 0
+    assert width_of(Stream("utf-8", True)) > 0
+
+
+def test_control_characters_and_marks_of_direction_are_shown_not_passed_on():
+    stream = Stream("ascii")
+    write([(("a\x1b[31m\u202eb", "error"), ("\tc\x9f\x7f", ""))], stream, colour=False)
+    assert stream.text == "a\\x1b[31m\\u202eb\tc\\x9f\\x7f\n"
+    wide = Stream("utf-8")
+    write([(("é\ufeff\u061c", ""),), ()], wide, colour=False)
+    assert wide.text == "é\\ufeff\\u061c\n\n"
+    assert Counter(wide.text)["\n"] == 2
