@@ -16,7 +16,9 @@ from tests.slow import SLOW
 
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 SCRIPTS = sorted(
-    path for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")] if "__main__" in path.read_text()
+    path
+    for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")]
+    if 'if __name__ == "__main__"' in path.read_text()
 )
 ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable within a node only
 # Arguments with which each script does as little as possible; {tmp} is a folder of the test.
