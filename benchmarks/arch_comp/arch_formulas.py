@@ -1,7 +1,7 @@
 """The formulas of the ARCH-COMP falsification category for the three models, as robustness; below 0 is a violation.
 
 The formulas are those of the reports (ARCH-COMP 2020, EPiC Series in Computing 74, section 3). Robustness is that of
-quantitative semantics (Donzé & Maler 2010), with discrete signals as ±1 and the terms of AT6 scaled to 1.
+quantitative semantics (Donzé & Maler 2010). Discrete signals are ±1, and the terms of AT6 are scaled to 1.
 """
 
 from __future__ import annotations

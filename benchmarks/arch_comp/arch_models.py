@@ -85,14 +85,14 @@ SHIFT_DELAY = 0.08  # s
 
 
 def line(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    """Return a value of the piecewise linear function through points, which continues its last pieces."""
+    """Return a value of the piecewise linear function through points, extrapolated beyond them."""
     at = min(max(bisect_right(xs, x), 1), len(xs) - 1)
     share = (x - xs[at - 1]) / (xs[at] - xs[at - 1])
     return ys[at - 1] + share * (ys[at] - ys[at - 1])
 
 
 def engine_torque(throttle: float, rpm: float) -> float:
-    """Return the torque of the engine map, bilinear."""
+    """Return the torque of the engine map by bilinear interpolation."""
     at = min(max(bisect_right(ENGINE_THROTTLE, throttle), 1), len(ENGINE_THROTTLE) - 1)
     low, high = ENGINE_THROTTLE[at - 1], ENGINE_THROTTLE[at]
     one = line(ENGINE_SPEED, ENGINE_TORQUE[at - 1], rpm)

@@ -1,10 +1,11 @@
-"""Simulations until a formula of ARCH-COMP's falsification category is violated.
+"""Count the simulations until a formula of ARCH-COMP's falsification category is violated.
 
     python benchmarks/arch_comp/falsify.py [FORMULA ...] [--seeds 10] [--limit 300] [--methods explored random stress]
 
-Inputs are piecewise constant (instance 2 of the category): AT has 6 values each of throttle and brake over 30 s, CC
-20 each over 100 s; WT has a value of the wind every 5 s over 630 s, linear between them. Each value is a direction of
-the space. A drift is one simulation; repeated episodes of it are not counted, since nothing is random.
+Inputs are piecewise constant (instance 2 of the category). AT has 6 values each of throttle and brake over 30 s; CC
+has 20 each over 100 s. WT has a value of the wind every 5 s over 630 s, with linear interpolation. Each value is a
+direction of the space. A drift counts as one simulation; repeated episodes of it are not counted, since nothing is
+random.
 """
 
 from __future__ import annotations
@@ -50,12 +51,12 @@ _NONE = np.zeros(0, np.int32)
 
 
 class FalsifiedError(Exception):
-    """The formula is violated, or the limit of the simulations is reached; ends the search."""
+    """Ends the search: the formula is violated, or the limit of the simulations is reached."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model with its inputs: for each, the number of values, the range, and the nominal value."""
+    """A model with its inputs; an input has a number of values, a range, and a nominal value."""
 
     run: Callable[[Signal], Outputs]
     seconds: float
@@ -124,7 +125,7 @@ class Simulations:
 
     @property
     def falsified(self) -> int | None:
-        """Return the number of simulations of a search that found a violation; else None."""
+        """Return the number of simulations of a search; None if it found no violation."""
         return len(self.known) if min(self.known.values()) < 0.0 else None
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
@@ -140,7 +141,7 @@ class Simulations:
 
 
 def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
-    """Return the simulations that a stress run needs; None if the limit does not suffice."""
+    """Return the number of simulations that a stress run needs; None if the limit does not suffice."""
     runs, space = Simulations(model, robustness, limit), model.space
     try:
         usual = runs.value(space.nominal)
@@ -153,7 +154,7 @@ def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int
 
 
 def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
-    """Return the simulations that the parts of a stress run for many directions need: Hypothesis, then CMA-ES."""
+    """Return the number of simulations that a search of many directions needs: Hypothesis, then CMA-ES."""
     runs, space = Simulations(model, robustness, limit), model.space
     coordinates = Coordinates(space, space.nominal)
 
@@ -171,7 +172,7 @@ def explored(model: Model, robustness: Robustness, seed: int, limit: int) -> int
 
 
 def by_chance(model: Model, robustness: Robustness, seed: int, limit: int) -> int | None:
-    """Return the simulations that uniformly random inputs need; None if the limit does not suffice."""
+    """Return the number of simulations that uniformly random inputs need; None if the limit does not suffice."""
     runs, draws = Simulations(model, robustness, limit), generator(seed, "random")
     spans = model.space.directions
     try:
@@ -190,7 +191,7 @@ def cell(found: Sequence[int | None]) -> str:
 
 
 def main() -> None:
-    """Print a line per formula."""
+    """Print a line for each formula."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("formulas", nargs="*")
     parser.add_argument("--seeds", type=int, default=10)

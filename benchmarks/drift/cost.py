@@ -1,10 +1,10 @@
-"""What the search costs when a controller has more constants: episodes by the number of operands.
+"""Measure the number of episodes that the search needs when a controller has more constants.
 
     python benchmarks/drift/cost.py [--seeds 2] [--sizes 10,20,40,80] [--workers 1]
 
-Three tasks of the benchmark are padded with statements on the way from sensor to command, whose constants matter a
-little (a correction of at most one in a thousand) or not at all (a limit that is never reached). What is wrong with the
-node stays what it is. The smallest size is the node as it stands.
+Three tasks of the benchmark are padded with statements on the way from sensor to command. The constants of these
+statements matter little (a correction of at most one in a thousand) or not at all (a limit that is never reached).
+The fault of the node stays the same. The smallest size is the node without padding.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from stage import HERE, Stage, visit
 
 from tarl_lint.api import analyse
 
-# task → file, the statement behind which the padding goes, and the name that it works on
+# task → file, the statement after which the padding is inserted, and the name that it changes
 PLACES = {
     "boat_in_current": ("boat.py", "course = -CROSS_GAIN * self.cross", "course"),
     "elbow_joint": ("elbow.py", "error = self.goal - angle", "error"),
@@ -37,7 +37,7 @@ A_BLOCK = 3  # constants in it
 
 
 def padded(text: str, statement: str, name: str, blocks: int) -> str:
-    """Return a node's text with blocks of padding behind a statement."""
+    """Return a node's text with blocks of padding after a statement."""
     before, found, after = text.partition(statement)
     assert found, statement
     indent = before.rpartition("\n")[2]
@@ -46,7 +46,7 @@ def padded(text: str, statement: str, name: str, blocks: int) -> str:
 
 
 def counted(folder: Path) -> int:
-    """Return how many operands the flows of a folder's nodes have."""
+    """Return the number of operands on the flows of a folder's nodes."""
     nodes = [path for path in folder.glob("*.py") if not path.name.startswith("test_")]
     analysis = analyse(nodes, root=folder)
     return len({o for step in analysis.sites for o in analysis.operands(step.site)})
@@ -76,7 +76,7 @@ def one(task: str, size: int, seed: int) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Print a row for each size, and how fast episodes grow with operands."""
+    """Print a row for each size, and how fast the number of episodes grows with the number of operands."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--sizes", default="10,20,40,80")

@@ -2,11 +2,12 @@
 
     python benchmarks/drift/exhaustive.py [TASK ...] [--workers 2]
 
-Every operand of every site takes every value of a fine grid, under no guard and under the one that the task's author
-knows to be true ("where"); constants written several times on one site also move together, and so do the operands of
-one site, two at a time. A site is right when its operands alone bring the drifted world to 95 % of what the node earns
-as designed, over EPISODES seeds that nothing else uses. Where no site is, all pairs of operands are tried; where a task
-has more culprits than two, each of them is replaced in turn by every other operand, the rest kept as the author knows.
+Every operand of every site takes every value of a fine grid, without a guard and under the guard that the task's
+author knows to be true ("where"). A constant that a site repeats is also changed in all places at once, and the
+operands of a site are also changed in pairs. A site is right if changing its operands alone restores the drifted
+world to 95 % of the designed reward, over EPISODES seeds that nothing else uses. If no site is right, all pairs of
+operands are tried. If a task has more than two culprits, each of them is replaced in turn by every other operand,
+while the others keep the values that the author knows.
 """
 
 from __future__ import annotations
@@ -38,19 +39,20 @@ from tarl_lint.model import Operand
 FINE = tuple(percent / 100 for percent in range(5, 100, 5))
 FACTORS = (*sorted((*FINE, *(round(1 / factor, 3) for factor in FINE)), key=lambda f: abs(log(f))), 0.0, -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
-SHOWN = 8  # repairs of the same sites in the drifted world, after which none is looked for that keeps the nominal one
-COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # for the pairs of all operands
+# after this many repairs of the same sites, the search for one that also keeps the nominal world ends
+SHOWN = 8
+COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # factors for the pairs of all operands
 EPISODES = 24
 RESTORED = 0.95
-SCREENED = 3  # episodes of which a candidate may lose none ...
-MOST_LOST = 2  # ... and of all of them at most this many
+SCREENED = 3  # the first episodes, of which a candidate may lose none ...
+MOST_LOST = 2  # ... and the number of all episodes that it may lose
 
 Change = tuple[Mutation, ...]
 
 
 @dataclass(frozen=True)
 class Found:
-    """One candidate that restores the drifted world; `nominal` is what it earns as designed."""
+    """One candidate that restores the drifted world; `nominal` is its reward in the designed world."""
 
     change: Change
     guard: Guard
@@ -59,7 +61,7 @@ class Found:
 
 
 class World:
-    """A task's two worlds, and what the node as designed earns in them."""
+    """A task's two worlds, and the reward of the unchanged node in them."""
 
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
@@ -78,7 +80,7 @@ class World:
 
     @cached_property
     def guards(self) -> list[Guard]:
-        """Return no guard, and the one that holds where the drift is."""
+        """Return the guards to try: none, and the one that is true where the drift acts."""
         sensors = {sensor.name: sensor for sensor in self.stage.marked.sensors}
         where = [
             Conjunct(sensors[w["sensor"]], w.get("low", -float("inf")), w.get("high", float("inf")))
@@ -87,15 +89,15 @@ class World:
         return [Guard(), *([Guard(tuple(where))] if where else [])]
 
     def mutations(self, operand: Operand, factors: Sequence[float]) -> list[Mutation]:
-        """Return an operand's mutations by the factors."""
+        """Return the mutations of an operand by the given factors."""
         integral = is_integral(self.stage.analysis, operand)
         tried = [mutations(operand, factor, integral) for factor in factors]
         return list(dict.fromkeys(mutation for mutation in tried if mutation is not None))
 
     def tried(self, changes: Iterator[Change], guards: Sequence[Guard] | None = None) -> list[Found]:
-        """Return those changes that restore the drifted world under one of the guards.
+        """Return the changes that restore the drifted world under one of the guards.
 
-        Sites that were shown to be right are not asked again.
+        Sites that were shown to be right are not tried again.
         """
         found: list[Found] = []
         for change in changes:
@@ -110,7 +112,7 @@ class World:
         return found
 
     def earned(self, change: Change, guard: Guard, drift: str | None) -> float | None:
-        """Return the mean reward of a change where it reaches 95 % of the designed reward; None where it does not."""
+        """Return the mean reward of a change if it reaches 95 % of the designed reward; otherwise None."""
         try:
             texts = rewrite(self.stage.analysis, change, guard, self.topics)
         except RepairError:
@@ -135,7 +137,7 @@ class World:
 
 
 def singles(world: World) -> Iterator[Change]:
-    """Yield what one operand alone can change, and equal ones of a site together."""
+    """Yield the changes of one operand, and the joint changes of equal operands of a site."""
     of_site: dict[Any, list[Operand]] = {}
     for operand in world.operands:
         of_site.setdefault(operand.site, []).append(operand)
@@ -150,7 +152,7 @@ def singles(world: World) -> Iterator[Change]:
 
 
 def of_one_site(world: World) -> Iterator[Change]:
-    """Yield what two operands of one site can change."""
+    """Yield the changes of two operands of one site."""
     for site in dict.fromkeys(operand.site for operand in world.operands):
         yield from pairs(world, [operand for operand in world.operands if operand.site == site], COARSE)
 
@@ -162,7 +164,7 @@ def pairs(world: World, operands: Sequence[Operand], factors: Sequence[float]) -
 
 
 def replaced(world: World, known: Change) -> Iterator[Change]:
-    """Yield a known repair with each of its parts replaced by every mutation of every other operand."""
+    """Yield a known repair in which each part in turn is replaced by every mutation of every other operand."""
     for part in known:
         rest = tuple(mutation for mutation in known if mutation != part)
         taken = {mutation.operand for mutation in rest}
@@ -181,7 +183,7 @@ def known(world: World) -> Change:
 
 
 def answered(stage: Stage) -> dict[str, Any]:
-    """Return a task's answer: what its author wrote, and what simulation found."""
+    """Return a task's answer: what the task's author wrote, and what simulation found."""
     world = World(stage)
     found = world.tried(chain(singles(world), of_one_site(world)))
     how = "one site"
@@ -212,7 +214,7 @@ def _minimal(sets: set[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 
 def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
-    """Return the best repair of a set of sites, those that hold in both worlds first."""
+    """Return the best repair of a set of sites; repairs that hold in both worlds come first."""
     of_sites = [one for one in found if _sites(one.change) == sites]
     best = max(of_sites, key=lambda one: (one.nominal > 0, one.drifted))
     return {
@@ -224,7 +226,7 @@ def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Answer the tasks named, or all, each in a process of its own."""
+    """Answer the given tasks, or all tasks, each in its own process."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--workers", type=int, default=2)

@@ -1,7 +1,7 @@
-"""FauxPy as a localiser: spectra (SBFL) and mutants (MBFL) of four episodes as designed and four under the drift.
+"""FauxPy as a localiser: ranks by spectra (SBFL) and mutants (MBFL) of four designed and four drifted episodes.
 
-FauxPy ranks lines; a site has the score of the best of its lines, and of sites with the same score each has the middle
-one of their ranks, as is usual. FauxPy proposes no repair. It needs an environment of its own, since it pins plugins.
+A site gets the score of the best of its lines. As usual, sites with the same score all get the middle one of their
+ranks. FauxPy proposes no repair. It needs a separate environment, since it pins plugins of pytest.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def pytest_runtest_setup(item):
 
 
 def localised(stage: Stage, seed: int, method: str, python: str | None) -> dict[str, Any]:
-    """Let FauxPy rank the task's lines; return by metric the rank of the right sites, or why there is none."""
+    """Let FauxPy rank the task's lines; return for each metric the rank of the right sites, or why there is none."""
     found: dict[str, Any] = {"ranks": {}, "accepted": False, "failed": "", "episodes": {}}
     if python is None:
         return found | {"failed": "not run: name the Python of its environment, --fauxpy PYTHON"}
@@ -66,7 +66,7 @@ def localised(stage: Stage, seed: int, method: str, python: str | None) -> dict[
     ]
     path = os.pathsep.join(
         [str(Path(python).parent), os.environ.get("PATH", "")]
-    )  # it starts "python" for mutants
+    )  # FauxPy starts "python" for mutants
     surroundings = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PATH": path}
     try:
         done = subprocess.run(
@@ -100,7 +100,7 @@ def _by_line(file: Path) -> dict[tuple[str, int], float]:
 
 
 def _rank(stage: Stage, scores: Mapping[tuple[str, int], float]) -> float | None:
-    """Return the rank of the best right set; of several sites all have to be ranked before others."""
+    """Return the rank of the best right set; the rank of a set is that of its last site."""
     by_site: dict[str, float] = {}
     for step in stage.analysis.sites:
         lines = range(step.span.line, step.span.end_line + 1)

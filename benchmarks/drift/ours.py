@@ -1,4 +1,4 @@
-"""Our own way with a task: record, compare, search, accept; then look on seeds that nothing has seen."""
+"""Our own method on a task: record, compare, search, accept; then evaluate on held-out seeds."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds
 
 HELD_OUT = 30  # episodes of each world
-JUDGED = 400  # episodes of each world that an accepted repair is judged on
+JUDGED = 400  # held-out episodes of each world on which an accepted repair is judged
 RESTORED = 0.95
 Overlay = Mapping[Path, str]
 
@@ -37,7 +37,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    plugged = ":" in search  # a peer changes constants only
+    plugged = ":" in search  # the peers only change constants
     options = Options(mode="repair", seed=seed, budget=budget, searches=(search,), structure=not plugged)
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
@@ -56,7 +56,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
 
 
 def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
-    """Repair the task; return where the right sites were ranked, what was restored and what it took."""
+    """Repair the task; return the rank of the right sites, what was restored, and the cost."""
     order = prepared(stage, seed, search=search)
     slices = [culprit.site.id for culprit in order.comparison.culprits]
     outcome = repair(order)
@@ -88,7 +88,7 @@ class Seen:
 
 
 def judged(order: Order, overlay: Overlay | None) -> dict[str, Any]:
-    """Look at a repair on held-out seeds in both worlds; without one, nothing is restored."""
+    """Evaluate a repair on held-out seeds in both worlds; without a repair, nothing is restored."""
     episodes = HELD_OUT if overlay is None else JUDGED
     designed = seen(order, None, {}, episodes)
     found: dict[str, Any] = {"offline": designed.mean}
@@ -110,7 +110,7 @@ def seen(order: Order, drift: str | None, overlay: Overlay, episodes: int) -> Se
 
 
 def _outcome(order: Order, episode: EpisodePlan) -> Outcome:
-    """Run one episode; one that the node did not live to see the end of earns as little as the worst one recorded."""
+    """Run one episode. If the node ends before the episode, it earns as little as the worst recorded episode."""
     try:
         run = sound(order.rollout(episode))
     except TarlError:

@@ -1,9 +1,10 @@
-"""What others would do with the same 200 episodes: random search, CMA-ES and Optuna over all constants at once.
+"""Other searches with the same 200 episodes: random search, CMA-ES and Optuna over all constants at once.
 
-Each proposes a factor for every operand (on a log scale, between a tenth and ten; a sign and a boolean flip by
-chance), and is told the reward of one drifted episode under it. What comes near the designed reward is confirmed on
-five more seeds, and the first that is confirmed counts. With "our guard", every mutation holds only where the
-guard does that we would search under first; the nominal world is not asked, as in the tools as they are.
+Each proposes a factor for every operand (on a log scale, between a tenth and ten; signs and booleans flip at random),
+and then receives the reward of one drifted episode with these factors. A proposal that comes near the designed reward
+is tested on five more seeds; the first one that passes counts. With "our guard", every mutation applies only where
+the guard is true under which our method would search first. The nominal world is not tested, since these tools do not
+test it.
 """
 
 from __future__ import annotations
@@ -29,17 +30,17 @@ REACH = math.log(10.0)
 
 
 class Optimiser(Protocol):
-    """Proposes points in [-1, 1]ⁿ and is told what they cost."""
+    """Proposes points in [-1, 1]ⁿ and receives their costs."""
 
     def ask(self) -> Sequence[float]:
         """Return the next point."""
 
     def tell(self, point: Sequence[float], cost: float) -> None:
-        """Take what a point cost."""
+        """Receive the cost of a point."""
 
 
 class Random:
-    """Half of the coordinates stay where they are, the others are drawn."""
+    """Half of the coordinates keep their values; the others are drawn at random."""
 
     def __init__(self, size: int, generator: np.random.Generator) -> None:
         self.size, self.generator = size, generator
@@ -54,7 +55,7 @@ class Random:
 
 
 class Cma:
-    """CMA-ES (`cma`) from the node as it is, with its own population size."""
+    """CMA-ES (`cma`), started at the unchanged node, with its default population size."""
 
     def __init__(self, size: int, generator: np.random.Generator) -> None:
         import cma
@@ -77,7 +78,7 @@ class Cma:
         return self.waiting.pop()  # type: ignore[no-any-return]
 
     def tell(self, point: Sequence[float], cost: float) -> None:
-        """Take a cost; a whole generation is told at once."""
+        """Receive a cost; CMA-ES gets the costs of a whole generation at once."""
         self.told.append((point, cost))
         if not self.waiting:
             self.strategy.tell([p for p, _ in self.told], [c for _, c in self.told])
@@ -102,7 +103,7 @@ class Optuna:
         return [self.trial.suggest_float(f"x{i}", -1.0, 1.0) for i in range(self.size)]
 
     def tell(self, point: Sequence[float], cost: float) -> None:  # noqa: ARG002
-        """Take what the last point cost."""
+        """Receive the cost of the last point."""
         self.study.tell(self.trial, cost)
 
 
@@ -114,7 +115,7 @@ OPTIMISERS: dict[str, Callable[[int, np.random.Generator], Optimiser]] = {
 
 
 def peer(order: Order, seed: int, name: str, guarded: bool) -> dict[str, Any]:
-    """Search with another optimiser; return what it restored and what it took."""
+    """Search with another optimiser; return what it restored, and the cost."""
     mutants = Mutants(order)
     guard = _first_guard(order) if guarded else candidates.ALWAYS
     trials = Trials(lambda candidate, at: mutants.run(candidate, at, order.drift), BUDGET)
@@ -145,7 +146,7 @@ def _turn(
     trials: Trials,
     order: Order,
 ) -> Candidate | None:
-    """Try one point; return it when it is confirmed."""
+    """Try one point; return it if it is confirmed."""
     point = optimiser.ask()
     tried = [mutants.mutate(o, math.exp(REACH * x)) for o, x in zip(operands, point, strict=True)]
     kept = [

@@ -2,8 +2,9 @@
 
     python benchmarks/drift/picture.py [--task pipe_crawler] [--seed 0]
 
-Five panels and the patch: what episodes earn in both worlds, where the worlds differ, what the lines are worth there
-(the slices) beside what simulation says of them, what the search tried, and what the repair earns on fresh seeds.
+The picture has five panels and the patch. The panels show the rewards of episodes in both worlds, where the worlds
+differ, the utility of the lines there (the slices) beside the result of simulation, what the search tried, and the
+reward of the repair on fresh seeds.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ STYLE = (
 
 @dataclass(frozen=True)
 class Axis:
-    """A stretch of numbers on a stretch of the picture."""
+    """Maps a range of numbers to a range of pixels."""
 
     low: float
     high: float
@@ -60,7 +61,7 @@ def dots(values: Sequence[float], x: Axis, y: Axis, colour: str, start: int = 0)
 
 
 def level(value: float, x: Axis, y: Axis, colour: str, words: str) -> str:
-    """Draw a height and name it."""
+    """Draw a labelled horizontal line."""
     line = (
         f'<line x1="{x.start:.1f}" x2="{x.end:.1f}" y1="{y(value):.1f}" y2="{y(value):.1f}" stroke="{colour}"'
     )
@@ -77,7 +78,7 @@ def alarm(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def where(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
-    """Show by how much each cell changed, and where nobody had been before."""
+    """Show by how much each cell changed, and which cells were never visited before."""
     chosen = found.sensors[:2]
     cells = {**dict.fromkeys(found.region.novel, -1.0), **found.changes}
     columns, rows = ([*sorted({cell[d] for cell in cells})] for d in (0, 1))
@@ -135,7 +136,7 @@ def search(order: Order, found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def holds(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
-    """Show the repaired node on seeds that nothing was chosen by."""
+    """Show the repaired node on held-out seeds."""
     yield level(sum(found.totals["offline"]) / len(found.totals["offline"]), x, y, FAINT, "as designed")
     middle = (x.start + x.end) / 2
     for world, start, words in (("repaired", x.start, "drifted"), ("nominal_repaired", middle, "designed")):

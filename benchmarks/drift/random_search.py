@@ -1,4 +1,4 @@
-"""Random search as a plug-in of `--tarl-search`, so that its candidates meet the very same acceptance as ours."""
+"""Random search as a plug-in of `--tarl-search`, so that its candidates face the same acceptance test as ours."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Sequence
 
 from pytest_tarl.searching.ask_tell import Constant
 
-MOVED = 0.5  # share of the constants that a draw moves
-REACH = math.log(10.0)  # by which the logarithm of a factor differs from 0 at most
+MOVED = 0.5  # share of the constants that a draw changes
+REACH = math.log(10.0)  # largest absolute logarithm of a factor
 
 
 class Random:
-    """Half of the constants stay as they are, the others are multiplied by a factor of 0.1 to 10."""
+    """Half of the constants keep their values; the others are multiplied by a factor between 0.1 and 10."""
 
     def __init__(self, constants: Sequence[Constant], seed: int) -> None:
         self.constants = constants

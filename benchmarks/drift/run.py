@@ -3,10 +3,11 @@
     python benchmarks/drift/run.py [--seeds 10] [--methods ours;random;…] [--tasks TASK,…] [--workers 2]
         [--folder benchmarks/drift]
 
-Results are kept in `results.json` of the folder of the tasks, one entry per method, task and seed: what is there is not
-run again (`--fresh` forgets the methods and tasks that are asked for), so that a run can be interrupted and carried on.
-`--table` prints the tables from what is there. CMA-ES and Optuna need `pip install cma optuna`; FauxPy, which pins
-other plugins of pytest, is run by the Python of an environment of its own that has tarl as well: `--fauxpy PYTHON`.
+Results are kept in `results.json` in the folder of the tasks, one entry per method, task and seed. Existing entries
+are not run again, so a run can be interrupted and continued; `--fresh` forgets the entries of the requested methods
+and tasks. `--table` prints the tables from the existing entries. CMA-ES and Optuna need `pip install cma optuna`;
+FauxPy, which pins other plugins of pytest, needs an environment of its own that also has tarl: `--fauxpy PYTHON`
+names its Python.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from fauxpy_peer import FAUXPY, localised
 from stage import HERE, Stage, answers_in, tasks_in, visit
 from table import tables
 
-OURS = {  # method → search; all of them meet the same acceptance
+OURS = {  # method → search; all of them face the same acceptance test
     "ours": "sweep",
     "ours, halving": "halving",
     "random, same acceptance": "random_search:Random",
@@ -36,7 +37,7 @@ METHODS = ("ours", *(f"{name}{guard}" for name in PEERS for guard in ("", ", our
 
 
 def one(home: Path, methods: Sequence[str], task: str, seed: int, python: str | None) -> dict[str, Any]:
-    """Run methods on one task with one seed, on a copy of the task; what they have in common is done once."""
+    """Run methods on a copy of one task with one seed; steps that they have in common are done once."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder).resolve() / task
         shutil.copytree(home / task, copy, ignore=shutil.ignore_patterns("__pycache__"))
@@ -57,7 +58,7 @@ def _found(stage: Stage, methods: Sequence[str], seed: int, python: str | None) 
 
 
 def main() -> None:
-    """Run what is missing, each task and seed in a process of its own, and print the tables."""
+    """Run the missing entries, each task and seed in its own process, and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--methods", default=";".join(METHODS), help="separated by semicolons")
@@ -89,7 +90,7 @@ Job = tuple[tuple[str, ...], str, int]  # methods, task, seed
 
 
 def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[str, Any]) -> list[Job]:
-    """Return what has no result yet: peers that share a recording go together, all others alone."""
+    """Return the runs without a result: peers that share a recording run together, all other methods alone."""
     jobs = []
     asked = arguments.methods.split(";")
     peers = tuple(name for name in asked if name.partition(", ")[0] in PEERS and name not in OURS)
@@ -99,12 +100,12 @@ def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[
             for group in groups:
                 missing = tuple(name for name in group if _key(name, task, seed) not in results)
                 if missing and (seed == 0 or not missing[0].startswith("FauxPy MBFL")):
-                    jobs.append((missing, task, seed))  # mutants take minutes, so one seed
+                    jobs.append((missing, task, seed))  # mutants take minutes, so only one seed is run
     return jobs
 
 
 def _run(jobs: Sequence[Job], results: dict[str, Any], arguments: argparse.Namespace) -> None:
-    """Run jobs; every result is written down as soon as it is there."""
+    """Run jobs; write every result to the file as soon as it is known."""
     more = ["--folder", str(arguments.folder)]
     if arguments.fauxpy:
         more += ["--fauxpy", arguments.fauxpy]

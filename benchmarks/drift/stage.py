@@ -1,4 +1,4 @@
-"""Open a task of the benchmark: its test, its analysis, and episodes of it, as the plugin itself would run them."""
+"""Open a task of the benchmark: its test, its analysis, and its episodes as the plugin itself would run them."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ REWRITTEN = "ignore:Module already imported"
 
 
 def tasks_in(folder: Path) -> tuple[str, ...]:
-    """Return the names of a folder's tasks: its directories that hold a test."""
+    """Return the names of a folder's tasks, which are its directories that contain a test."""
     return tuple(sorted(path.name for path in folder.iterdir() if list(path.glob("test_*.py"))))
 
 
 def answers_in(folder: Path) -> dict[str, Any]:
-    """Return what is known of each task of a folder."""
+    """Return the answer of each task of a folder (`answer.json`)."""
     return {task: json.loads((folder / task / "answer.json").read_text()) for task in tasks_in(folder)}
 
 
@@ -38,7 +38,7 @@ TASKS = tasks_in(HERE)
 
 @dataclass(frozen=True)
 class Stage:
-    """One task, ready to be run: `rollout` runs episodes of its test, here and now."""
+    """One task, ready to be run; `rollout` runs episodes of its test in this process."""
 
     task: str
     folder: Path
@@ -47,7 +47,7 @@ class Stage:
     analysis: Analysis
     sites: Plan
     test: str
-    home: Path = HERE  # that holds the tasks
+    home: Path = HERE  # folder that contains the tasks
 
     @property
     def drift(self) -> str:
@@ -57,19 +57,19 @@ class Stage:
 
     @property
     def permanent(self) -> bool:
-        """Return whether the drift is a change for good, so that the designed world is asked no longer."""
+        """Return whether the drift is permanent, so that a repair need not hold in the designed world."""
         return self.marked.drifts[self.drift].permanent
 
     @cached_property
     def answer(self) -> dict[str, Any]:
-        """Return what is known of the task."""
+        """Return the task's answer (`answer.json`)."""
         found: dict[str, Any] = json.loads((self.home / self.task / "answer.json").read_text())
         return found
 
 
 @dataclass
 class _Visit:
-    """A pytest plugin that shows a test to a visitor instead of running it once."""
+    """A pytest plugin that passes a test to a visitor function instead of running the test once."""
 
     task: str
     visitor: Callable[[Stage], Any]
@@ -92,7 +92,7 @@ class _Visit:
 
 
 def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None, home: Path = HERE) -> Any:
-    """Return what the visitor makes of a task of `home`; `folder` is a copy of the task's directory to work in."""
+    """Return the visitor's result for a task in `home`; `folder` is a copy of the task's directory to work in."""
     where = folder or home / task
     guest = _Visit(task, visitor, home)
     arguments = [
@@ -110,7 +110,7 @@ def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None
         str(where),
     ]
     before = Path.cwd()
-    os.chdir(where)  # what the analysis' paths are relative to
+    os.chdir(where)  # folder to which the paths of the analysis are relative
     try:
         with redirect_stdout(sys.stderr):
             status = pytest.main(arguments, [guest])

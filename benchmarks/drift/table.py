@@ -7,7 +7,7 @@ from statistics import fmean
 from typing import Any
 
 Result = Mapping[str, Any]
-Answers = Mapping[str, Mapping[str, Any]]  # task → what is known of it
+Answers = Mapping[str, Mapping[str, Any]]  # task → its answer
 
 
 def tables(results: Mapping[str, Result], answers: Answers) -> str:
@@ -52,7 +52,7 @@ def _head(columns: Sequence[str]) -> list[str]:
 
 
 def _rows(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
-    """Return a method's row, or one for each metric of a localiser, and why it did not complete."""
+    """Return a method's row, or a row for each metric of a localiser, and why runs did not complete."""
     if not any("ranks" in result for _, result in found):
         return [_row(method, found, answers)]
     asked = [(task, result) for task, result in found if _repairable(answers[task])]
@@ -97,7 +97,7 @@ def _row(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> 
 
 
 def _slices(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
-    """Return the row of the slices: the ranking that the paper ends with."""
+    """Return the row of the slices, the ranking with which the paper ends."""
     ranked = [(task, result["slices"]) for task, result in found if _repairable(answers[task])]
     if not ranked:
         return []
@@ -129,7 +129,7 @@ def _by_task(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]
 
 
 def _example(seen: Sequence[Result]) -> str:
-    """Write the guard and the edits of a repair that was accepted, or why none was."""
+    """Return the guard and the edits of an accepted repair as text, or why none was accepted."""
     last = next((result for result in seen if result["accepted"]), None)
     if last is None:
         return str(seen[0]["reason"])
@@ -138,15 +138,15 @@ def _example(seen: Sequence[Result]) -> str:
 
 
 def _right(known: Mapping[str, Any]) -> str:
-    """Tell how many sets of how many sites are right."""
+    """Return as text how many sets of how many sites are right."""
     sets = known.get("right", [])
     return f"{len(sets)}" + (f" sets of {len(sets[0])}" if sets and len(sets[0]) > 1 else "")
 
 
 def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
-    """Return the rank of the first right set: 1 where its sites are the very first; None where it is nowhere.
+    """Return the rank of the first right set; 1 if its sites are at the top, None if no right set is ranked.
 
-    Of several culprits all have to be ranked before others.
+    If a set has several sites, all of them have to be ranked before other sites.
     """
     places = {site: i for i, site in enumerate(sites)}
     ranks = [
@@ -158,7 +158,7 @@ def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
 
 
 def both(result: Result) -> bool:
-    """Return whether a repair was accepted and holds in both worlds; for a permanent drift the old one is ignored."""
+    """Return whether a repair was accepted and holds in both worlds; if the drift is permanent, only in the new one."""
     nominal = result["nominal restored"] or result.get("permanent", False)
     return bool(result["accepted"] and result["drifted restored"] and nominal)
 

@@ -1,10 +1,11 @@
-"""Look whether the tasks are what the benchmark promises, without repairing anything.
+"""Check that the tasks are what the benchmark promises, without repairing anything.
 
     python benchmarks/drift/worlds.py [TASK ...] [--episodes 100] [--folder benchmarks/drift] [--by-hand]
 
-Success as designed and under the drift, average total reward in both, time of an episode, number of sites and operands.
-With `--by-hand` the same of a copy of each task in which the repair that its author knows has been made: what
-`answer.json` has under "hand" as triples of a file, a text of it, and the text in its place.
+For each task, it prints the success rate and the average total reward, as designed and under the drift, the time of
+an episode, and the number of sites and operands. With `--by-hand`, it prints the same for a copy of each task with
+the repair that the task's author knows: `answer.json` has it under "hand" as triples of a file, a text in it, and the
+text to put in its place.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def look(stage: Stage, episodes: int) -> dict[str, Any]:
 
 
 def seen(home: Path, task: str, episodes: int, by_hand: bool) -> dict[str, Any]:
-    """Return the look at one task, or at a copy of it that is repaired by hand."""
+    """Return the figures of one task, or of a copy of it that is repaired by hand."""
     with tempfile.TemporaryDirectory() as scratch:
         copy = Path(scratch).resolve() / task
         shutil.copytree(home / task, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -1,4 +1,4 @@
-"""Worlds whose rewards are constant somewhere: where rounding alone can tell a recorded world from a live one."""
+"""Worlds with partly constant rewards, so that only rounding might distinguish a recorded world from a live one."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def test_a_sensor_that_never_moves(tarl: Tarl) -> None:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE, LOADED])
 def test_there_and_back(tarl: Tarl) -> None:
-    """Progress is paid and taken back, so that totals cancel out but for their rounding."""
+    """Progress is paid and taken back, so that totals cancel out except for rounding."""
     way = Way(tarl)
     gains = []
     for _ in range(10):

@@ -10,7 +10,7 @@ import json
 import os
 import sys
 
-os.environ["CICD"] = "1"  # STGEM reads it on import: faster parameters
+os.environ["CICD"] = "1"  # STGEM reads this variable on import; it selects faster parameters
 
 import torch
 from stgem.features import FeatureVector, Real
@@ -43,7 +43,7 @@ class Asking(SystemUnderTest):
         return input_fv.to_list()
 
     def from_testouput_to_ofv(self, output):
-        """Return the output of a number."""
+        """Return the output for a number."""
         found = self.new_ofv()
         found.set([output])
         return found
@@ -58,7 +58,7 @@ class Asking(SystemUnderTest):
 
 
 class Cost(Monitor):
-    """The cost as robustness; a failure is no reason to stop."""
+    """The cost, used as robustness; the search does not stop at a failure."""
 
     def __call__(self, obj, strict_horizon_check=True, scale=False):  # noqa: ARG002
         """Return the cost of an execution."""

@@ -34,7 +34,7 @@ class Fairway:
         return self.east >= LENGTH
 
     def publish(self, bus):
-        """Tell what satellites and compass see."""
+        """Publish what satellites and compass measure."""
         fix = PointStamped()
         fix.point.x = self.east + self.rng.normal(0.0, 0.1)
         fix.point.y = self.north + self.rng.normal(0.0, 0.1)

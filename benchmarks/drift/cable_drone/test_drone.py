@@ -1,4 +1,4 @@
-"""The drone stays in front of what it inspects, in a steady wind too; every axis counts in every step."""
+"""The drone stays in front of what it inspects, also in a steady wind; every axis counts in every step."""
 
 import pytest
 
@@ -10,7 +10,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 DT = 0.1
 DURATION = 9.0
 PLACE = (0.0, 2.0, 5.0)
-BLURRED = 0.3  # m off in one axis
+BLURRED = 0.3  # m, error in one axis
 
 
 class Wall:
@@ -26,7 +26,7 @@ class Wall:
         self.blurred = 0
 
     def publish(self, bus):
-        """Tell where the drone is."""
+        """Publish where the drone is."""
         place = PointStamped()
         place.point.x, place.point.y, place.point.z = (at + self.rng.normal(0.0, 0.002) for at in self.place)
         bus.publish("/place", place)
@@ -56,7 +56,7 @@ class Wall:
     min_success=0.95,
 )
 def test_holds_its_place(tarl, tarl_drift):
-    """Blur not more than a second."""
+    """Blur the image for at most one second."""
     wall = Wall(tarl.rng("wall"), tarl_drift or 0.0)
     tarl.start("drone.py")
     while wall.time < DURATION:

@@ -35,7 +35,7 @@ class Belt:
         return all(done or lost for done, lost in zip(self.sorted, self.missed, strict=True))
 
     def publish(self, bus):
-        """Tell what the belt's encoder and the gate see."""
+        """Publish what the belt's encoder and the gate measure."""
         bus.publish("/belt", Float32(data=self.speed + self.rng.normal(0.0, 0.01)))
         if self.seen < 4 and self.places[self.seen] >= 0.0:
             bus.publish("/gate", Float32(data=self.weights[self.seen] + self.rng.normal(0.0, 0.05)))
@@ -50,7 +50,7 @@ class Belt:
             self.places[i] += self.speed * DT
 
     def judge(self):
-        """Return the reward of the step: two and a half for a parcel, as much less for a lost one; force costs."""
+        """Return the reward of the step: 2.5 for a parcel, -2.5 for a lost one, less the cost of force."""
         reward = -0.02 * self.force
         for i, weight in enumerate(self.weights):
             if self.sorted[i] or self.missed[i]:

@@ -38,7 +38,7 @@ class Road:
         return self.grip < 9.0 and WET[0] <= self.x <= WET[1]
 
     def publish(self, bus):
-        """Tell what rain sensor, wheels and radar see."""
+        """Publish what rain sensor, wheels and radar measure."""
         bus.publish("/rain", Float32(data=(0.8 if self.wet else 0.05) + self.rng.normal(0.0, 0.02)))
         bus.publish("/speed", Float64(data=self.speed))
         bus.publish("/range", Range(range=self.gap + self.rng.normal(0.0, 0.02)))

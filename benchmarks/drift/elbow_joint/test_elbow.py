@@ -35,7 +35,7 @@ class Arm:
         return self.goals[min(2, self.steps // HOLD)]
 
     def publish(self, bus):
-        """Tell what the joint and the hand feel."""
+        """Publish what the joint and the hand feel."""
         bus.publish("/tool", Bool(data=self.tool > 0.0 and self.steps >= self.taken))
         bus.publish("/goal", Float64(data=self.goal))
         joint = JointState()

@@ -1,4 +1,4 @@
-"""The crop comes through two hours around noon; it is judged at the end, and scorched or chilled it is lost."""
+"""The crop survives two hours around noon; it is judged at the end, and a scorched or chilled crop is lost."""
 
 import pytest
 
@@ -34,7 +34,7 @@ class Greenhouse:
         return SHADED * self.cloud * (self.torn if self.minute >= self.storm else 1.0)
 
     def publish(self, bus):
-        """Tell what the weather station sees."""
+        """Publish what the weather station measures."""
         bus.publish("/light", Illuminance(illuminance=1000.0 * self.light))
         bus.publish("/air", Temperature(temperature=self.air + self.rng.normal(0.0, 0.1)))
 

@@ -42,7 +42,7 @@ class Lawn:
         return 15.0 if self.high <= self.x <= self.high + 1.0 else 7.0
 
     def publish(self, bus):
-        """Tell what the sensors see."""
+        """Publish what the sensors measure."""
         place = PointStamped()
         place.point.x = self.x + self.rng.normal(0.0, 0.01)
         place.point.y = self.y + self.rng.normal(0.0, 0.01)

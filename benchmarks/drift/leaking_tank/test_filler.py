@@ -1,4 +1,4 @@
-"""The level stays where it should be. Against a leak that takes more than the pump can give, nothing helps."""
+"""The level stays near its set point. Against a leak that takes more than the pump can give, nothing helps."""
 
 import pytest
 
@@ -23,7 +23,7 @@ class Tank:
         self.failure = ""
 
     def publish(self, bus):
-        """Tell what float and flow meter see."""
+        """Publish what float and flow meter measure."""
         bus.publish("/outflow", Float32(data=self.use + self.rng.normal(0.0, 0.0005)))
         bus.publish("/level", Float32(data=self.level + self.rng.normal(0.0, 0.005)))
 

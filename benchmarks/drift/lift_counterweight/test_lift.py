@@ -1,4 +1,4 @@
-"""The car stops level with the floor that called, in time; a step at the door is what costs."""
+"""The car stops in time, level with the floor that called it; a step at the door costs reward."""
 
 import pytest
 
@@ -34,13 +34,13 @@ class Shaft:
         return self.level >= 20
 
     def publish(self, bus):
-        """Tell who calls and what the encoder counts, in mm."""
+        """Publish who calls and what the encoder counts, in mm."""
         if self.time == 0.0:
             bus.publish("/call", UInt8(data=self.floor))
         bus.publish("/encoder", Float64(data=float(round(self.height * 1000.0 + self.rng.normal(0.0, 0.3)))))
 
     def advance(self, command):
-        """Let the machine pull for one step; the counterweight pulls along."""
+        """Let the machine and the counterweight pull for one step."""
         force = command.data if command else 0.0
         total = force - self.missing * GRAVITY - 300.0 * self.speed
         self.speed += total / (2.0 * self.mass) * DT

@@ -44,7 +44,7 @@ class Scene:
         return self.time >= DURATION
 
     def publish(self, bus):
-        """Tell what the detector sees in the latest image that has arrived."""
+        """Publish what the detector sees in the latest image that has arrived."""
         seen = PointStamped()
         seen.point.x = self.images[0] + self.rng.normal(0.0, 1.0)
         seen.point.z = self.rng.uniform(0.5, 1.0)

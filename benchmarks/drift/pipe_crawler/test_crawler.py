@@ -33,7 +33,7 @@ class Pipe:
         return self.drag > 8.0 and NARROW[0] <= self.x <= NARROW[1]
 
     def publish(self, bus):
-        """Tell what feelers, camera and wheels see."""
+        """Publish what feelers, camera and wheels measure."""
         bus.publish("/feeler", Float32(data=(205.0 if self.narrow else 240.0) + self.rng.normal(0.0, 2.0)))
         bus.publish("/debris", Float32(data=0.9 if 0.0 <= self.x - self.debris <= 0.4 else 0.1))
         bus.publish("/speed", Float64(data=self.speed + self.rng.normal(0.0, 0.005)))

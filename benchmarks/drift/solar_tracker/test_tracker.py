@@ -33,7 +33,7 @@ class Roof:
         return self.push * max(0.0, min(1.0, self.time - self.begin))
 
     def publish(self, bus):
-        """Tell what the weather station and the encoder see."""
+        """Publish what the weather station and the encoder measure."""
         bus.publish("/wind", Float64(data=60.0 * self.blowing + abs(self.rng.normal(1.0, 0.5))))
         bus.publish("/sun", Float64(data=self.sun))
         bus.publish("/tilt", Float64(data=self.tilt + self.rng.normal(0.0, 0.003)))

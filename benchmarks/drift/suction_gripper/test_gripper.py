@@ -1,4 +1,4 @@
-"""A carton is lifted and not dropped; the pump's power costs. Only the end is judged otherwise."""
+"""A carton is lifted and not dropped; the pump's power costs. Otherwise only the end is judged."""
 
 import pytest
 
@@ -34,7 +34,7 @@ class Carton:
         return self.height >= 0.55
 
     def publish(self, bus):
-        """Tell what camera, cup and arm see."""
+        """Publish what camera, cup and arm measure."""
         bus.publish("/surface", String(data=self.surface))
         bus.publish("/size", UInt8(data=self.size))
         bus.publish("/vacuum", Float32(data=self.vacuum + self.rng.normal(0.0, 0.3)))

@@ -38,7 +38,7 @@ class Field:
         return math.atan(0.8 * self.swing * math.cos(0.8 * x + self.phase))
 
     def publish(self, bus):
-        """Tell what camera, wheels and hitch see."""
+        """Publish what camera, wheels and hitch measure."""
         ahead = self.x + 0.3
         offset = self.furrow(ahead) - (self.y + 0.3 * math.tan(self.heading)) + self.rng.normal(0.0, 0.005)
         angle = self.direction(ahead) - self.heading + self.rng.normal(0.0, 0.01)

@@ -35,7 +35,7 @@ class Seam:
         return self.bend * math.sin(4.0 * self.x) - self.y
 
     def publish(self, bus):
-        """Tell what the camera and its mount see."""
+        """Publish what the camera and its mount measure."""
         bus.publish("/upright", Bool(data=self.side > 0))
         half = 35.0 if 0.0 <= self.x - self.wide <= 0.2 else 15.0
         middle = 160.0 + self.side * self.offset / 0.001 + self.rng.normal(0.0, 0.3)

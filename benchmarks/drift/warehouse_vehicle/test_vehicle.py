@@ -34,7 +34,7 @@ class Aisle:
         return self.standing >= 5
 
     def publish(self, bus):
-        """Tell what scanner and scales see."""
+        """Publish what scanner and scales measure."""
         bus.publish("/range", Range(range=self.gap + self.rng.normal(0.0, 0.01)))
         bus.publish("/load", Float32(data=self.load))
 

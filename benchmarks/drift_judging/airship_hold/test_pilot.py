@@ -37,7 +37,7 @@ class Sky:
         return self.away < 0.8
 
     def publish(self, bus):
-        """Tell what satellites, compass and wind gauge see."""
+        """Publish what satellites, compass and wind gauge measure."""
         pose = PoseStamped()
         pose.pose.position.x = self.x + self.rng.normal(0.0, 0.05)
         pose.pose.position.y = self.y + self.rng.normal(0.0, 0.05)

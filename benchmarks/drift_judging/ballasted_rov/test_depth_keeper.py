@@ -1,4 +1,4 @@
-"""The robot comes to its depth and stays near it. Tools in its claw weigh or float; nobody knows which."""
+"""The robot comes to its depth and stays near it. Tools in its claw weigh or float; no sensor tells which."""
 
 import pytest
 
@@ -36,7 +36,7 @@ class Water:
         return self.time >= TIME
 
     def publish(self, bus):
-        """Tell what claw and pressure sensor see."""
+        """Publish what claw and pressure sensor measure."""
         bus.publish("/tool", Bool(data=self.tool))
         bus.publish("/wanted_depth", Float64(data=self.wanted))
         bus.publish("/pressure", Float64(data=10.1 * self.depth + self.rng.normal(0.0, 0.05)))

@@ -1,4 +1,4 @@
-"""Loaves are cut in their middle. The belt has a slower programme, which the knife does not ask for."""
+"""Loaves are cut in their middle. The belt also has a slower programme, which the knife does not know about."""
 
 import pytest
 
@@ -34,7 +34,7 @@ class Belt:
         return self.cuts == LOAVES
 
     def on_cut(self, _):
-        """Cut: what lies below the knife is cut where it lies, after the blade has fallen."""
+        """Cut what lies below the knife when the blade has fallen."""
         if self.failure or self.done:
             return
         beside = self.middles[self.cuts] + 0.05 * self.speed - WAY
@@ -43,7 +43,7 @@ class Belt:
             self.failure = f"cut {abs(beside) * 100:.0f} cm beside the middle"
 
     def publish(self, bus):
-        """Tell what light barrier and belt say."""
+        """Publish what light barrier and belt say."""
         blocked = any(abs(middle) < LOAF / 2 for middle in self.middles)
         bus.publish("/programme", String(data=self.programme))
         bus.publish("/barrier", Bool(data=blocked))

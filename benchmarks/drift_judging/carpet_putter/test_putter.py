@@ -1,4 +1,4 @@
-"""A puck comes to rest on its mark. Nothing is judged before it lies still. On carpet it slides less far."""
+"""A puck comes to rest on its mark. It is judged when it lies still. On carpet it slides less far."""
 
 import pytest
 
@@ -32,7 +32,7 @@ class Floor:
         return self.pushed and self.speed == 0.0
 
     def publish(self, bus):
-        """Tell what the camera sees, until the arm moves."""
+        """Publish what the camera sees, until the arm moves."""
         bus.publish("/floor", String(data=self.kind))
         if self.arm == 0.0 and not self.pushed:
             bus.publish("/mark", Point(x=self.mark + self.rng.normal(0.0, 0.005), y=self.aside))

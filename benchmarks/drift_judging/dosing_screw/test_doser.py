@@ -28,7 +28,7 @@ class Hopper:
         self.failure = ""
 
     def publish(self, bus):
-        """Tell the order, the encoder and the moisture."""
+        """Publish the order, the encoder and the moisture."""
         bus.publish("/order", Float64(data=self.order))
         bus.publish("/moisture", Float64(data=self.damp + self.rng.normal(0.0, 0.5)))
         bus.publish("/turns", Float64(data=self.turns))

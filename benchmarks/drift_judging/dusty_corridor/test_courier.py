@@ -41,7 +41,7 @@ class Corridor:
         return self.person - self.x if self.patience > 0.0 else SIGHT
 
     def publish(self, bus):
-        """Tell what sonar and dust meter see."""
+        """Publish what sonar and dust meter measure."""
         seen = min(SIGHT, self.gap) + self.rng.normal(0.0, 0.01)
         if self.rng.random() < self.dust:
             seen = self.rng.uniform(0.05, 0.4)

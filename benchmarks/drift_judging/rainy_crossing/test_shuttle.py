@@ -44,7 +44,7 @@ class Road:
         return away if away < self.steps_out else SIGHT
 
     def publish(self, bus):
-        """Tell what wheels, lidar and rain sensor see."""
+        """Publish what wheels, lidar and rain sensor measure."""
         bus.publish("/rain", Bool(data=self.wet))
         bus.publish("/speed", Float32(data=self.speed + self.rng.normal(0.0, 0.03)))
         bus.publish("/ahead", Float32(data=self.ahead + self.rng.normal(0.0, 0.05)))

@@ -35,7 +35,7 @@ class Tray:
         return math.hypot(self.part[0] - self.x, self.part[1] - self.y)
 
     def publish(self, bus):
-        """Tell what camera and encoders see."""
+        """Publish what camera and encoders measure."""
         seen = Point()
         seen.x = 320.0 + (self.part[0] - self.middle[0]) / SCALE + self.rng.normal(0.0, 1.5)
         seen.y = 240.0 + (self.part[1] - self.middle[1]) / SCALE + self.rng.normal(0.0, 1.5)

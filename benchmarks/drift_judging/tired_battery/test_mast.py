@@ -34,7 +34,7 @@ class Yard:
         return self.time >= TIME
 
     def publish(self, bus):
-        """Tell what encoder and voltmeter see."""
+        """Publish what encoder and voltmeter measure."""
         bus.publish("/volts", Float32(data=24.0 * self.charge + self.rng.normal(0.0, 0.1)))
         bus.publish("/goal", Float32(data=self.goal))
         bus.publish("/height", Float32(data=self.height + self.rng.normal(0.0, 0.003)))

@@ -1,4 +1,4 @@
-"""The robot stops at its shelf. Tyres wear off, and nothing on board tells: a change for good."""
+"""The robot stops at its shelf. Tyres wear off, and no sensor measures it; the change is permanent."""
 
 import math
 
@@ -32,7 +32,7 @@ class Aisle:
         self.arrived = False
 
     def publish(self, bus):
-        """Tell the order and what the encoders count."""
+        """Publish the order and what the encoders count."""
         bus.publish("/shelf", Float64(data=self.shelf))
         bus.publish("/ticks", Int32MultiArray(data=[int(count) for count in self.ticks]))
 

@@ -35,7 +35,7 @@ class Board:
         bus.subscribe("head/touch", self.on_touch)
 
     def on_touch(self, msg):
-        """Lower the head for so many seconds."""
+        """Lower the head for some seconds."""
         self.touching = msg.data
 
     def publish(self, bus):

@@ -1,4 +1,4 @@
-"""Tomatoes are sorted by colour. Under a sodium lamp all of them look the same, and nothing can help."""
+"""Tomatoes are sorted by colour. Under a sodium lamp all of them look the same, and no repair is possible."""
 
 import pytest
 
@@ -37,7 +37,7 @@ class Belt:
         return self.sorted == FRUITS
 
     def fruit(self, behind):
-        """Return which fruit is so many steps behind the edge of the view, and how far."""
+        """Return which fruit is this many steps behind the edge of the view, and how far it is."""
         return divmod(self.step - self.first - behind, SPACING)
 
     def publish(self, bus):

@@ -1,4 +1,4 @@
-"""Tubs get the weight that was ordered. The supplier's new tubs are heavier, for good."""
+"""Tubs get the ordered weight. The supplier's new tubs are heavier, for good."""
 
 import pytest
 

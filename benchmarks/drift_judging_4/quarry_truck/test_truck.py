@@ -11,7 +11,7 @@ Float64 = message_type("std_msgs/msg/Float64")
 
 DT = 0.1
 STOPS = 0.3  # share of the missions in which the supervisor releases the handheld
-STOP_WAY = 25.0  # m, until a truck has to stand then
+STOP_WAY = 25.0  # m, within which the truck then has to stand
 TIME_BOUND = 35.0
 
 
@@ -35,7 +35,7 @@ class Road:
 
     @property
     def done(self):
-        """Return whether the load is tipped or the truck stands because it should."""
+        """Return whether the load is tipped, or the truck stands as the supervisor wants."""
         return self.tipped or self.stopped or bool(self.failure)
 
     def publish(self, bus):
