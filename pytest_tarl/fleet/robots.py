@@ -23,7 +23,6 @@ from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, shares
-from pytest_tarl.monitoring.restarts import log_evidence
 from pytest_tarl.monitoring.status import Evidence, Status
 from pytest_tarl.monitoring.status import status as status_of
 
@@ -132,14 +131,6 @@ def fresh(first: Monitor) -> Monitor:
     """Return a monitor without missions, of the same recording."""
     processes = restarts.begun(first.processes.threshold)
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
-
-
-def robot(name: str, monitor: Monitor, q: float) -> Robot:
-    """Return the evidence of a monitor."""
-    world, bound = evidence(monitor, monitor.processes.peak, log_evidence(monitor.processes))
-    counts = monitor.counts
-    reached = max(world, bound) >= -np.log2(q)
-    return Robot(name, counts.missions, counts.passed, world, bound, status_of(monitor) if reached else None)
 
 
 def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:

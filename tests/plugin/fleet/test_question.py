@@ -9,6 +9,7 @@ from dataclasses import replace
 from datetime import date
 from functools import partial
 from importlib.util import find_spec
+from math import log2
 from pathlib import Path
 from random import Random
 from threading import Event
@@ -32,6 +33,8 @@ from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.monitoring import watch
+from pytest_tarl.monitoring.restarts import log_evidence
+from pytest_tarl.monitoring.status import status
 from pytest_tarl.seeds import generator
 from tests.plugin.monitoring import missions
 
@@ -114,8 +117,12 @@ def test_the_evidence_is_that_of_the_watch(folder: Path, tmp_path: Path, found: 
     for _ in one.poll():
         pass
     one.close()
-    expected = robots.robot(f"r{robot}", one.monitor, found.robots.q)
-    assert found.robots.every[robot] == expected
+    latest = log_evidence(one.monitor.processes)
+    world, bound = robots.evidence(one.monitor, one.monitor.processes.peak, latest)
+    counts, named = one.monitor.counts, max(world, bound) >= -log2(found.robots.q)
+    assert found.robots.every[robot] == robots.Robot(
+        f"r{robot}", counts.missions, counts.passed, world, bound, status(one.monitor) if named else None
+    )
 
 
 def test_the_verdict_is_that_of_the_comparison_of_one_log(folder: Path, found: Answer) -> None:

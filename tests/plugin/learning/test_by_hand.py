@@ -23,10 +23,12 @@ from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.judgements import judgements, rows, stacked, together, with_worlds, world
 from pytest_tarl.learning.localize import culprits, prior
 from pytest_tarl.learning.marginal import apart, groups, left_out, lent, projected
-from pytest_tarl.learning.parts import means
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.parts import lost, means
 from pytest_tarl.learning.residuals import beyond
 from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.sequential import Look, certain, concluded, planned
+from pytest_tarl.learning.shifts import shifts
 from pytest_tarl.learning.tables import END, Chain, Edges, ListSample, Sample, Visits
 from pytest_tarl.model import FormulaRow, LossInterval, OperandEffect, Region, SitePlace, Slice, Verdict
 from pytest_tarl.sensors import Cell, Sensor
@@ -344,6 +346,31 @@ def test_unknown_utilities_are_lent_by_similar_cells_weighted_by_visits() -> Non
 def test_parts_of_the_reward_per_episode() -> None:
     one, two = episodes([(0,), (2,)], [(2,)]), replace(episodes([(0,)]), part_names=("a", "c"))
     assert means(one, two) == {"a": (3.0, 2.0), "b": (-1.0, 0.0), "c": (0.0, 0.0)}
+
+
+def test_cells_where_a_part_is_lost_are_named_by_part() -> None:
+    """Part b earns minus the number of the cell: in cell 3 it loses 3, in cell 2 it gains."""
+    usual = [episodes([(0,), (1,)], [(0,), (1,)], cells=((2,), (3,))) for _ in range(8)]
+    moved = [episodes([(0,), (3,)], [(0,), (3,)], cells=((1,), (2,))) for _ in range(8)]
+    one, two = (
+        merge([replace(sample, seeds=(2 * n, 2 * n + 1)) for n, sample in enumerate(some)])
+        for some in (usual, moved)
+    )
+    found = lost(one, two, 0.05, np.random.default_rng(0))
+    assert found == {"a": ((1,),), "b": ((3,),)}
+    assert lost(one, one, 0.05, np.random.default_rng(0)) == {"a": (), "b": ()}
+    bare = replace(one, part_names=())
+    assert lost(bare, bare, 0.05, np.random.default_rng(0)) == {}
+
+
+def test_the_interval_of_a_shift_is_about_symmetric_for_symmetric_totals() -> None:
+    before = np.array([-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] * 3)
+    low, high = shifts(before + 1.0, before, 0.05)
+    assert low < 1.0 < high
+    assert high - 1.0 == pytest.approx(1.0 - low, rel=0.25)
+    assert 0.5 < high - 1.0 < 1.6  # 1.68 standard errors of 0.65
+    assert shifts(np.ones(5), np.zeros(5), 0.05) == (1.0, 1.0)
+    assert shifts(np.array([1.0]), np.array([0.0, 1.0]), 0.05) == (-inf, inf)
 
 
 A, B, C, D = (SitePlace(name, "n.py", line, name, "data", "assign") for line, name in enumerate("ABCD"))

@@ -1,0 +1,311 @@
+"""Parts of the search for flows, on value-flow graphs of a few numbered nodes."""
+
+from __future__ import annotations
+
+import ast
+from types import SimpleNamespace
+
+import pytest
+
+from tarl_lint.errors import ConfigError
+from tarl_lint.evidence import Outline
+from tarl_lint.flows.call_chains import calls, entrances, made_alongside
+from tarl_lint.flows.reachability import Reach, Tracer, _reversed, closure, ending_in_publish_call
+from tarl_lint.flows.statement_text import Text
+from tarl_lint.model import Span
+from tarl_lint.options import _sentence
+from tarl_lint.settings.schema import Wrapper
+from tarl_lint.settings.wrappers import facts
+
+KNOWN = ["--select", "--exclude"]
+
+
+def graph(count: int, **parts) -> SimpleNamespace:
+    """Return a graph in which `data` and `control` map a node to what it is made from."""
+
+    def table(name):
+        given = parts.pop(name, {})
+        return [set(given.get(node, ())) for node in range(count)]
+
+    data, control = table("data"), table("control")
+    chosen = parts.pop("branches", {})
+    branches = [frozenset(chosen.get(node, ())) for node in range(count)]
+    every = {"gates": {}, "counts": {}, "stands_for": {}, "places": []}
+    return SimpleNamespace(data=data, control=control, branches=branches, **every | parts)
+
+
+def tracer(of: SimpleNamespace) -> Tracer:
+    """Return a tracer of a graph without its programs."""
+    found = Tracer.__new__(Tracer)
+    found.graph = of
+    found.forward_data, found.forward_control = _reversed(of.data), _reversed(of.control)
+    found._alongside = made_alongside(of)
+    found._formers, found._merged, found._steps = {}, set(), {}
+    return found
+
+
+def test_edges_are_reversed():
+    assert _reversed([{1, 2}, set(), {1}]) == [[], [0, 2], [0]]
+
+
+def test_a_closure_follows_all_tables_inside_a_set():
+    data, control = [[1], [2], [], [4], []], [[3], [], [], [], []]
+    assert closure([0], [data]) == {0, 1, 2}
+    assert closure([0], [data, control]) == {0, 1, 2, 3, 4}
+    assert closure([0], [data, control], {1, 3, 4}) == {0, 1, 3, 4}
+    assert closure([], [data]) == set()
+    assert closure([0], [[[1], [0]]]) == {0, 1}
+
+
+def test_a_source_reaches_by_data_and_by_conditions():
+    of = graph(5, data={1: [0], 3: [2]}, control={2: [1]})
+    found = tracer(of).reach(SimpleNamespace(nodes={0}))
+    assert (found.data, found.any, found.counted) == ({0, 1}, {0, 1, 2, 3}, {})
+
+
+def counted(condition: int) -> SimpleNamespace:
+    """Return a graph in which node 1, an element from node 0, is added under the gate 3.
+
+    Node 2 is the container's length. The gate depends on the condition.
+    """
+    return graph(
+        6,
+        data={1: [0], 4: [2]},
+        control={2: [3], 3: [condition]},
+        gates={3: (1, frozenset())},
+        counts={2: {1, 5}},
+    )
+
+
+def test_the_length_of_a_container_is_data_if_elements_are_added_under_conditions_of_the_source():
+    found = tracer(counted(condition=0)).reach(SimpleNamespace(nodes={0}))
+    assert (found.data, found.counted) == ({0, 1, 2, 4}, {2: {1}})
+    other = tracer(counted(condition=5)).reach(SimpleNamespace(nodes={0}))
+    assert (other.data, other.counted) == ({0, 1}, {})
+    assert tracer(counted(condition=0)).counts({0, 1, 2}) == {}
+    assert tracer(counted(condition=0)).counts({0}) == {}
+
+
+def test_what_ends_are_made_from_includes_counted_elements():
+    one = tracer(counted(condition=0))
+    reach = Reach({0, 1, 2, 4}, {0, 1, 2, 3, 4}, {2: {1}})
+    assert one.made_from({4}, reach) == {0, 1, 2, 4}
+    assert one.made_from({1}, reach) == {0, 1}
+    assert one.made_from({4}, Reach({4, 2}, set(), {})) == {2, 4}
+    formers = one.data_formers(reach)
+    assert (formers(2), formers(4), formers(1)) == ([1], [2], [0])
+
+
+def test_constants_that_conditions_choose_are_found_through_what_makes_them():
+    """Node 5 is chosen by the branch (9, 1); it is made from 4, and 4 from 3, all under that branch."""
+    under = frozenset({(9, 1)})
+    of = graph(
+        10,
+        data={5: [4], 4: [3], 3: [2]},
+        branches={3: under, 4: under, 2: (), 5: under},
+        gates={6: (5, under)},
+    )
+    assert tracer(of).made_there({6, 9}) == {3, 4}
+    assert tracer(of).made_there({6}) == set()  # the condition is not among the nodes
+    assert tracer(of).made_there({9}) == set()
+    of.gates = {}
+    assert tracer(of).made_there({6, 9}) == set()
+
+
+def test_a_copy_stands_for_the_node_whose_conditions_it_lacks():
+    under = frozenset({(9, 1)})
+    of = graph(10, data={7: [8]}, branches={5: under, 7: ()}, stands_for={8: 5})
+    assert made_alongside(of) == {7: [5]}
+    assert tracer(of).made_there({7, 9}) == {5}
+    assert tracer(of).made_there({7}) == set()
+    both = graph(10, data={7: [8, 6]}, stands_for={8: 5, 6: 4})
+    assert made_alongside(both) == {7: [4, 5]}
+
+
+def test_nodes_without_a_statement_are_skipped_once():
+    of = graph(6, data={0: [1, 4], 1: [2, 3], 2: [1]}, control={0: [5]})
+    one = tracer(of)
+    assert one.before(0) == [1, 4, 5]
+    one._merged = {1, 2}
+    assert one.before(0) == [3, 4, 5]
+    assert one.formers(0) == [1, 4, 5]
+
+
+def frame(caller=None, call=None):
+    return SimpleNamespace(caller=caller, call=call and SimpleNamespace(pos=(call, 0, call, 9)))
+
+
+def test_the_calls_between_two_frames_are_told_outermost_first():
+    outer = frame()
+    middle = frame(outer, 3)
+    inner = frame(middle, 5)
+    found = calls(inner, outer)
+    assert [(place.frame, place.pos[0], place.role) for place in found] == [
+        (outer, 3, "call"),
+        (middle, 5, "call"),
+    ]
+    assert [place.pos[0] for place in calls(inner, middle)] == [5]
+    assert calls(inner, inner) == []
+    assert calls(outer, inner) == []
+    assert calls(frame(outer, None), outer) == []
+
+
+def test_conditions_that_choose_a_value_are_told_with_its_frame():
+    frames = [frame() for _ in range(4)]
+    places = [SimpleNamespace(frame=one) for one in frames]
+    under = frozenset({(3, 1), (9, 0)})
+    of = graph(4, gates={0: (1, under)}, places=places)
+    assert [*entrances(of, {0, 3}, {})] == [(3, frames[1], frames[3], 0)]
+    assert [*entrances(of, {3}, {})] == []
+    copied = graph(4, branches={1: under, 0: {(9, 0)}}, places=places)
+    assert [*entrances(copied, {0, 1, 3}, {0: [1]})] == [(3, frames[1], frames[3], 1)]
+    assert [*entrances(copied, {0, 3}, {0: [1]})] == []
+
+
+def written(source: str, name: str = "f"):
+    """Return the first statement of a function as it is written."""
+    tree = ast.parse(source)
+    text = SimpleNamespace(site=lambda one: "site", code=lambda span: "code")
+    return SimpleNamespace(node=tree.body[0], qualname=name, text=text)
+
+
+@pytest.mark.parametrize(
+    ("source", "name", "dependence", "known", "role"),
+    [
+        ("x = 1", "f", "data", None, "assign"),
+        ("x = 1", "f", "data", "publish", "publish"),
+        ("x = 1", "f.<lambda>", "data", None, "return"),
+        ("if x: pass", "f.<lambda>", "data", None, "condition"),
+        ("for a in b: pass", "f", "control", None, "condition"),
+        ("for a in b: pass", "f", "data", None, "assign"),
+        ("return", "f", "data", None, "return"),
+        ("f()", "f", "data", None, "call"),
+    ],
+)
+def test_the_role_of_a_step_is_known_or_follows_from_its_syntax(source, name, dependence, known, role):
+    body = f"def f():\n    {source}" if source == "return" else source
+    one = written(body, name)
+    if source == "return":
+        one.node = one.node.body[0]
+    span = Span("n.py", 1, 1, 1, 2)
+    step = Tracer._step(one, span, dependence, known)
+    assert (step.role, step.dependence, step.code, step.span) == (role, dependence, "code", span)
+
+
+def test_the_last_publish_call_of_a_path_ends_it():
+    steps = [SimpleNamespace(role=role) for role in ("receive", "publish", "assign", "publish")]
+    assert ending_in_publish_call([0, 1, 2], steps) == (0, 2, 1)
+    assert ending_in_publish_call([0, 1, 2, 3], steps) == (0, 2, 3)
+    assert ending_in_publish_call([0, 2], steps) == (0, 2)
+    assert ending_in_publish_call([], steps) == ()
+
+
+SOURCE = """\
+import threading
+LOCK = threading.Lock()
+class Node:
+    count: int = 0
+    empty: int
+    def __init__(self):
+        global TOTAL
+        self.lock = threading.RLock()
+        self.changed = threading.Condition(self.lock)
+        self.own = threading.Condition()
+        self.other = threading.Condition(elsewhere)
+        self.value = self.value2 = make(1)
+    def go(self):
+        return [lambda: 1]
+"""
+
+
+def test_the_outline_of_a_module_knows_its_locks_and_names():
+    found = Outline(ast.parse(SOURCE))
+    assert found.locks == {
+        "LOCK": "LOCK",
+        "lock": "lock",
+        "changed": "lock",
+        "own": "own",
+        "other": "elsewhere",
+    }
+    assert found.declared == {"TOTAL"}
+    assert {"LOCK", "count", "lock", "value", "value2"} <= found.assigned.keys()
+    assert "empty" not in found.assigned
+    assert [one.name for one in found.definitions] == ["Node", "__init__", "go"]
+    assert [found.qualname(line) for line in (1, 4, 8, 14, 15)] == [
+        "",
+        "Node",
+        "Node.__init__",
+        "Node.go",
+        "",
+    ]
+
+
+def test_calls_are_found_by_their_whole_position():
+    found = Outline(ast.parse("f(1)(2)\ng()\n"))
+    outer, inner = found.call((1, 0, 1, 7)), found.call((1, 0, 1, 4))
+    assert outer is not None
+    assert inner is not None
+    assert outer.func is inner
+    assert found.call((1, 0, 1, 5)) is None
+    assert found.call((3, 0, 3, 1)) is None
+    assert next(found.around(inner)) is outer
+    assert found.scope(inner, (ast.FunctionDef,)) is None
+    assert isinstance(found.scope(inner, (ast.Module,)), ast.Module)
+
+
+def test_a_wrapper_has_the_places_of_what_it_is_like_unless_it_states_others():
+    usual = facts((Wrapper("a.b", "rospy.Subscriber"),))["a.b"]
+    other = facts((Wrapper("a.b", "rospy.Subscriber", topic=4, callback="on", type=0),))["a.b"]
+    assert usual.api == other.api == "a.b"
+    assert (other.topic, other.callback, other.type) == ((4, ""), (-1, "on"), (0, ""))
+    assert usual.topic != other.topic
+    assert usual.extra == other.extra
+    assert usual.kind == other.kind == "subscribe"
+    with pytest.raises(ConfigError, match=r"'a\.b' is like 'rospy\.Subscribe', which cannot be wrapped"):
+        facts((Wrapper("a.b", "rospy.Subscribe"),))
+
+
+@pytest.mark.parametrize(
+    ("message", "sentence"),
+    [
+        ("unrecognized arguments: --selct=A b", "There is no option --selct: did you mean '--select'?"),
+        ("argument --format: invalid choice: 'jsn' (choose from 'json', 'text')",
+         "--format cannot be 'jsn': did you mean 'json'? It can be json, text."),
+        ("argument --select: expected one argument", "--select needs a value."),
+        ("argument --exclude: 'a[' is no pattern.", "--exclude: 'a[' is no pattern."),
+        ("argument --exclude: 'a[' has no end", "--exclude: 'a[' has no end."),
+        ("something else", "Something else."),
+    ],
+)  # fmt: skip
+def test_mistakes_on_the_command_line_are_sentences(message, sentence):
+    assert _sentence(message, KNOWN) == sentence
+
+
+METHOD = """\
+class A:
+    def f(self):
+        x = [y for y in z]
+        if x:
+            g(lambda: x)
+"""
+
+
+def test_statements_are_found_by_their_first_character():
+    module = SimpleNamespace(
+        tree=ast.parse(
+            "class A:\n    def f(self):\n        x = [y for y in z]\n        if x:\n            g(lambda: x)\n"
+        ),
+        text="class A:\n    def f(self):\n        x = [y for y in z]\n        if x:\n            g(lambda: x)\n",
+        path="a.py",
+        name="a",
+    )
+    text = Text(module)
+    assign, condition = text.statement((3, 8)), text.statement((4, 8))
+    assert assign is not None
+    assert condition is not None
+    assert (assign.qualname, isinstance(condition.node, ast.If)) == ("A.f", True)
+    call = text.statement((5, 12))
+    assert call is not None
+    assert call.around is condition
+    assert "A.f.<lambda>" in text.by_name
+    assert text.statement((3, 9)) is None
