@@ -1,0 +1,260 @@
+"""What a repair does in its phases and says at its end, with searches that do as they are told here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.model import Band, OperandEffect
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.repairing import repair
+from pytest_tarl.repairing.budget import Purse
+from pytest_tarl.repairing.incumbent import Watch
+from pytest_tarl.repairing.ledger import Refused, Tried
+from pytest_tarl.repairing.ranges import Ranged
+from pytest_tarl.repairing.repair import _ended, _Findings, _notes, _of_the_range, _rank, _search
+from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair
+from tests.plugin.searching.test_search import operand
+
+GOAL = Goal((Pair(0, 0.0),), near=9.0, enough=9.0, online=0.0)
+ONE, TWO = (Candidate((Mutation(operand(3, "2.0", 2.0), value),), ALWAYS) for value in (5.0, 1.0))
+EFFECTS = {"site": [OperandEffect("2.0", 2.0, 5.0, 3.0)]}
+
+
+def order(**changes: Any) -> Any:
+    options = {"budget": 60, "seconds": None, "structure": False, "seed": 0}
+    every = {"drift": "mud", "goal": GOAL, "progress": lambda *_: None, "options": SimpleNamespace(**options)}
+    return SimpleNamespace(**every | changes)
+
+
+def mutants(of: Any = None) -> Any:
+    return SimpleNamespace(order=of or order(), run=lambda *_: Outcome(10.0, True), foresee=lambda *_: None)
+
+
+class Search:
+    """A search that runs one episode and yields a candidate, or is interrupted."""
+
+    def __init__(self, trials: Any, effects: Any = EFFECTS, interrupted: bool = False) -> None:
+        self.trials, self.found, self.interrupted = trials, effects, interrupted
+
+    def candidates(self) -> Iterator[Candidate]:
+        self.trials(ONE, 0)
+        if self.interrupted:
+            raise KeyboardInterrupt
+        yield ONE
+        self.trials(TWO, 0)
+
+    def effects(self) -> Any:
+        return self.found
+
+
+class Examiner:
+    """An examiner that accepts the first candidate, or none."""
+
+    def __init__(self, accepts: bool = True, **parts: Any) -> None:
+        self.accepts = accepts
+        every = {
+            "refused": Refused(None, "budget"),
+            "lost": (),
+            "cut": False,
+            "tested": 0,
+            "tried": (),
+            "ranged": {},
+        }
+        self.__dict__ |= every | {"placing": SimpleNamespace(notes=lambda _: ())} | parts
+
+    def first(self, candidates: Iterator[Candidate], trials: Any) -> Any:
+        return next(candidates) if self.accepts else [*candidates] and None
+
+
+def searched(
+    monkeypatch: pytest.MonkeyPatch,
+    examiner: Any,
+    found: _Findings,
+    method: str = "halving",
+    structure: bool = False,
+    **search: Any,
+) -> tuple[Any, Purse]:
+    """Run one search; return its trials and the budget."""
+    made: list[Any] = []
+
+    def strategy(_: Any, name: str, guards: Any, trials: Any) -> Search:
+        made.append(trials)
+        assert (name, guards) == (method, (ALWAYS,))
+        return Search(trials, **search)
+
+    monkeypatch.setattr(repair.strategies, "strategy", strategy)
+    of = order()
+    of.options.structure = structure
+    purse = Purse(60)
+    _search(mutants(of), method, (ALWAYS,), examiner, purse, found, Watch(of))
+    return made[0], purse
+
+
+def test_the_first_accepted_candidate_is_the_repair_and_later_searches_give_curves_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = _Findings()
+    trials, purse = searched(monkeypatch, Examiner(), found)
+    assert (found.accepted, found.effects, found.method) == (ONE, EFFECTS, "halving")
+    assert (purse.spent, trials.budget, trials.reserve) == (1, 60, 0)
+    assert [(one.method, one.totals) for one in found.curves] == [("halving", (10.0,))]
+    searched(monkeypatch, Examiner(), found, "bayes", effects={"other": []})
+    assert (found.accepted, found.effects, found.method) == (ONE, EFFECTS, "halving")
+    assert [one.method for one in found.curves] == ["halving", "bayes"]
+
+
+def test_effects_are_those_of_the_first_search_that_has_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = _Findings()
+    searched(monkeypatch, Examiner(accepts=False), found, effects={})
+    _, purse = searched(monkeypatch, Examiner(accepts=False), found, "bayes")
+    assert (found.accepted, found.effects, found.method, purse.spent) == (None, EFFECTS, "bayes", 2)
+
+
+def test_an_interrupted_search_keeps_its_curve_and_its_episodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = _Findings()
+    _, purse = searched(monkeypatch, Examiner(), found, interrupted=True)
+    assert (found.interrupted, found.accepted, len(found.curves), purse.spent) == (True, None, 1, 1)
+    found.take(replace(purse, late=True))
+    found.take(replace(purse, late=False))
+    assert (found.episodes, found.late) == (2, True)
+
+
+def test_a_sweep_leaves_episodes_to_structural_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    trials, _ = searched(monkeypatch, Examiner(), _Findings(), "sweep", structure=True)
+    assert trials.budget == round(repair.CONSTANTS * 60) < 60
+    assert trials.reserve == round(repair.RESERVE * 60) > 0
+    assert trials.worth is GOAL
+    other, _ = searched(monkeypatch, Examiner(), _Findings(), "halving", structure=True)
+    assert (other.budget, other.reserve) == (60, 0)
+
+
+class Ranks(Search):
+    """A ranking that runs one episode."""
+
+    def run(self) -> None:
+        next(self.candidates())
+
+
+def test_a_ranking_replaces_effects_if_it_has_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    for effects, expected in ((EFFECTS, EFFECTS), ({}, {"old": []})):
+        made: list[Any] = []
+
+        def ranking(_: Any, guard: Any, trials: Any, effects: Any = effects, made: Any = made) -> Ranks:
+            made.append(guard)
+            return Ranks(trials, effects)
+
+        monkeypatch.setattr(repair.strategies, "ranking", ranking)
+        found = _Findings(effects={"old": []}, method="sweep")
+        of = order()
+        _rank(mutants(of), found, ALWAYS, Watch(of))
+        assert (found.effects, found.method, found.episodes, made) == (expected, "ranking", 1, [ALWAYS])
+        assert found.ranking is not None
+
+
+@pytest.mark.parametrize(
+    ("interrupted", "late", "reason", "expected"),
+    [
+        (True, True, "budget", "interrupted"),
+        (False, True, "budget", "time"),
+        (False, False, "budget", "budget"),
+        (False, True, "not shown", "not shown"),
+    ],
+)
+def test_the_reason_is_what_ended_the_search_if_nothing_was_tested(
+    interrupted: bool, late: bool, reason: Any, expected: str
+) -> None:
+    examiner: Any = Examiner(refused=Refused(None, reason))
+    assert _ended(examiner, _Findings(interrupted=interrupted, late=late)).reason == expected
+
+
+def noted(monkeypatch: pytest.MonkeyPatch, found: _Findings, of: Any = None, **parts: Any) -> list[str]:
+    monkeypatch.setattr(repair, "unnamed_modules", lambda _: ["a module"])
+    monkeypatch.setattr(repair, "remarks", lambda *_: ["a remark"])
+    monkeypatch.setattr(repair, "_of_the_range", lambda *_: ["a part"])
+    of = of or order()
+    examiner: Any = Examiner(**parts)
+    return [*_notes(mutants(of), examiner, found, Watch(of))]
+
+
+def test_notes_tell_what_was_left_out_and_what_ended_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    placing = SimpleNamespace(notes=lambda one: [f"at {one.mutations[0].value}"] * 2)
+    accepted: Any = SimpleNamespace(candidate=ONE)
+    found = _Findings(accepted=accepted, structure=7, episodes=40)
+    assert noted(monkeypatch, found, placing=placing, lost=("t", "t", "u"), cut=True, tested=1) == [
+        "at 5.0",
+        "a module",
+        "a remark",
+        "a part",
+        "a candidate was dropped because another test earns less: t",
+        "a candidate was dropped because another test earns less: u",
+        "no single constant sufficed, so 7 of the search's 40 episodes tried structural changes",
+    ]
+    refused = Refused(TWO, "not shown")
+    cut = "the search ended because its 60 episodes were spent: --tarl-budget 120 doubles them"
+    assert noted(monkeypatch, _Findings(), placing=placing, refused=refused, cut=True, tested=1) == [
+        "at 1.0",
+        "a module",
+        "a part",
+        cut,
+    ]
+    for quiet in ({"cut": False, "tested": 1}, {"cut": True, "tested": 0}):
+        assert cut not in noted(monkeypatch, _Findings(), **quiet)
+
+
+def test_a_search_that_runs_out_of_time_names_the_budget_that_repeats_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    of = order()
+    of.options.seconds = 2.5
+    told = noted(monkeypatch, _Findings(late=True, episodes=33), of, cut=True, tested=1)
+    assert told[-1].startswith("the search ended after 2.5 s and 33 episodes; ")
+    assert told[-1].endswith("use --tarl-budget 33")
+
+
+def test_candidates_that_fit_a_part_of_the_range_are_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(repair, "fits_a_part", lambda _, runs: f"{len(runs)} runs")
+    of = order()
+    watch = Watch(of)
+    three = Candidate((Mutation(operand(9, "2.0", 2.0), 7.0),), ALWAYS)
+    for candidate, runs in ((ONE, 9), (TWO, repair.NAMED_FROM), (three, repair.NAMED_FROM + 1)):
+        for seed in range(runs):
+            watch.saw(candidate, seed, Outcome(1.0, True))
+    tried = [Tried(ONE, "not over the whole range", ()), Tried(TWO, "not shown", ())]
+    ranged = {ONE: Ranged((), (Band("", 0.0, 1.0),), (Band("", 1.0, 2.0),)), TWO: Ranged()}
+    examiner: Any = Examiner(tried=tried, ranged=ranged)
+    assert [*_of_the_range(of, examiner, watch)] == [
+        "line 3: 2.0 → 5: it holds for sizes 0 to 1, but not for sizes 1 to 2",
+        f"line 9: 2.0 → 7: {repair.NAMED_FROM + 1} runs",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("stronger", "parameter", "factor", "expected"),
+    [
+        ("larger", "gain", 0.5, True),
+        ("larger", "gain", 2.0, False),
+        ("smaller", "gain", 2.0, True),
+        ("smaller", "gain", 0.5, False),
+        ("larger", "gain", 1.0, False),
+        ("larger", "gain", -0.5, False),
+        ("larger", "other", 0.5, False),
+        ("larger", "other", 2.0, False),
+    ],
+)
+def test_a_factor_weakens_a_structural_change_against_its_stronger_way(
+    stronger: str, parameter: str, factor: float, expected: bool
+) -> None:
+    structures = Structures.__new__(Structures)
+    one = operand(3, "2.0", 2.0)
+    parameters: Sequence[Any] = [SimpleNamespace(name="gain", stronger=stronger)]
+    form: Any = SimpleNamespace(parameter=parameter, template=SimpleNamespace(parameters=parameters))
+    structures._found = {one: form}
+    assert structures.weaker(one, factor) is expected
