@@ -20,7 +20,7 @@ from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
-from tarl_lint.workspace.programs import Program, program
+from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.ros_names import joined, remapped
 
 SHOWN = 3  # problems of a launch file in one note

@@ -17,8 +17,8 @@ from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, stated
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError
-from tarl_lint.workspace.programs import Program, program
 from tarl_lint.workspace.ros_names import joined
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from tarl_lint.definitions import FIELDS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
@@ -14,6 +13,7 @@ from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.same_reads import unchanged
 from tarl_lint.memory.store import Inside
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value, in_order
+from tarl_lint.message_fields import FIELDS
 
 
 @dataclass(slots=True, eq=False)

@@ -31,13 +31,13 @@ from tarl_lint.models import (
     command_line,
     containers,
     drawings,
+    fixed_numbers,
     futures,
     iterators,
     objects,
     qt_signals,
     records,
     reflection,
-    settings,
     smach,
     strings,
 )
@@ -83,7 +83,7 @@ def call_library(
         return drawing
     else:
         found = generic(ctx, qualified, arguments, frame, call)
-    return settings.noted(ctx, qualified, found, arguments, frame, call)
+    return fixed_numbers.noted(ctx, qualified, found, arguments, frame, call)
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
@@ -273,7 +273,11 @@ def _unknown_method(
     if not deps and not base.pts:
         return UNKNOWN
     made = new_object(ctx, arguments, deps, frame, call, fields=False)
-    return settings.loaded(ctx, made, frame, call) if name in settings.PARSING and ctx.thorough else made
+    return (
+        fixed_numbers.loaded(ctx, made, frame, call)
+        if name in fixed_numbers.PARSING and ctx.thorough
+        else made
+    )
 
 
 def _given(

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from tarl_lint.definitions import FIELDS
+from tarl_lint.message_fields import FIELDS
 from tarl_lint.model import Finding
 from tarl_lint.system.model import System
 

@@ -28,15 +28,15 @@ from tarl_lint.settings.config import Config
 from tarl_lint.settings.schema import BASELINE_NAME
 from tarl_lint.system import compose
 from tarl_lint.system.hazards import hazards
+from tarl_lint.system.interface_cache import SPARE, keep, kept, key
 from tarl_lint.system.interfaces import interface
-from tarl_lint.system.kept import SPARE, keep, kept, key
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
-from tarl_lint.workspace.programs import Program
+from tarl_lint.workspace.node_programs import Program
 from tarl_lint.workspace.read import read
 
 ALL: Final = "all"

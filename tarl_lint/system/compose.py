@@ -17,14 +17,14 @@ from tarl_lint.system.binding import (
     with_names_in_code,
     with_prints,
 )
-from tarl_lint.system.calls import PARTS, part
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
+from tarl_lint.system.service_calls import PARTS, part
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
-from tarl_lint.workspace.programs import Program, program
 
 UNKNOWN: Final = "?"
 SERVER: Final = "server of "  # with the name of a service: the node, not read, that answers it

@@ -6,10 +6,10 @@ import ast
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from tarl_lint.definitions import FIELDS
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.ir.lower_expressions import position
+from tarl_lint.message_fields import FIELDS
 from tarl_lint.read.source import Module
 from tarl_lint.system.model import Misfit
 from tarl_lint.trees import last_name

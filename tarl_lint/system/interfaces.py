@@ -25,12 +25,12 @@ from tarl_lint.parameter_names import MARK, ParameterName
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
-from tarl_lint.system.calls import CLIENTS, called_services
 from tarl_lint.system.fields import misfits
-from tarl_lint.system.imports import closed
 from tarl_lint.system.model import Endpoint, Interface
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
+from tarl_lint.system.quiet_imports import closed
+from tarl_lint.system.service_calls import CLIENTS, called_services
 from tarl_lint.system.staleness import stale
 
 _OWN: Final = "__main__"

@@ -12,7 +12,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.parameter_names import text_of_parameter
+from tarl_lint.memory.symbolic_names import text_of_parameter
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Consts, Value, join, pointer
 from tarl_lint.models import containers, launched, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions

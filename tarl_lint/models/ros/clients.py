@@ -15,10 +15,10 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
-from tarl_lint.models import launched, options
+from tarl_lint.models import argument_parsers, launched
 from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
-from tarl_lint.models.ros.node_names import node_name
+from tarl_lint.models.ros.name_queries import node_name
 
 MADE: Final[Mapping[str, Fact]] = {
     "rospy.ServiceProxy": Fact("client", "rospy.ServiceProxy", (0, "name"), (1, "service_class")),
@@ -48,7 +48,7 @@ def launched_call(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value
     Return None for other calls.
     """
     table, name = (MADE, it.name) if target is None else (BY_METHOD, it.name)
-    for told in (node_name, launched.asked, options.asked):
+    for told in (node_name, launched.asked, argument_parsers.asked):
         found = told(ctx, it)
         if found is not None:
             return found

@@ -9,7 +9,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.parameter_names import marked
+from tarl_lint.memory.symbolic_names import marked
 from tarl_lint.memory.values import UNKNOWN, Value, const, pointer
 from tarl_lint.parameter_names import Launched, ParameterName
 
