@@ -166,7 +166,7 @@ class Text:
         """Return the end of a statement; for a compound statement, the end of its header including the colon."""
         last = _last_of_header(node)
         if last is None:
-            return getattr(node, "end_lineno", 1) or 1, getattr(node, "end_col_offset", 0) or 0
+            return _ends(node)
         line, offset = last
         while line <= len(self.lines):
             raw = self.lines[line - 1].encode()

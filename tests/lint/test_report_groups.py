@@ -9,12 +9,13 @@ from types import SimpleNamespace
 import pytest
 
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
-from tarl_lint.report import github, gitlab
+from tarl_lint.report import github, gitlab, json2, sarif, settings, text
 from tarl_lint.report.grading import level, of_error, own_level, told_apart
 from tarl_lint.report.line import ASCII, View, plain
 from tarl_lint.report.overview import _few, _wrapped, overview
 from tarl_lint.report.packages import TESTS_AND_EXAMPLES, grouped
 from tarl_lint.report.paint import glyphs_for, wants_colour, width_of, write
+from tarl_lint.settings.schema import Wrapper
 
 SPAN = Span("src/a.py", 3, 1, 3, 9)
 
@@ -242,3 +243,79 @@ def test_control_characters_and_marks_of_direction_are_shown_not_passed_on():
     write([(("é\ufeff\u061c", ""),), ()], wide, colour=False)
     assert wide.text == "é\\ufeff\\u061c\n\n"
     assert Counter(wide.text)["\n"] == 2
+
+
+def test_omitted_findings_and_shortened_flows_are_told_where_there_are_any():
+    assert sarif._left_out(0) == []
+    (told,) = sarif._left_out(2)
+    assert told["message"]["text"] == "2 findings omitted: servers limit the size of a report."
+    steps = tuple(range(5))
+    long = replace(flow("/s", "/k"), steps=steps, chain=(0, 4))
+    assert [sarif._is_cut(long, most) for most in (4, 5)] == [True, False]
+    assert not sarif._is_cut(replace(long, chain=()), 0)
+    assert not sarif._is_cut(replace(long, chain=(0, 1, 2, 3, 4)), 0)
+    assert sarif._shortened([finding(flow=long), finding()], 5) == []
+    (told,) = sarif._shortened([finding(flow=long), finding(), finding(flow=long)], 4)
+    assert told["message"]["text"].startswith("2 flows reduced to the shortest chain of statements")
+
+
+def test_new_and_severe_findings_are_the_gravest():
+    failing = SimpleNamespace(failing={"TARL201"})
+    accepted, silenced = finding(status="accepted"), finding(code="TARL101")
+    order = [finding(), finding(code="TARL202"), finding(code="TARL102"), accepted, silenced]
+    keys = [sarif._gravity(one, failing, {silenced}) for one in order]
+    assert keys == [(False, 0), (False, 1), (False, 2), (True, 0), (True, 2)]
+
+
+def test_a_wrapper_is_written_with_the_places_that_it_states():
+    assert settings._wrapper(Wrapper("a.b", "rospy.Timer")) == "rospy.Timer"
+    assert settings._wrapper(Wrapper("a.b", "rospy.Timer", topic=0, callback="on")) == {
+        "like": "rospy.Timer",
+        "topic": 0,
+        "callback": "on",
+    }
+    assert settings._toml({"a b": [1, "é"], "c": {"d": True}}) == '{"a b" = [1, "é"], "c" = {"d" = true}}'
+    assert settings._toml(["x"]) == '["x"]'
+
+
+def test_the_legend_follows_the_first_flows_if_chains_are_shown(monkeypatch):
+    monkeypatch.setattr(text, "_flows", lambda flows, *_: [(("flow", ""),)] * len(flows))
+    monkeypatch.setattr(text, "_hazard", lambda *_: [(("hazard", ""),)])
+    monkeypatch.setattr(text, "_legend", lambda _: [(("legend", ""),)])
+
+    def told(view: View, *findings: Finding, single: bool = False) -> list[str]:
+        monkeypatch.setattr(text.summary, "is_single", lambda _: single)
+        return [plain(line) for line in text._findings(result(new=findings), view)]
+
+    one, two = (finding(f"{name}/x.py", name, flow=flow("/s", "/k")) for name in "ab")
+    hazard, paths = finding("a/x.py", "a"), View(show_paths=True)
+    assert told(View(), one, one) == ["flow", "flow"]
+    assert told(paths, one, one) == ["flow", "flow", "legend"]
+    assert told(View(), one, single=True) == ["flow", "legend"]
+    assert told(paths, one, two) == ["a: 1 flow", "", "flow", "legend", "b: 1 flow", "", "flow"]
+    assert told(paths, hazard, one) == ["flow", "legend", "hazard"]
+    assert told(paths, hazard) == ["hazard"]
+    assert told(View(most_flows=1), one, one, one) == ["flow", "    and 2 further flows", ""]
+    assert told(View(most_flows=3), one, one, one) == ["flow"] * 3
+    assert told(View(most_flows=1), one, two)[-2:] == ["    and 1 further flow", ""]
+    assert told(View()) == []
+
+
+def test_each_item_of_the_compact_document_has_a_line(monkeypatch):
+    monkeypatch.setattr(
+        json2, "document", lambda _: {"a": 1, "b": [], "c": [1], "d": [1, 2, 3], "e": {"x": []}}
+    )
+    lines = [plain(line) for line in json2.report(result(), View())]
+    assert lines == [
+        "{",
+        '"a":1,',
+        '"b":[],',
+        '"c":[',
+        "1],",
+        '"d":[',
+        "1,",
+        "2,",
+        "3],",
+        '"e":{"x":[]}',
+        "}",
+    ]

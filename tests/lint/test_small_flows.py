@@ -9,6 +9,7 @@ import pytest
 
 from tarl_lint.errors import ConfigError
 from tarl_lint.evidence import Outline
+from tarl_lint.flows import reachability
 from tarl_lint.flows.call_chains import calls, entrances, made_alongside
 from tarl_lint.flows.reachability import Reach, Tracer, _reversed, closure, ending_in_publish_call
 from tarl_lint.flows.statement_text import Text
@@ -309,3 +310,84 @@ def test_statements_are_found_by_their_first_character():
     assert call.around is condition
     assert "A.f.<lambda>" in text.by_name
     assert text.statement((3, 9)) is None
+
+
+HEADERS = """\
+@decorated
+def f(a, b=(1,
+            2)) -> int :  # a colon: here
+    if (a and
+            b):  # first
+        pass
+    x = "é" + a; y = 2
+    x = "é" + a; y = 2
+    for i in a: pass
+    with open(a) as b, c: pass
+    while a[
+        1:2]: pass
+    match a:
+        case [1, 2] if b: pass
+    try:
+        y = (
+          1)
+    finally: pass
+"""
+
+
+def test_a_compound_statement_spans_its_header_up_to_the_colon():
+    text = Text(SimpleNamespace(tree=ast.parse(HEADERS), text=HEADERS, path="a.py", name="a"))
+    found = {}
+    for written in text.by_start.values():
+        span = text.span(written)
+        found[span.line, span.column] = text.code(span)
+    assert found == {
+        (4, 5): "if (a and\n            b):",
+        (6, 9): "pass",
+        (7, 5): 'x = "é" + a',
+        (7, 18): "y = 2",
+        (8, 5): 'x = "é" + a',
+        (8, 18): "y = 2",
+        (9, 5): "for i in a:",
+        (9, 17): "pass",
+        (10, 5): "with open(a) as b, c:",
+        (10, 27): "pass",
+        (11, 5): "while a[\n        1:2]:",
+        (12, 15): "pass",
+        (13, 5): "match a:",
+        (14, 14): "[1, 2] if b:",
+        (14, 27): "pass",
+        (15, 5): "try:",
+        (16, 9): "y = (\n          1)",
+        (18, 14): "pass",
+    }
+    header = text.function((3, 0)) or text.function((2, 0))
+    assert header is not None
+    span = text.span(header)
+    assert (span.end_line, text.code(span)) == (3, "def f(a, b=(1,\n            2)) -> int :")
+
+
+def test_equal_statements_of_a_function_are_numbered():
+    text = Text(SimpleNamespace(tree=ast.parse(HEADERS), text=HEADERS, path="a.py", name="a"))
+    first, second = text.statement((7, 4)), text.statement((8, 4))
+    assert first is not None
+    assert second is not None
+    assert [text.site(one).ordinal for one in (first, second)] == [0, 1]
+    assert text.site(first).text == "x = 'é' + a"
+    assert (text.site(first).module, text.site(first).qualname) == ("a", "f")
+    branch = text.statement((4, 4))
+    assert branch is not None
+    assert text.site(branch).text == "if a and b:"
+
+
+def test_calls_between_a_condition_and_its_value_are_steps_in_order(monkeypatch):
+    one = tracer(graph(1))
+    near, far = object(), object()
+    found = [(1, "in", "out", 2), (1, "in", "out", 2), (3, "x", "y", 2)]
+    monkeypatch.setattr(reachability, "entrances", lambda *_: found)
+    monkeypatch.setattr(Tracer, "calls", lambda _, inner, outer: [far, near] if inner == "in" else None)
+    written, dependence = {id(near): near}, {id(near): "data"}
+    edges = one.entered({1, 2}, {1: 10, 2: 20}, written, dependence)
+    assert edges == [(10, id(far)), (id(far), id(near)), (id(near), 20)]
+    assert written == {id(near): near, id(far): far}
+    assert dependence == {id(near): "data", id(far): "control"}
+    assert one.entered({1, 2}, {2: 20}, {}, {}) == [(id(far), id(near)), (id(near), 20)]
