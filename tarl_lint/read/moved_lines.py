@@ -54,7 +54,7 @@ class _Comparison:
         self._unread = reading.unread
 
     def nodes(self, former: ast.AST, latter: ast.AST) -> None:
-        """Compare two trees, except the bodies of unread functions."""
+        """Compare two trees, except the bodies of unread functions. Raises DifferenceError if they differ."""
         pending: list[tuple[object, object, str]] = [(former, latter, "")]
         while pending:
             one, other, name = pending.pop()

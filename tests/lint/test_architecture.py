@@ -42,7 +42,7 @@ def reported(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[s
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
-def test_snippets_are_what_they_say(code, name, text, tmp_path, capsys):
+def test_rules_find_only_what_their_snippets_declare(code, name, text, tmp_path, capsys):
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert (code in {one["code"] for one in found}) == (name == "INVALID"), found
 
@@ -58,7 +58,7 @@ def test_snippets_are_what_they_say(code, name, text, tmp_path, capsys):
         ("/c/image_rect/compressed", "/c/image_calib/compressed", False),
     ],
 )  # fmt: skip
-def test_names_are_alike(one, other, alike):
+def test_similar_topic_names_are_recognised(one, other, alike):
     assert spelled_alike(one, other) is alike
     assert spelled_alike(other, one) is alike
 

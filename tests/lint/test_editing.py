@@ -114,7 +114,7 @@ LAYOUT = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), LAYOUT)
-def test_an_edit_of_something_unread_moves_lines_only(tmp_path, analysed, name, before, after):
+def test_an_edit_of_unread_code_only_moves_lines(tmp_path, analysed, name, before, after):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -147,7 +147,7 @@ READ = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), READ)
-def test_an_edit_of_something_read_takes_an_analysis(tmp_path, analysed, name, before, after):
+def test_an_edit_of_code_that_was_read_needs_a_new_analysis(tmp_path, analysed, name, before, after):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -171,7 +171,7 @@ def test_each_edit_is_compared_with_the_last_analysis(tmp_path, analysed):
     assert result == Workspace([tmp_path]).lint(second)
 
 
-def test_an_edit_is_compared_with_an_analysis_of_long_ago(tmp_path, analysed):
+def test_an_edit_can_be_compared_with_an_old_analysis(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     for _ in range(3):
@@ -181,7 +181,7 @@ def test_an_edit_is_compared_with_an_analysis_of_long_ago(tmp_path, analysed):
     assert analysed == []
 
 
-def test_an_undone_edit_takes_no_analysis(tmp_path, analysed):
+def test_an_undone_edit_needs_no_analysis(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     first = workspace.lint({})
     for value in range(4):
@@ -303,6 +303,6 @@ def test_questions_about_the_text_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_words_decide_that_a_group_is_run():
+def test_a_group_is_run_because_of_words_in_its_text():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

@@ -98,6 +98,6 @@ def test_the_result_of_a_callable_is_part_of_the_librarys_result(tmp_path_factor
 
 
 @pytest.mark.parametrize("handed", [way for way in WAYS if "0.0" in way])
-def test_the_librarys_arguments_may_be_passed_to_the_callable(tmp_path, handed):
+def test_a_library_may_pass_its_arguments_to_a_callable(tmp_path, handed):
     text = NODE.replace("{callable}", "self.idle").replace("{handed}", handed.replace("0.0", "self.other"))
     assert {f.source.topics for f in analysed(tmp_path, node=text).flows} == {("other",)}

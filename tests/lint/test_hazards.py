@@ -196,7 +196,7 @@ def test_an_unused_publisher_is_a_hazard(more, found):
     assert lines("TARL204", SENDER.format(more=more)) == found
 
 
-def test_a_publisher_of_the_same_name_in_another_class_does_not_hide_one():
+def test_a_used_publisher_of_another_class_does_not_hide_an_unused_one():
     more = """
     class Twin:
         def __init__(self):
@@ -229,7 +229,7 @@ def test_hazards_fail_the_run_unless_ignored_or_silenced(in_directory, capsys):
     assert main([]) == 0
 
 
-def test_a_hazard_has_no_flow_in_json(in_directory, capsys):
+def test_the_json_of_a_hazard_contains_no_flow(in_directory, capsys):
     in_directory({"node.py": dedent(SENDER.format(more=""))})
     main(["--format", "json"])
     (diagnostic,) = json.loads(capsys.readouterr().out)["diagnostics"]

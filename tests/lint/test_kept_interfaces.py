@@ -76,7 +76,7 @@ def test_an_edited_program_or_import_is_analysed_again(arm, capsys, analysed):  
     assert analysed == ["relay", "relay"]
 
 
-def test_another_launch_file_does_not_push_out_what_is_kept(arm, capsys, analysed):  # noqa: F811
+def test_another_launch_file_does_not_evict_kept_interfaces(arm, capsys, analysed):  # noqa: F811
     launched(arm)
     write(arm, {"arm/launch/one.launch": '<launch><node pkg="arm" type="pad.py" name="pad"/></launch>'})
     for name in ("a.launch", "one.launch", "a.launch"):

@@ -390,7 +390,7 @@ def test_parameters_of_ros1_nodes_are_private_but_absolute_yaml_is_not(tmp_path:
     assert [one.reason for one in found.problems] == ["<rosparam>: $(env HOME) is known on the robot only"]
 
 
-def test_substitutions_of_navigation_2(tmp_path: Path) -> None:
+def test_substitutions_of_navigation_2_are_interpreted(tmp_path: Path) -> None:
     text = """
         from launch import LaunchDescription
         from launch.actions import DeclareLaunchArgument

@@ -208,7 +208,7 @@ def found(folder: Path, launch: str) -> set[tuple[str, str]]:
 @pytest.mark.parametrize(
     ("attributes", "inside", "code", "flows"), [n[1:] for n in NODES], ids=[n[0] for n in NODES]
 )
-def test_names_in_ros1(tmp_path, attributes, inside, code, flows):
+def test_topic_names_resolve_parameters_in_ros1(tmp_path, attributes, inside, code, flows):
     body = f'<launch><node pkg="arm" type="n.py" name="n" {attributes}>{inside}</node></launch>'
     write(tmp_path, {"arm/package.xml": MANIFEST.format("arm", "catkin"), "arm/launch/a.launch": body,
                      "arm/scripts/n.py": ROS1 + code})  # fmt: skip
@@ -220,7 +220,7 @@ def test_names_in_ros1(tmp_path, attributes, inside, code, flows):
     'self.get_parameter_or("inp", Parameter("inp", value="/x")).value',
     'self.get_parameter_or("other", Parameter("other", value="/a")).value',
 ])  # fmt: skip
-def test_parameters_that_the_code_does_not_declare(tmp_path, value):
+def test_parameters_set_only_by_the_launch_file_are_known(tmp_path, value):
     code = f"""\
     #!/usr/bin/env python3
     import rclpy
@@ -247,7 +247,7 @@ def test_parameters_that_the_code_does_not_declare(tmp_path, value):
 
 @pytest.mark.parametrize("value", [".value", ".get_parameter_value().string_array_value"])
 @pytest.mark.parametrize("callback", ["partial(self.on, topic)", "lambda msg, t=topic: self.on(t, msg)"])
-def test_names_in_ros2(tmp_path, value, callback):
+def test_topic_names_resolve_parameters_in_ros2(tmp_path, value, callback):
     launch = """
     from launch import LaunchDescription
     from launch_ros.actions import Node

@@ -117,7 +117,7 @@ def test_an_empty_part_of_a_message_is_covered_by_the_whole(ctx):
 
 
 @pytest.mark.parametrize("name", [heap.ANY, heap.LENGTH, heap.KEYS, heap.HELD, heap.SENT])
-def test_a_summary_field_of_a_library_object_is_no_part_of_it(ctx, name):
+def test_a_summary_field_of_a_library_object_is_not_one_of_its_parts(ctx, name):
     obj = recency.intern(ctx, "lib", "matrix")
     assert heap.read_field(ctx, obj, name) is BOTTOM
     assert not obj.subs
@@ -172,7 +172,7 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_is_carried_only_by_what_passed_its_object_on_then(ctx, frame):
+def test_content_is_carried_only_by_nodes_that_passed_on_its_object_then(ctx, frame):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])

@@ -118,7 +118,7 @@ LOCKED = """
     """
 
 
-def test_state_used_always_or_never_under_its_lock_needs_no_run():
+def test_state_used_consistently_with_or_without_its_lock_needs_no_run():
     assert skipped(LOCKED)
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 

@@ -105,7 +105,7 @@ def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     assert (operand.code, operand.value, operand.definition) == ("gain", None, None)
 
 
-def test_a_value_constant_only_until_the_first_message_is_not_an_operand(tmp_path):
+def test_a_value_that_messages_change_is_not_an_operand(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -255,7 +255,7 @@ def deciding_operands(directory, text):
     }
 
 
-def test_the_limit_of_a_watchdog_is_an_operand_though_only_times_reach_it(tmp_path):
+def test_the_limit_of_a_watchdog_is_an_operand_without_data_of_a_message(tmp_path):
     found = deciding_operands(
         tmp_path,
         """

@@ -147,7 +147,7 @@ def test_declared_parameters_of_ros2(arm, capsys):
     assert flows(out) == ["/front/scan_filtered → /r1/relay → /end  explicit"]
 
 
-def test_decisions_on_a_parameter_known_on_the_robot_only_stay_open(arm, capsys):
+def test_a_condition_on_an_unknown_parameter_may_go_either_way(arm, capsys):
     source = TOP + """
 rospy.init_node("relay")
 name = rospy.get_param("~out_topic", "out")
@@ -304,7 +304,7 @@ def test_a_launch_gives_a_list_of_topics(arm, capsys):
     ]
 
 
-def test_turns_of_a_loop_over_known_elements_publish_apart(arm, capsys):
+def test_iterations_over_known_elements_have_separate_publish_calls(arm, capsys):
     assert system(arm, capsys, TOP + "import message_filters\n" + PAIRS, node("n")) == [
         f"/{one} → /n → /{other}  explicit" for one, other in zip("abc", "xyz", strict=True)
     ]

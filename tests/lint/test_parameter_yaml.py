@@ -70,7 +70,7 @@ def test_text_that_is_not_yaml_and_a_missing_pyyaml_are_told_apart(monkeypatch):
         ("{gain: 2}", False, ""),
     ],
 )
-def test_the_report_says_which_parameters_tarl307_did_not_see(
+def test_the_report_names_parameter_files_that_tarl307_could_not_read(
     tmp_path, monkeypatch, capsys, text, missing, said
 ):
     body = '<rosparam file="$(find arm)/config/a.yaml"/>'

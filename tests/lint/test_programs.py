@@ -37,7 +37,7 @@ def grouped(files: dict[str, str]) -> list[set[str]]:
     return sorted(({script.name for script in group} for group in groups(scripts, Config())), key=sorted)
 
 
-def test_programs_that_share_a_helper_are_apart():
+def test_programs_that_share_only_a_helper_are_analysed_separately():
     assert grouped({"one": NODE, "two": NODE, "helper": HELPER}) == [{"helper", "one"}, {"helper", "two"}]
 
 
@@ -51,7 +51,7 @@ def test_programs_that_share_a_helper_are_apart():
     ],
     ids=["subscribes in the helper", "no program", "loads by name", "helper loads by name"],
 )
-def test_programs_through_which_data_may_pass_are_together(change):
+def test_programs_that_may_exchange_data_are_analysed_together(change):
     assert grouped({"one": NODE, "two": NODE, "helper": HELPER} | change) == [{"helper", "one", "two"}]
 
 

@@ -63,7 +63,7 @@ def linked(*lines):
         ["if msg.data > 0:", "    twice = 2", "    self.pub.register(lambda: twice)"],
     ],
 )
-def test_stores_to_objects_of_one_run_do_not_repeat_it(lines):
+def test_stores_to_objects_of_one_run_do_not_rerun_the_root(lines):
     assert linked(*lines).runs["on"] == 1
 
 
@@ -91,7 +91,7 @@ def test_stores_to_objects_of_one_run_do_not_repeat_it(lines):
         ],
     ],
 )  # fmt: skip
-def test_what_an_earlier_run_stored_is_found(lines):
+def test_a_run_finds_what_an_earlier_run_stored(lines):
     machine = linked(*lines)
     assert machine.runs["on"] > 1
     assert [flow.kind for flow in Tracer(machine).flows()] == ["explicit"]

@@ -120,7 +120,7 @@ def test_reads_of_a_call_count_for_its_caller_unless_it_has_stored_there(store, 
     assert outer.keys == {(obj, "x"), (obj, "y")}
 
 
-def test_the_first_look_at_an_object_counts(store, obj):
+def test_a_call_records_its_first_look_at_an_object(store, obj):
     store.look(obj)
     store.put((obj, "x"), Value(DATA))
     store.look(obj)
@@ -199,13 +199,13 @@ def chosen_later(number: int) -> str:
 
 @pytest.mark.parametrize("number", [2, MANY - 1, MANY + 8, MANY_CARRIERS + 2])
 @pytest.mark.parametrize(("made", "kind"), [(many, "explicit"), (chosen_later, "implicit")])
-def test_all_values_merged_in_a_field_leave_it_again(number, made, kind):
+def test_a_merged_field_passes_on_all_of_its_values(number, made, kind):
     found = flows(linked(made(number)))
     assert {(f.kind, *f.source.topics) for f in found} == {(kind, f"in{n}") for n in range(number)}
 
 
 @pytest.mark.parametrize("added", ["msg.data", "msg.data + 1"])
-def test_steps_through_a_merged_field_are_those_of_the_source_alone(added):
+def test_a_merged_field_adds_no_steps_of_other_sources(added):
     found = flows(linked(many(MANY + 4).replace("msg.data", added)))
     for flow in found:
         (name,) = flow.source.topics

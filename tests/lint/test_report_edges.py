@@ -70,7 +70,7 @@ def test_a_text_is_cropped_to_columns(text, width, shown):
     assert crop(text, width, "…") == shown
 
 
-def test_widths_tabs_and_line_ends():
+def test_widths_of_text_with_tabs_and_line_ends():
     assert [columns(text) for text in ("abc", "漢", "e\u0301", "é")] == [3, 2, 1, 1]
     assert tabs("\tx") == "    x"
     assert location(Span("a\nb.py", 2, 3, 4, 5)) == "a\\nb.py:2:3"

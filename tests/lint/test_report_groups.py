@@ -65,7 +65,7 @@ def test_findings_are_grouped_by_package_with_tests_and_examples_last():
         ("contest_a.py", False),
     ],
 )
-def test_paths_of_tests_and_examples(path, aside):
+def test_paths_of_tests_and_examples_are_recognised(path, aside):
     groups = grouped([finding("src/robot.py"), finding(path)])
     assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
 

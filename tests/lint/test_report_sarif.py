@@ -104,7 +104,7 @@ def test_silenced_findings_are_suppressed_in_source(example, schema):
     assert list(jsonschema.Draft4Validator(schema).iter_errors(document(result))) == []
 
 
-def test_the_root_of_paths_does_not_reveal_the_machine(example):
+def test_the_sarif_log_contains_no_absolute_path(example):
     bases = run_of(everything(example))["originalUriBaseIds"]
     assert bases == {"%SRCROOT%": {"description": {"text": "The working directory of tarl-lint."}}}
 

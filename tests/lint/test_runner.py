@@ -111,7 +111,7 @@ def test_a_run_without_python_files_lists_what_was_found(in_directory, lint):
         lint()
 
 
-def test_ignored_rules_find_nothing(example, in_directory, lint):
+def test_rules_that_are_ignored_report_nothing(example, in_directory, lint):
     in_directory({"node.py": example.text})
     assert lint(ignore=("TARL1",)).findings == ()
     assert lint(select=("TARL102",)).findings == ()

@@ -87,7 +87,7 @@ def test_a_call_that_waits_sees_what_others_store_in_new_fields(store, obj):
     assert not same(store, reads)
 
 
-def test_data_that_came_into_an_object_on_another_path_is_not_seen(store, obj):
+def test_data_stored_on_another_path_is_not_seen(store, obj):
     store.put((obj, "x"), BOTTOM)
     reads = noted(store, obj)
     hidden(store, obj, "x", Value(DATA))
@@ -106,7 +106,7 @@ def test_data_inside_what_an_object_holds_is_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_data_that_may_be_anywhere_in_the_whole_is_seen_in_its_parts(store, obj):
+def test_data_anywhere_in_an_object_is_seen_in_its_parts(store, obj):
     part = obj.sub("x")
     reads = noted(store, part)
     store.put((obj, "*"), Value(DATA))
@@ -122,13 +122,13 @@ def test_a_part_is_seen_when_something_is_stored_in_it_or_deeper(store, obj):
     assert not same(store, reads)
 
 
-def test_what_an_object_stands_for_is_always_seen(store, obj):
+def test_a_change_of_an_objects_meaning_is_always_seen(store, obj):
     reads = noted(store, obj)
     obj.describe("another thing")
     assert not same(store, reads)
 
 
-def test_an_object_that_a_call_made_is_new_again_only_where_nothing_of_it_is_left(store):
+def test_a_call_can_be_replayed_only_if_nothing_of_its_objects_is_left(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -139,7 +139,7 @@ def test_an_object_that_a_call_made_is_new_again_only_where_nothing_of_it_is_lef
     assert not same(store, reads)  # making it would first move what is held to the older ones
 
 
-def test_places_that_hold_an_object_count_where_they_can_be_seen(store, obj):
+def test_only_visible_holders_of_an_object_count(store, obj):
     one, other = Obj("instance", "one"), Obj("instance", "other")
     store.put((one, "x"), pointer(obj))
     reads = Reads(holders={obj: len(obj.holders)})
@@ -149,7 +149,7 @@ def test_places_that_hold_an_object_count_where_they_can_be_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_places_that_nobody_else_stores_to_are_not_heard():
+def test_a_wait_ignores_keys_to_which_no_other_root_stores():
     shared, root, other = Shared(), Root("one", "test"), Root("other", "test")
     mine, theirs = (Obj("instance", "a"), "x"), (Obj("instance", "b"), "x")
     shared.leave(shared.pauses, other, theirs, Value(DATA))
@@ -160,7 +160,7 @@ def test_places_that_nobody_else_stores_to_are_not_heard():
     assert store.heard() == {theirs: Value(DATA)}
 
 
-def test_reads_that_no_path_decides_on_are_taken_over_once(obj):
+def test_reads_independent_of_the_path_are_merged_once(obj):
     inner, outer = Reads(objects={obj: 3}), Reads()
     outer.add(inner)
     assert outer.objects == {obj: 3}
@@ -179,7 +179,7 @@ def linked(text: str) -> Linker:
     return machine
 
 
-def test_an_inner_loop_goes_on_from_where_it_ended(monkeypatch):
+def test_an_inner_loop_starts_from_its_last_fixpoint(monkeypatch):
     going_on = linked(NESTED)
     monkeypatch.setattr(branches, "_first_head", lambda *_: {})
     afresh = linked(NESTED)
@@ -187,7 +187,7 @@ def test_an_inner_loop_goes_on_from_where_it_ended(monkeypatch):
     assert going_on.total < 0.7 * afresh.total
 
 
-def test_a_loop_begins_with_what_was_stored_since_it_ended(store):
+def test_a_loop_starts_with_later_stores_too(store):
     machine = linked(NESTED)
     frame = next(f for f in machine.frames.values() if f.function.name == "on_message")
     machine.store = store
@@ -201,7 +201,7 @@ def test_a_loop_begins_with_what_was_stored_since_it_ended(store):
 # --- carriers ---------------------------------------------------------------------------------------------
 
 
-def test_how_content_arrives_is_remembered_until_more_is_passed_on():
+def test_the_cache_of_arrivals_is_valid_until_a_carrier_passes_on_more():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -216,7 +216,7 @@ def test_how_content_arrives_is_remembered_until_more_is_passed_on():
     assert graph.through(frozenset([item]), frozenset([carried])) != first
 
 
-def test_what_was_asked_for_a_remembered_arrival_is_read_again():
+def test_a_cached_arrival_records_the_carriers_it_depends_on():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -232,7 +232,7 @@ def test_what_was_asked_for_a_remembered_arrival_is_read_again():
     assert asked[0] == asked[1] != {}
 
 
-def test_objects_are_made_anew_where_they_were_made_before(store):
+def test_a_call_records_that_it_allocates_an_existing_object(store):
     machine = linked(NESTED)
     frame = next(iter(machine.frames.values()))
     machine.store = store

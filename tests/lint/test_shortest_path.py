@@ -38,7 +38,7 @@ def cheapest(formers: list[list[int]], statements: Mapping[int, int], start: int
 
 
 @given(graphs())
-def test_no_path_is_shorter(graph: tuple[list[list[int]], dict[int, int]]) -> None:
+def test_the_reported_path_is_a_shortest_one(graph: tuple[list[list[int]], dict[int, int]]) -> None:
     formers, statements = graph
     path = shortest_path([0], {1}, formers.__getitem__, statements)
     least = cheapest(formers, statements, 1, 0)

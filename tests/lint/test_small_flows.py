@@ -87,7 +87,7 @@ def test_the_length_of_a_container_is_data_if_elements_are_added_under_condition
     assert tracer(counted(condition=0)).counts({0}) == {}
 
 
-def test_what_ends_are_made_from_includes_counted_elements():
+def test_data_behind_a_length_includes_the_counted_elements():
     one = tracer(counted(condition=0))
     reach = Reach({0, 1, 2, 4}, {0, 1, 2, 3, 4}, {2: {1}})
     assert one.made_from({4}, reach) == {0, 1, 2, 4}
@@ -97,7 +97,7 @@ def test_what_ends_are_made_from_includes_counted_elements():
     assert (formers(2), formers(4), formers(1)) == ([1], [2], [0])
 
 
-def test_constants_that_conditions_choose_are_found_through_what_makes_them():
+def test_constants_chosen_by_conditions_are_found_with_their_makers():
     """Node 5 is chosen by the branch (9, 1); it is made from 4, and 4 from 3, all under that branch."""
     under = frozenset({(9, 1)})
     of = graph(
@@ -136,7 +136,7 @@ def frame(caller=None, call=None):
     return SimpleNamespace(caller=caller, call=call and SimpleNamespace(pos=(call, 0, call, 9)))
 
 
-def test_the_calls_between_two_frames_are_told_outermost_first():
+def test_the_calls_between_two_frames_are_listed_outermost_first():
     outer = frame()
     middle = frame(outer, 3)
     inner = frame(middle, 5)
@@ -151,7 +151,7 @@ def test_the_calls_between_two_frames_are_told_outermost_first():
     assert calls(frame(outer, None), outer) == []
 
 
-def test_conditions_that_choose_a_value_are_told_with_its_frame():
+def test_conditions_that_choose_a_value_are_listed_with_its_frame():
     frames = [frame() for _ in range(4)]
     places = [SimpleNamespace(frame=one) for one in frames]
     under = frozenset({(3, 1), (9, 0)})
@@ -254,7 +254,7 @@ def test_calls_are_found_by_their_whole_position():
     assert isinstance(found.scope(inner, (ast.Module,)), ast.Module)
 
 
-def test_a_wrapper_has_the_places_of_what_it_is_like_unless_it_states_others():
+def test_a_wrapper_has_the_argument_places_of_its_model_by_default():
     usual = facts((Wrapper("a.b", "rospy.Subscriber"),))["a.b"]
     other = facts((Wrapper("a.b", "rospy.Subscriber", topic=4, callback="on", type=0),))["a.b"]
     assert usual.api == other.api == "a.b"

@@ -128,7 +128,7 @@ def test_a_sown_misconfiguration_is_found_and_nothing_else(kind, tmp_path, capsy
     assert any(one["message"].startswith(message) for one in diagnostics), diagnostics
 
 
-def test_without_them_nothing_is_found(capsys):
+def test_correct_launch_files_have_no_findings(capsys):
     assert found(EXAMPLE, capsys) == []
 
 

@@ -28,7 +28,7 @@ def test_a_line_has_one_name_in_each_column():
     assert drawn() == []
 
 
-def test_an_unfed_topic_stands_just_before_its_reader_but_a_node_just_after_its_inputs():
+def test_a_topic_without_publisher_is_drawn_before_its_reader_and_a_node_after_its_inputs():
     assert drawn(*LINE, "t late > n two")[2] == ["t b", "t late"]
     early = drawn(*LINE, "t x > n three", "n three > t c")
     assert early[:2] == [["t a", "t x"], ["n one", "n three"]]

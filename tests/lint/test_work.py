@@ -89,7 +89,7 @@ PROGRAMS: dict[str, Callable[[], str]] = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_no_program_takes_more_than_a_fixed_number_of_statements(name):
+def test_the_analysis_of_a_program_takes_a_bounded_number_of_statements(name):
     assert work(PROGRAMS[name]()).total < MOST
 
 
@@ -201,7 +201,7 @@ def test_a_thread_that_restarts_itself_terminates():
     assert machine.total < 1_000
 
 
-def test_conditions_without_a_source_are_no_dependencies():
+def test_conditions_that_no_source_reaches_are_no_dependencies():
     text = """
 import rospy, os
 state = {}

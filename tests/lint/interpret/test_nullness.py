@@ -58,7 +58,7 @@ def node(body: str, head: str = "") -> str:
         ("value = table.get(last.name)", "value", "control"),
     ],
 )
-def test_a_test_for_none_asks_for_data_only_if_data_decided_it(before, value, flows):
+def test_a_test_for_none_depends_on_data_only_if_data_decided_the_value(before, value, flows):
     assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}
 
 
@@ -71,7 +71,7 @@ def test_a_test_for_none_asks_for_data_only_if_data_decided_it(before, value, fl
         ("last.data > 0.0 or None", "control"),
     ],
 )
-def test_an_argument_is_none_where_the_caller_s_value_is(given, flows):
+def test_a_parameter_may_be_none_if_the_argument_may_be(given, flows):
     head = "def send(value):\n" + indent(GATED.format(value="value", flows=flows), "    ")
     assert differing(node(f"send({given})", head)) == {}
 
@@ -80,6 +80,6 @@ def test_an_argument_is_none_where_the_caller_s_value_is(given, flows):
     ("result", "flows"),
     [("last", "clean"), ("found", "control"), ("level", "clean"), ("high", "control"), ("None", "clean")],
 )
-def test_a_result_is_none_where_the_returned_value_is(result, flows):
+def test_a_result_may_be_none_if_the_returned_value_may_be(result, flows):
     head = f"def asked():\n    return {result}"
     assert differing(node(GATED.format(value="asked()", flows=flows), head)) == {}

@@ -24,7 +24,7 @@ def const(value: object, pos: ir.Pos = FIRST) -> ir.Const:
 PI = ir.Attribute(ir.Name("math", "global", 0, SECOND), "pi", SECOND)
 
 
-def test_a_number_computed_from_one_literal_stands_at_that_literal():
+def test_a_number_computed_from_one_literal_has_its_position():
     assert computed(sum_of(PI, const(6))) == FIRST
     assert computed(sum_of(const(1), const(2, SECOND))) == WHOLE
     assert computed(sum_of(PI, PI)) == WHOLE
@@ -53,7 +53,7 @@ def test_literals_and_mathematical_constants_are_literal(expr, literal):
     assert of_literals(expr) is literal
 
 
-def test_numbers_come_in_source_order_without_truths():
+def test_numbers_are_listed_in_source_order_without_booleans():
     one, two, three = const(1), const(2.0), const(3)
     listed = ir.SequenceDisplay((two, const(True), const("x")), WHOLE, 0)
     assert numbers(sum_of(one, ir.Call(PI, (listed, three), (), WHOLE, 0), PI)) == [one, two, three]

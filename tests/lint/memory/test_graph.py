@@ -140,7 +140,7 @@ def test_content_passes_through_each_carrier_that_held_it(graph, node):
     assert graph.through(frozenset([item]), frozenset()) == {item}
 
 
-def test_content_that_is_asked_for_once_arrives_as_if_the_answer_were_kept(graph, node, monkeypatch):
+def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypatch):
     item, other, carrier = (node(key) for key in ("item", "other", "carrier"))
     graph.hold(carrier, frozenset([item]))
     carry = carrier
@@ -176,7 +176,7 @@ def test_settled_carry_nodes_depend_on_their_item(graph, node):
     assert graph.made == 0
 
 
-def test_a_circle_of_carry_nodes_is_fed_by_its_origin(graph, node):
+def test_a_cycle_of_carry_nodes_depends_on_its_origin(graph, node):
     item, one, two = node("item"), node("one"), node("two")
     for carry, other in ((one, two), (two, one)):
         graph.carried[carry] = (carry, item)

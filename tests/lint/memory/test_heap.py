@@ -11,9 +11,9 @@ from tarl_lint.memory import (
     abstract_gc,
     heap,
     joins,
-    parameter_names,
     reachable_data,
     recency,
+    symbolic_names,
     updates,
     userdata,
 )
@@ -81,7 +81,7 @@ def test_the_content_of_a_part_is_the_data_of_the_whole(ctx):
     assert heap.content(ctx, made(ctx, "ext", "library")) is UNKNOWN
 
 
-def test_a_field_of_a_message_is_what_was_stored_or_what_each_message_has(ctx):
+def test_a_message_field_has_the_stored_value_or_that_of_every_message(ctx):
     message = made(ctx, "message", "m")
     ctx.shared.leave(ctx.shared.ends, ctx.store.root, (message, "x"), ONE)
     assert heap.read_field(ctx, message, "x") == Value(frozenset([1]), frozenset([message.sub("x")]))
@@ -138,7 +138,7 @@ def test_the_shape_of_a_library_object_has_its_data_but_that_of_a_message_is_a_f
     assert heap.default(ctx, message, "shape") == pointer(message.sub("shape"))
 
 
-def test_an_element_of_a_library_object_may_be_the_unknown_one(ctx):
+def test_a_known_element_of_a_library_object_may_be_its_unknown_element(ctx):
     obj = made(ctx, "lib", "a")
     assert heap.default(ctx, obj, "[0]") == pointer(obj.sub("[0]"))
     any_of_them = obj.sub("[]")
@@ -277,7 +277,7 @@ def test_an_item_of_the_attributes_is_an_attribute_unless_the_object_is_a_dictio
 # --- stores -------------------------------------------------------------------------------------------
 
 
-def test_a_weak_update_keeps_what_was_there_also_if_unset(ctx):
+def test_a_weak_update_keeps_the_value_before_even_if_unset(ctx):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     updates.weaken(ctx, obj, "x", TWO)
@@ -339,7 +339,7 @@ def test_a_store_under_one_of_several_keys_hits_only_those(ctx):
 # --- joins --------------------------------------------------------------------------------------------
 
 
-def test_one_continuation_becomes_the_state_as_it_is(ctx):
+def test_the_join_of_one_continuation_is_that_continuation(ctx):
     obj = made(ctx, "sequence", "a")
     delta = {(obj, "x"): ONE}
     assert joins.joined(ctx, [delta]) is delta
@@ -362,7 +362,7 @@ def test_an_object_made_on_one_path_only_has_no_value_on_the_other(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_several_paths_without_a_store_have_the_value_from_before_once(ctx):
+def test_several_paths_without_a_store_join_the_former_value_once(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
@@ -514,13 +514,13 @@ def test_states_share_userdata_under_the_names_of_their_remapping(ctx):
 
 def test_a_parameter_in_a_name_has_a_marked_text():
     known: list[ParameterName] = []
-    (text,) = parameter_names.text_of_parameter(known, "~scan", const("scan")) or ()
+    (text,) = symbolic_names.text_of_parameter(known, "~scan", const("scan")) or ()
     assert isinstance(text, Symbolic)
     assert known == [ParameterName("~scan", "scan")]
     assert text == f"{MARK}0{MARK}"
-    assert parameter_names.marked(known, ParameterName("other", None)) == f"{MARK}1{MARK}"
-    assert parameter_names.marked(known, ParameterName("~scan", "scan")) == text
-    (unset,) = parameter_names.text_of_parameter(known, "~scan", UNKNOWN) or ()
+    assert symbolic_names.marked(known, ParameterName("other", None)) == f"{MARK}1{MARK}"
+    assert symbolic_names.marked(known, ParameterName("~scan", "scan")) == text
+    (unset,) = symbolic_names.text_of_parameter(known, "~scan", UNKNOWN) or ()
     assert known[int(unset.strip(MARK))] == ParameterName("~scan", None)
 
 
@@ -533,5 +533,5 @@ def test_a_parameter_in_a_name_has_a_marked_text():
         ([], "~scan", pointer(Obj("lib", 1))),
     ],
 )
-def test_no_other_value_of_a_parameter_is_part_of_a_name(known, name, default):
-    assert parameter_names.text_of_parameter(known, name, default) is None
+def test_a_parameter_without_a_text_default_is_not_marked_in_names(known, name, default):
+    assert symbolic_names.text_of_parameter(known, name, default) is None

@@ -325,7 +325,7 @@ def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_what_others_store_while_a_root_waits_leaves_out_its_own(shared, obj):
+def test_stores_of_others_during_a_wait_exclude_the_roots_own(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)
@@ -366,7 +366,7 @@ def test_a_new_field_marks_the_watchers_of_the_object_and_of_its_whole_dirty(sha
     assert shared.dirty == {watcher}
 
 
-def test_data_in_an_object_marks_those_dirty_that_found_none(shared):
+def test_data_in_an_object_reruns_the_roots_that_found_none_there(shared):
     obj, doubter = Obj("lib", "a"), Root("doubter", "callback")
     part, outer = obj.sub("x"), Obj("lib", "outer")
     obj.inside[outer] = None
@@ -432,7 +432,7 @@ def test_after_a_wait_reads_heed_the_stores_of_other_roots(store, obj):
     assert store.heard() == {key: TWO}
 
 
-def test_a_store_that_others_do_not_change_needs_no_other_run(store, obj):
+def test_a_store_without_news_from_others_does_not_rerun_the_root(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True
@@ -448,12 +448,12 @@ def test_variables_are_not_heeded(store, frame):
     assert store.root.heeds == set()
 
 
-def test_keys_to_which_no_other_root_stores_are_not_heard(store, obj):
+def test_keys_to_which_no_other_root_stores_are_left_out_at_a_wait(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 
 
-def test_the_part_of_other_roots_is_known_and_not_left_again(store, obj):
+def test_the_part_of_a_value_from_other_roots_is_not_published_again(store, obj):
     key = (obj, "x")
     assert store.admit(key, BOTH, TWO) is BOTH
     assert key not in store.foreign
@@ -466,7 +466,7 @@ def test_the_part_of_other_roots_is_known_and_not_left_again(store, obj):
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_the_part_of_a_value_found_at_the_beginning_is_not_left_again(store, obj):
+def test_the_part_of_a_value_found_at_the_start_is_not_published_again(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

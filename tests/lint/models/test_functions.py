@@ -409,7 +409,7 @@ def test_each_function_with_a_model_has_a_test():
 
 
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
-def test_the_result_has_the_data_of_the_arguments_and_no_other(name, body):
+def test_the_result_of_a_modelled_function_has_the_data_of_its_arguments(name, body):
     path = WHERE.get(name, name)
     modules = {path.rpartition(".")[0]} - {"", "dict", "object", *(f"smach.{name}" for name in MACHINES)}
     head = "\n".join(f"import {module}" for module in sorted({*modules, "asyncio", "dataclasses", "smach"}))

@@ -243,7 +243,7 @@ def test_each_entry_of_the_catalog_has_a_test(table, facts):
 
 
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
-def test_only_the_data_of_messages_arrives(name, body):
+def test_only_data_of_messages_reaches_sinks(name, body):
     assert differing(f"{HEAD}{dedent(body.replace('NAME', name))}{SPIN}") == {}
 
 

@@ -57,7 +57,7 @@ from tarl_lint.workspace.setup_files import Setup, setup
         ("$()", OnRobot("")),
     ],
 )
-def test_each_substitution_has_its_meaning(text, meaning):
+def test_each_substitution_is_evaluated(text, meaning):
     assert substitutions(text) == meaning
 
 
@@ -132,7 +132,7 @@ def test_the_declarations_of_setup_cfg_are_read(tmp_path):
         ("scripts=['a', names()]", "a part of `scripts` is not constant"),
     ],
 )
-def test_what_setup_py_computes_is_named(tmp_path, given, problem):
+def test_computed_values_in_setup_py_are_reported(tmp_path, given, problem):
     (tmp_path / "setup.py").write_text(f"from setuptools import setup\nsetup(\n    {given},\n)\n")
     assert [found.reason for found in setup(tmp_path).problems] == [problem]
 
