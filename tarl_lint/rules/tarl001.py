@@ -1,7 +1,7 @@
 """TARL001: a file cannot be analysed.
 
 The file is not valid Python 3, cannot be decoded, or is nested too deeply. The message says so if it is Python 2.
-tarl-lint analyses the other files as if this one did not exist, so it misses flows through it. Fix the file, port it
+tarl-lint ignores this file in the analysis of the other files, so it misses flows through it. Fix the file, port it
 to Python 3, or exclude it.
 """
 

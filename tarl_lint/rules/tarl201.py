@@ -12,11 +12,16 @@ Only state that some code guards with a lock is reported, and only if the access
 - a function reads the state twice and may see two different values,
 - a function reads several parts that belong together.
 
-A single read of a value that is only ever replaced is harmless, because Python replaces it atomically. Not reported are
-flags that are set to constants, checks before the lock is taken (whether a value exists, its length, whether to
-return), methods of objects that may do their own locking, code that runs before the threads start, and callbacks of
-which only one is registered, in opposite branches of an `if`. If a function is called with the lock in one place and
-without it in another, the message names the call without it.
+A single read of a value that is only ever replaced is harmless, because Python replaces it atomically. The rule also
+does not report
+
+- flags that are set to constants,
+- checks before the lock is taken (whether a value exists, its length, whether to return),
+- methods of objects that may do their own locking,
+- code that runs before the threads start,
+- callbacks of which only one is registered, in opposite branches of an `if`.
+
+If a function is called with the lock in one place and without it in another, the message names the call without it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """TARL204: a publisher never publishes.
 
 The topic is advertised, so other nodes see it and may wait for it. But no publish call uses the publisher, and it is
-not passed to code that could. Usually a line was lost, or the publisher is left over.
+not passed to code that could publish. Usually the publish call is missing, or the publisher is no longer needed.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 """TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
 
-The two ends were probably meant to be connected. Their types are equal, and one of them has a namespace more than the
-other (`/cmd_vel` and `/robot/cmd_vel`), or one letter differs. The robot starts without an error and does not move.
+The two ends were probably meant to be connected. Their types are equal, and their names differ only by a
+namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does not move.
 For this reason, the keyboard teleoperation of the Kobuki had no effect
-(https://github.com/aliasrobotics/RVD/issues/581), and robots stand still when they are launched in a namespace but
+(https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace but
 the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-Nothing is reported if a node of the launch file was not read, or if its topics are computed, since that node might be
-the other end. A subscription is not reported either if no publisher has a similar name, because sensors and
-simulators are often started elsewhere.
+The rule reports nothing if a node of the launch file was not read, or if its topics are computed, because that node
+might be the other end. It also reports nothing if no publisher has a similar name, because sensors and simulators
+are often started elsewhere.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """TARL302: publisher and subscription of a topic have different types.
 
-ROS refuses the connection: rospy logs a warning, rclpy mostly nothing, and no message arrives. This happens where
+ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. This happens where
 some nodes use `Twist` and others `TwistStamped` (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39).
 The rule compares the last part of the types' names; both types must be constant.
 """

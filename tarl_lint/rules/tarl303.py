@@ -1,10 +1,10 @@
 """TARL303: the quality of service of a subscription asks for more than its publisher offers.
 
 ROS 2 does not connect a subscription that asks for `RELIABLE` with a publisher that offers `BEST_EFFORT`, nor one
-that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. A number in place of a profile
-means `RELIABLE` and `VOLATILE`; drivers of sensors publish with `qos_profile_sensor_data`, which is `BEST_EFFORT`.
-A subscription with the number 10 therefore receives nothing from a laser scanner
-(https://github.com/ros2/ros2_documentation/issues/569).
+that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. If the code gives a
+number instead of a profile, the profile is `RELIABLE` and `VOLATILE`. Drivers of sensors publish with
+`qos_profile_sensor_data`, which is `BEST_EFFORT`. A subscription with the number 10 therefore receives nothing from a
+laser scanner (https://github.com/ros2/ros2_documentation/issues/569).
 
 Both profiles must be constant in the code.
 """

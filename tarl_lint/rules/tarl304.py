@@ -1,8 +1,8 @@
 """TARL304: a service that is called has no server, but a server with nearly its name is never called.
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
-service `~home` of the node `arm` is `/arm/home`, not `/home`. Nothing is reported if a node of the launch file was
-not read. Nor is anything reported if no server has a similar name, since the server may be started elsewhere.
+service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the launch file
+was not read. It also reports nothing if no server has a similar name, because the server may be started elsewhere.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """TARL307: a launch file sets a parameter that the node does not have.
 
-The value has no effect, and the node goes on with its default. Often the parameter was renamed or misspelt. ROS
-does not complain: one filter kept two defaults that worked badly, because the names in its parameter file did not match
+The value has no effect, and the node uses its default. Often the parameter was renamed or misspelt. ROS gives no
+warning. For example, one filter used two unsuitable defaults, because the names in its parameter file did not match
 those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program reads
-parameters by literal names only. A parameter that a group sets for all its nodes is reported if none of them has it.
+parameters only by literal names. A parameter that a group sets for all its nodes is reported if none of them has it.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """TARL309: code uses a field that the message type does not have.
 
-The callback raises AttributeError at its first message; rospy logs the error and goes on, so the rest of the robot
+The callback raises AttributeError at its first message. rospy logs the error and continues, so the rest of the robot
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. Only
-variables count that hold nothing but a message: one that a callback receives or that the function creates.
+The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. It
+examines only variables that always hold a message, which a callback receives or the function creates.
 """
 
 from __future__ import annotations

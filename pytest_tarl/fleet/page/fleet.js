@@ -126,7 +126,7 @@
       const anchor = n === 0 ? "start" : n === 4 ? "end" : "middle";
       svg.append(drawn("text", { x: x(first + span * n / 4), y: height - 4, "text-anchor": anchor }, day(first + span * n / 4).slice(0, 10)));
     }
-    at("timeline").replaceChildren(first ? svg : element("p", { class: "absent" }, "The missions have no time."));
+    at("timeline").replaceChildren(first ? svg : element("p", { class: "absent" }, "The missions have no dates, so there is no timeline."));
   }
 
   /* ---- cells in which most named robots differ ---- */
@@ -201,7 +201,7 @@
       element("p", {}, `${robots.passed[n].toLocaleString("en")} of ${plural(robots.missions[n], "mission")} passed. Evidence that missions differ: ${evidence(robots.world[n])}; that they are below a recorded bound: ${evidence(robots.bound[n])}. `,
         one ? `Named${one.mission ? `; changed before mission ${one.mission} (${day(one.time)})` : ""}. ${one.where ? `Where: ${one.where}.` : ""}` : "Not named."),
       ...(one?.like?.length ? [element("p", {}, "Drifts alike: ", ...one.like.flatMap(name => [element("a", { href: `#robot=${encodeURIComponent(name)}` }, name), " "]))] : []),
-      ...(rows.length ? [element("table", { class: "plain narrow" }, element("thead", {}, element("tr", {}, element("th", {}, "Cell"), element("th", { class: "number" }, "Reward a step against recorded"), element("th", { class: "number" }, "Standard error"))), element("tbody", {}, ...rows))] : []),
+      ...(rows.length ? [element("table", { class: "plain narrow" }, element("thead", {}, element("tr", {}, element("th", {}, "Cell"), element("th", { class: "number" }, "Reward per step, minus recorded"), element("th", { class: "number" }, "Standard error"))), element("tbody", {}, ...rows))] : []),
       element("p", { class: "label" }, "Its missions: ", element("code", {}, `${page.command} --robot ${quoted(robots.name[n])} --html ${quoted(`${robots.name[n]}.html`)}`)));
     card.scrollIntoView({ block: "nearest" });
   }
