@@ -1,4 +1,4 @@
-"""Give a program the parameters of one launched node: names of topics that contain parameters become known."""
+"""Give a program the parameters of one launched node, so that topic names that contain parameters become known."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import leaves, stated
 from tarl_lint.workspace.parameter_yaml import NoYamlError
 
-DEEPEST = 8  # levels of parameters whose defaults contain parameters
+DEEPEST = 8  # nesting of parameters whose defaults contain parameters
 
 
 def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:
-    """Return the parameters that a launch file gives a node, by absolute name; dots of ROS 2 names stay."""
+    """Return the parameters that a launch file gives a node, by absolute name. ROS 2 names keep their dots."""
     found: dict[str, Any] = {}
     for setting in (*launch.settings, *node.settings):
         for name, value in _stated(setting, full_name):
@@ -39,7 +39,7 @@ def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapp
 
 
 def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Mapping[str, object]:
-    """Return the values of parameters in a launched node by their names in the code, DEFAULT for those not set.
+    """Return the values of parameters in a launched node by their names in the code; DEFAULT for parameters not set.
 
     Parameters whose value is known only on the robot, or is neither scalar nor a list of scalars, are left out.
     """
@@ -56,7 +56,7 @@ def fixed(names: Sequence[str], values: Mapping[str, Any], full_name: str) -> Ma
 
 
 def command_line(node: LaunchedNode, launch: Launch, full_name: str) -> Mapping[str, object]:
-    """Return the command line of a launched node under ARGUMENTS; nothing if a part is known only on the robot."""
+    """Return the command line of a launched node under ARGUMENTS; empty if a part is known only on the robot."""
     try:
         given = shlex.split(node.arguments)
     except ValueError:
@@ -89,7 +89,7 @@ def _plain(value: object) -> bool:
 
 
 def undetermined(interface: Interface) -> bool:
-    """Return whether an end has no known name, or one of several, so that all parameters may tell more."""
+    """Return whether an end has no known name, or several, so that the values of all parameters may help."""
     ends = [one.names for one in interface.endpoints]
     for one in interface.flows:
         if one.flow is not None:
@@ -98,14 +98,14 @@ def undetermined(interface: Interface) -> bool:
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters with the fingerprints of the one for any, which no launch changes."""
+    """Return an interface for known parameters with the fingerprints of the general one, which depend on no launch."""
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))
 
 
 def with_names_in_code(decided: Interface, every: Interface) -> Interface:
-    """Return an interface whose names are known with the names in the code of the one for any parameters."""
+    """Return an interface for known parameters that also has the names in the code, from the general interface."""
     written = {(one.role, one.span): one.written for one in every.endpoints if one.written}
     ends = (replace(one, written=written.get((one.role, one.span), one.written)) for one in decided.endpoints)
     return replace(decided, endpoints=tuple(ends))
@@ -120,7 +120,7 @@ def _stated(setting: Setting, full_name: str) -> Sequence[tuple[str, Any]]:
     try:
         return [(one.name, one.value) for one in stated((setting,), full_name)]
     except (NoYamlError, UnreadableError):
-        return ()  # the report says so
+        return ()  # the report mentions the problem
 
 
 def bound(
@@ -161,13 +161,13 @@ class _Namer:
         self._depth = 0
 
     def endpoint(self, one: Endpoint) -> Endpoint:
-        """Return an endpoint with the names of the launch; without names if one is unknown."""
+        """Return an endpoint with its names at launch; without names if one of them is unknown."""
         if not any(MARK in name for name in one.names):
             return one
         return replace(one, names=self._names(one.names), written=tuple(map(self._in_code, one.names)))
 
     def finding(self, one: Finding) -> Finding:
-        """Return a flow with the names of the launch."""
+        """Return a flow with its names at launch."""
         flow = one.flow
         if flow is None or not any(MARK in name for name in (*flow.source.topics, *flow.sink.topics)):
             return one

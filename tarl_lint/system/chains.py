@@ -15,8 +15,8 @@ STEPS: Final = 100_000  # limit on the steps of the search
 def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tuple[Chain, ...], bool]:
     """Return the chains between two topics, and whether there are more than `MOST`.
 
-    Without `origin`, chains begin where data enters the analysed nodes; without `target`, they end where it leaves
-    them. A chain passes each topic once.
+    Without `origin`, chains begin where data enters the analysed nodes. Without `target`, they end where data leaves
+    these nodes. A chain passes each topic once.
     """
     hops = [
         hop for hop in hops if hop.source != hop.sink
@@ -36,13 +36,13 @@ def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tup
 
 
 def _first(hops: Sequence[Hop]) -> list[str]:
-    """Return the topics at which flows begin; all if there are only cycles."""
+    """Return the topics at which flows begin; all topics if there are only cycles."""
     sources = {hop.source for hop in hops}
     return sorted(_ends(sources, [(hop.sink, hop.source, hop.kind != "not read") for hop in hops]) or sources)
 
 
 def _last(hops: Sequence[Hop]) -> set[str]:
-    """Return the topics at which flows end; all if there are only cycles."""
+    """Return the topics at which flows end; all topics if there are only cycles."""
     sinks = {hop.sink for hop in hops}
     return (_ends(sinks, [(hop.source, hop.sink, hop.kind != "not read") for hop in hops]) or sinks) | {
         UNKNOWN

@@ -55,7 +55,7 @@ class Request:
 
     @cached_property
     def root(self) -> Path:
-        """Return the folder of the workspace: the path given, else that of the launch file, else the current one."""
+        """Return the folder of the workspace: the given path, or else that of the launch file or the current one."""
         if self.paths:
             return self.paths[0]
         path = Path(self.launch)
@@ -80,7 +80,10 @@ def request(launch: str | None, paths: Sequence[Path], origin: str | None, targe
 
 
 class _Workbench:
-    """Reads the files of a workspace once, and analyses each program at most once, unless `cache` has its interface."""
+    """Reads the files of a workspace once.
+
+    Analyses each program at most once, or not at all if `cache` has its interface.
+    """
 
     def __init__(self, root: Path, config: Config, tell: Tell, cache: Cache) -> None:
         self.config, self.tell, self.cache = config, tell, cache
@@ -168,7 +171,7 @@ def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
 def _launch_file(named: str, workspace: Workspace) -> Path:
     """Return a launch file by its path, by its name in the workspace, or as `package/name`.
 
-    Raises UsageError if there is none, or if several packages have it.
+    Raises UsageError if there is no such file, or if several packages have one.
     """
     if Path(named).is_file():
         return Path(named).resolve()
@@ -202,9 +205,9 @@ def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> 
 
 
 def judged(found: Sequence[System], config: Config, *, writing: bool = False) -> tuple[System, ...]:
-    """Return the systems with their hazards of the enabled rules; those of the baseline are marked as accepted.
+    """Return the systems with the hazards of the enabled rules; hazards in the baseline are marked as accepted.
 
-    Raises BaselineError for one that does not exist, unless it is about to be written.
+    Raises BaselineError if the baseline does not exist, unless this run writes it.
     """
     path = config.baseline
     known = baseline.load(path).counts() if path and (path.exists() or not writing) else {}

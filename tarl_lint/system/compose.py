@@ -27,7 +27,7 @@ from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 
 UNKNOWN: Final = "?"
-SERVER: Final = "server of "  # with the name of a service: the node, not read, that answers it
+SERVER: Final = "server of "  # with the name of a service: the unread node that answers it
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
@@ -46,7 +46,7 @@ def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: 
 
 
 def _unparsed(launch: Launch) -> Iterator[Problem]:
-    """Yield a problem for each file whose parameters of nodes cannot be read."""
+    """Yield a problem for each file with parameters of nodes that cannot be read."""
     files: dict[Path, Setting] = {}
     for setting in (one for node in launch.nodes for one in node.settings):
         if setting.yaml is not None and setting.name == "~":
@@ -56,7 +56,7 @@ def _unparsed(launch: Launch) -> Iterator[Problem]:
 
 
 def _unparsable(setting: Setting) -> str:
-    """Return why the YAML of a setting cannot be read; empty if it can."""
+    """Return why the YAML of a setting cannot be read; "" if it can be read."""
     try:
         content(setting)
     except NoYamlError:
@@ -94,7 +94,7 @@ def _decided(
     every: Interface,
     read: Callable[[Mapping[str, object]], Interface | str],
 ) -> Interface:
-    """Return the interface of a launched node; with all its parameters at hand if names are unknown without."""
+    """Return the interface of a launched node; pass all its parameters only if names are unknown without them."""
     values = parameter_values(launch, node, name)
     resolve = Instance(node, name).resolve
 
@@ -158,7 +158,7 @@ def _flows(instance: Instance) -> Iterator[tuple[Finding, str, str]]:
 
 
 def _ranked(findings: Iterable[Finding]) -> tuple[Kind, tuple[Finding, ...]]:
-    """Return the kind of the strongest flow, and the flows, explicit ones first."""
+    """Return the kind of the strongest flow, and the flows with explicit ones first."""
     ordered = sorted(findings, key=lambda one: (one.flow is None or one.flow.kind != "explicit", one.span))
     first = ordered[0].flow
     return ("explicit" if first is not None and first.kind == "explicit" else "implicit"), tuple(ordered)

@@ -1,6 +1,6 @@
-"""Topics that the C++ source of a node names: literals in its calls, without any analysis of the code.
+"""Find the topics that the C++ source of a node names as literals in calls, without any analysis of the code.
 
-They are drawn and composed, so that a chain does not end at a C++ node; no rule relies on them.
+These topics are drawn and composed, so that a chain does not end at a C++ node. No rule relies on them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.cmake import commands
 from tarl_lint.workspace.model import Package
 
-LARGEST: Final = 1_000_000  # bytes of a file
+LARGEST: Final = 1_000_000  # limit on a file, bytes
 _EXECUTABLES: Final = (
     "add_executable",
     "ament_auto_add_executable",
@@ -78,7 +78,7 @@ def _ends(path: Path) -> tuple[Endpoint, ...]:
 
 
 def _blank(found: re.Match[str]) -> str:
-    """Return a string as it is, and a comment as spaces, so that lines stay."""
+    """Return a string unchanged, and a comment as spaces, so that line numbers stay the same."""
     return found[1] or re.sub(r"[^\n]", " ", found[0])
 
 

@@ -13,9 +13,9 @@ from tarl_lint.system.model import System
 class Drawing:
     """Names of nodes and topics, and edges between them, by name. Nodes in `unread` are drawn dashed.
 
-    An edge from a topic to a node is `(topic, node, kind)`; `kind` is that of the strongest flow of its data out of
-    the node, "" if there is none. `touching` are pairs of a node that was not read and a topic that its remappings
-    name.
+    An edge from a topic to a node is `(topic, node, kind)`. `kind` is that of the strongest flow that takes the
+    topic's data out of the node; "" if there is none. `touching` are pairs of a node that was not read and a topic
+    that its remappings name.
     """
 
     nodes: tuple[str, ...]
@@ -56,7 +56,7 @@ def drawing(system: System) -> Drawing:
 def layers(drawn: Drawing) -> list[list[str]]:
     """Return nodes and topics in columns from left to right, each after its predecessors as far as cycles allow.
 
-    Names of nodes begin with `n `, those of topics with `t `.
+    Names of nodes begin with `n `; names of topics begin with `t `.
     """
     edges = [(f"t {topic}", f"n {node}") for topic, node, _ in drawn.inputs]
     edges += [(f"n {node}", f"t {topic}") for node, topic in (*drawn.outputs, *drawn.touching)]

@@ -1,4 +1,4 @@
-"""Uses of message fields that the message type does not have, for types of which the fields are known."""
+"""Find uses of message fields that the message type does not have, for types whose fields are known."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
-    """Yield the uses of absent fields: on messages that a callback receives, or that a function makes."""
+    """Yield the uses of absent fields, on messages that a callback receives or that a function creates."""
     types = _imported(module.tree)
     if not types:
         return
@@ -97,7 +97,7 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
 
 
 def _absent(node: ast.Attribute, held: Mapping[str, str]) -> tuple[str, str] | None:
-    """Return (message type, field name) of an attribute that names no field of its type."""
+    """Return (message type, field name) of an attribute that is not a field of the message type."""
     kind = _kind(node.value, held)
     fields = FIELDS.get(kind)
     name = node.attr

@@ -1,4 +1,4 @@
-"""Hazards of a system: where they stand, and what identifies them; the rules TARL3xx make them."""
+"""Places and identities of a system's hazards, which the rules TARL3xx find."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tarl_lint.system.model import Endpoint, Instance, System
 
 
 class Rule(Protocol):
-    """A rule of architecture: a file `rules/tarl3xx.py`."""
+    """A rule about systems: a file `rules/tarl3xx.py`."""
 
     CODE: str
 
@@ -42,7 +42,7 @@ def _identified(finding: Finding) -> Finding:
 
 
 def at_node(code: str, instance: Instance, message: str, about: str) -> Finding:
-    """Return a hazard at the place where a launch file starts a node; `about` has names of the code."""
+    """Return a hazard at the place where a launch file starts a node; `about` contains names from the code."""
     node = instance.node
     span = Span(shown(node.file), max(node.line, 1), 1, max(node.line, 1), 2)
     return Finding(
@@ -57,16 +57,16 @@ def at_end(code: str, instance: Instance, endpoint: Endpoint, message: str, abou
 
 
 def single(endpoint: Endpoint) -> str:
-    """Return the type of an endpoint, "" if it is unknown or may be one of several."""
+    """Return the type of an endpoint; "" if it is unknown or may be one of several."""
     return "" if " | " in endpoint.type or endpoint.type == "AnyMsg" else endpoint.type
 
 
 def spelled_alike(one: str, other: str) -> bool:
-    """Return whether two absolute names may be meant to be one: one has a namespace more, or another letter at its end.
+    """Return whether two absolute names may be meant to be equal: one has a namespace more, or a letter differs.
 
-    `/robot/scan` may be meant to be `/scan`, but `/left/scan` and `/right/scan` are different names.
-    A letter may be missing, be another one, or stand in the wrong place; names with fewer than five letters, and names
-    that differ in a digit (`left_1`, `left_2`), are different names.
+    `/robot/scan` may be meant to be `/scan`, but `/left/scan` and `/right/scan` are different names. A letter may be
+    missing, wrong, or in the wrong place. Names with fewer than five letters, and names that differ in a digit
+    (`left_1`, `left_2`), are different names.
     """
     (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
     if last == end:
@@ -75,7 +75,7 @@ def spelled_alike(one: str, other: str) -> bool:
 
 
 def _within(few: list[str], many: list[str]) -> bool:
-    """Return whether all parts of a namespace are in another one, in their order."""
+    """Return whether another namespace contains all parts of this one, in the same order."""
     rest = iter(many)
     return all(part in rest for part in few)
 

@@ -1,4 +1,4 @@
-"""Keep the interfaces of programs from run to run, by the texts of the program and of what it imports."""
+"""Keep the interfaces of programs between runs, by the texts of a program and its imports."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tarl_lint.read.source import Script
 from tarl_lint.run.cache import Cache, digest, packed, unpacked
 from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
-SPARE: Final = 1000  # entries of other launch files and of earlier texts that stay
+SPARE: Final = 1000  # number of entries to keep for other launch files and earlier texts
 
 
 def key(
     script: Script, entry: str, package: str, imported: Sequence[Script], fixed: Mapping[str, object]
 ) -> str:
-    """Return the key of a program: everything that its interface depends on, besides the settings."""
+    """Return the key of a program: everything that its interface depends on, except for the settings."""
     scripts = [
         part
         for one in (script, *imported)

@@ -46,8 +46,8 @@ def interface(
 ) -> Interface | str:
     """Return the interface of a program, or the reason why it cannot be analysed.
 
-    `entry` is the function that starts it, "" for the file itself; `others` are the files that it may import. `fixed`
-    are known values of parameters.
+    `entry` is the function that starts the program; "" if the file itself is run. `others` are the files that it may
+    import. `fixed` are known values of parameters.
     """
     first = parsed(script)
     if isinstance(first, SourceError):
@@ -55,12 +55,12 @@ def interface(
     imported = [parsed(one) for one in reached([script], others) if one.path != script.path]
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
-    plain = replace(config, remaps=())  # names as in the code
+    plain = replace(config, remaps=())  # names as they are in the code
     parameters: list[ParameterName] = []
     machine, flows = engine.trace(modules, plain, thorough=False, parameters=parameters, fixed=fixed)
     tracer = Tracer(machine)
     outlines = {module.path: Outline(module.tree) for module in modules}
-    texts = Texts({module.path: module for module in modules})  # also of modules in which nothing runs
+    texts = Texts({module.path: module for module in modules})  # includes modules in which nothing runs
     calls = (end for each in modules for end in _clients(machine, each, outlines[each.path], texts))
     ends = (*_endpoints(machine, tracer, outlines), *calls)
     endpoints = tuple(sorted(dict.fromkeys(ends), key=lambda e: (e.span, e.role, e.names)))
@@ -111,7 +111,7 @@ def _of_topics(flow: Flow) -> bool:
 
 
 def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Finding:
-    """Return a flow with its fingerprint of a run without launch files."""
+    """Return a flow with the fingerprint that it has in a run without launch files."""
     names = config.launched
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:
@@ -138,7 +138,7 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
 
 
 def _clients(machine: Linker, module: Module, outline: Outline, texts: Texts) -> Iterator[Endpoint]:
-    """Yield the services that a module calls, as far as its functions run."""
+    """Yield the services that a module calls in functions that run."""
     ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
     for call, name, kind in called_services(outline):
         place = outline.qualname(call.lineno)

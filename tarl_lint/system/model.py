@@ -19,7 +19,7 @@ Role = Literal["publishes", "subscribes", "serves", "calls"]
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """Quality of service; None for each part that is not constant in the code."""
+    """Quality of service; a part is None if it is not constant in the code."""
 
     reliable: bool | None = None
     latched: bool | None = None  # whether durability is transient local
@@ -27,9 +27,10 @@ class Qos:
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """A use of a topic or service in a program. `names` are those in the code, empty if unknown.
+    """A use of a topic or service in a program. `names` are the names in the code; empty if they are unknown.
 
-    `written` are the names as in the code if they contain parameters, whose values in a launch are in `names`.
+    If names contain parameters, `written` has the names as in the code, and `names` has them with the values at
+    launch.
     """
 
     role: Role
@@ -60,12 +61,12 @@ class Misfit:
 class Interface:
     """The topics, services and parameters of a program, by the names in its code.
 
-    `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code, "" if it is computed.
-    `words` are all strings of its code. `parameters` says whether they include every parameter that it reads.
-    `closed` says that it imports nothing that could use topics on its own, `whole` that besides all topics have
-    constant names and that the analysis was complete.
-    `in_names` are the parameters that names contain, `deciding` those that stand in conditions.
-    `stale` are publish calls that go on without new messages, `misfits` uses of fields that a message type lacks.
+    `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code; "" if it is computed. `words`
+    are all strings of its code. `parameters` says whether `words` includes every parameter that the program reads.
+    `closed` says that the program imports nothing that could use topics on its own. `whole` says in addition that all
+    topics have constant names and that the analysis was complete. `in_names` are the parameters that names contain;
+    `deciding` are the parameters used in conditions. `stale` are publish calls that go on without new messages;
+    `misfits` are uses of fields that a message type lacks.
     """
 
     path: str
@@ -85,14 +86,14 @@ class Interface:
 
 @dataclass(frozen=True)
 class Instance:
-    """A launched node. Without an interface, `unread` is the reason why its program was not read."""
+    """A launched node. Without an interface, `unread` is the reason why the node's program was not read."""
 
     node: LaunchedNode
     name: str
     interface: Interface | None = None
     unread: str = ""
-    seen: tuple[Endpoint, ...] = ()  # topics that the C++ source of a node names that was not read
-    silent: bool = False  # known to publish nothing that other nodes subscribe to
+    seen: tuple[Endpoint, ...] = ()  # for an unread node, the topics that its C++ source names
+    silent: bool = False  # whether it is known to publish nothing that other nodes subscribe to
 
     def resolve(self, name: str) -> str:
         """Return the launched name of a topic or service in the code."""
@@ -107,7 +108,7 @@ class Instance:
                     yield self.resolve(name), one
 
     def named(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role, or those that the source of a node names that was not read."""
+        """Yield the endpoints of a role; for an unread node, those that its C++ source names."""
         yield from self.ends(role)
         for one in self.seen:
             if one.role == role:
@@ -116,7 +117,7 @@ class Instance:
 
     @cached_property
     def touched(self) -> tuple[str, ...]:
-        """Return the launched topics in the remappings of a node that was not read."""
+        """Return the launched topics in the remappings of an unread node."""
         own = self.name.rpartition("/")[2]
         names = {remapped(old, self.node.namespace, own, self.node.remaps) for old, _ in self.node.remaps}
         return () if self.interface is not None or self.seen else tuple(sorted(names))
@@ -124,7 +125,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Hop:
-    """The flows of one node from a topic to a topic, explicit ones first; none if the node was not read."""
+    """The flows of one node from one topic to another, explicit ones first; empty if the node was not read."""
 
     node: str
     source: str
@@ -141,7 +142,7 @@ class Chain:
 
     @property
     def kind(self) -> Kind | Literal["not read"]:
-        """Return `explicit` if all hops are, `not read` if any node on the way was not read."""
+        """Return `explicit` if all hops are explicit, and `not read` if any node on the way was not read."""
         kinds = {hop.kind for hop in self.hops}
         return "not read" if "not read" in kinds else "implicit" if "implicit" in kinds else "explicit"
 
@@ -173,5 +174,5 @@ class System:
 
 
 def full_name(node: LaunchedNode, own: str) -> str:
-    """Return the name of a launched node; `own` is the one in its code."""
+    """Return the name of a launched node; `own` is its name in the code."""
     return joined(node.namespace, node.name or own or node.executable.rpartition("::")[2])

@@ -1,4 +1,4 @@
-"""Strings of a program, among them the names of its parameters, and whether these are all that it reads."""
+"""The strings of a program, which include the names of its parameters, and whether it reads no other parameters."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OPEN: Final = re.compile(
 COMMAND_LINE: Final = re.compile(r"\b(?:sys\.argv|myargv|argparse|optparse)\b")
 COPYING: Final = frozenset(
     ["bool", "int", "float", "str", "list", "tuple"]
-)  # functions that keep what they get
+)  # functions that return the value of their argument
 
 
 def words(modules: Sequence[Module]) -> frozenset[str]:
@@ -48,11 +48,11 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 
 
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
-    """Return the parameters, by their names in the code, that stand in a condition, sorted, also by way of variables.
+    """Return the parameters that are used in conditions, directly or through variables, sorted by name in the code.
 
-    Variables are followed by their last names through plain copies, and as arguments of functions of the program.
-    Parameters over which loops run, or by which tables are read, count, too, since a launch may give them lists of
-    names. ARGUMENTS stands for the command line, of which names may be made, too.
+    Variables are followed by name, through plain copies and as arguments of the program's functions. Parameters that
+    a loop iterates over or that index a table also count, since a launch may give them lists of names. ARGUMENTS
+    stands for the command line, which may also provide names.
     """
     found = {ARGUMENTS for module in modules if COMMAND_LINE.search(module.text)}
     nodes = [node for module in modules for node in ast.walk(module.tree)]
@@ -82,7 +82,7 @@ def _assigned(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _passed(nodes: Sequence[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
-    """Yield the parameters of functions of the program with the arguments that they get, found by name."""
+    """Yield the parameters of the program's functions, each with the arguments that calls of that name pass."""
     made: dict[str, list[str]] = {}
     for node in nodes:
         if isinstance(node, ast.FunctionDef):

@@ -1,4 +1,4 @@
-"""Whether a program imports only modules that use no topics and parameters on their own."""
+"""Check whether a program imports only modules that use no topics and parameters on their own."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _QUIET: Final = frozenset(
 _INTERFACES: Final = re.compile(r"\w+_(msgs|srvs|interfaces|actions?|msg|srv)$")
 _TRANSFORMS: Final = frozenset(
     ["tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"]
-)  # use /tf, which no rule looks at
+)  # these use /tf, which no rule examines
 
 
 def closed(modules: Sequence[Module]) -> bool:
-    """Return whether every import of the modules is one of them, quiet, or of interfaces."""
+    """Return whether the modules import only each other, modules without topics, and packages of messages."""
     own = {part for module in modules for part in (module.name, module.name.partition(".")[0])}
     own |= {module.name.rpartition(".")[2] for module in modules}
     return all(_quiet(name, own) for module in modules for name in _imported(module.tree))

@@ -29,7 +29,7 @@ PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"))  # of s
 
 
 def part(api: str, *, sent: bool) -> str:
-    """Return which part of a service or action an end of a flow is, such as ` (request)`; empty for a topic."""
+    """Return which part of a service or action an end of a flow is, such as ` (request)`; "" for a topic."""
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""

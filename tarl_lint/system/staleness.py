@@ -1,4 +1,4 @@
-"""Publish calls that go on when no message arrives: loops and timers without any look at the time."""
+"""Find publish calls that go on when no message arrives, in loops and timers that never read the time."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ _SLEEPS: Final = re.compile(
 def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
     """Return the flows into commands that a timer or loop publishes again and again from the last message.
 
-    The message arrives in one function and is published in another one, which clears nothing that the callback stored,
-    and no word in the program suggests that the age of the message is looked at.
+    The message arrives in one function and is published in another one, which clears nothing that the callback
+    stored. No word in the program suggests that it checks the age of the message.
     """
     texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
     if any(_TIMES.search(text) for text in texts.values()):
@@ -48,7 +48,7 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
 
 
 def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
-    """Return whether the publish call of a flow runs without its callback, and without that of another message."""
+    """Return whether the publish call of a flow runs outside of its callback and of the callbacks of other messages."""
     if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
         return False
     callbacks = {name.strip() for name in flow.source.callback.split(",")}
@@ -71,5 +71,5 @@ def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
 
 
 def _without_init(text: str) -> str:
-    """Return a text without its initialisers, in which attributes begin as None."""
+    """Return a text without its `__init__` methods, in which attributes start as None."""
     return re.sub(r"def __init__\(.*?(?=\n    def |\n\S|\Z)", "", text, flags=re.DOTALL)

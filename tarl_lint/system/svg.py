@@ -1,4 +1,4 @@
-"""Picture of systems as SVG, without a program for drawing graphs."""
+"""Picture of systems as SVG; no program for drawing graphs is needed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.files import shown
 from tarl_lint.system.drawing import Drawing, drawing, layers
 from tarl_lint.system.model import System
 
-CHARACTER: Final = 7.2  # pixels, mean width at font size 12
+CHARACTER: Final = 7.2  # pixels, mean width of a character at font size 12
 ROW: Final = 44.0
 BOX: Final = 26.0
 GAP: Final = 56.0  # between columns

@@ -49,7 +49,7 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
 
 
 def _nothing(system: System, origin: str, target: str) -> str:
-    """Return the message that there is no chain, and the named topics that do not exist."""
+    """Return a message that there is no chain, with the requested topics that do not exist."""
     if not (origin or target):
         return "No flows across nodes."
     known = {name for one in system.instances for role in _ROLES for name, _ in one.named(role)}

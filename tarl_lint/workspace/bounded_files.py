@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class UnreadableError(Exception):
-    """A file cannot be read, or is too large; the message is the reason, without the file."""
+    """A file cannot be read or is too large. The message is the reason, without the name of the file."""
 
 
 def read_bytes(path: Path, most: int) -> bytes:
@@ -27,5 +27,5 @@ def read_bytes(path: Path, most: int) -> bytes:
 
 
 def read_text(path: Path, most: int) -> str:
-    """Return the text of a file, invalid UTF-8 replaced. Raises UnreadableError as `read_bytes` does."""
+    """Return the text of a file, with invalid UTF-8 replaced. Raises UnreadableError as `read_bytes` does."""
     return read_bytes(path, most).decode("utf-8", errors="replace")

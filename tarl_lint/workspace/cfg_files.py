@@ -191,7 +191,7 @@ class _Generator:
 
 
 def configurations(path: Path) -> tuple[list[Configuration], list[Problem]]:
-    """Return the configurations that a `.cfg` file generates, and the problems in reading it."""
+    """Return the configurations that a `.cfg` file generates, and the problems found while reading it."""
     made: list[_Generator] = []
 
     def generator() -> _Generator:

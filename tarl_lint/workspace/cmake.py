@@ -23,7 +23,8 @@ _KEYWORDS: Final = frozenset(
      "COMPONENT", "USE_SOURCE_PERMISSIONS", "CONFIGURATIONS", "EXCLUDE", "REGEX", "RUNTIME", "LIBRARY", "ARCHIVE",
      "FILES_MATCHING", "SCRIPTS_DESTINATION"]
 )  # fmt: skip
-_PROGRAMS: Final = re.compile(r"BIN_DESTINATION|^lib/|^bin$")  # folders of `ros2 run` and `rosrun`
+# folders in which `ros2 run` and `rosrun` look for programs
+_PROGRAMS: Final = re.compile(r"BIN_DESTINATION|^lib/|^bin$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,7 @@ class Cmake:
 
 
 def cmake(folder: Path, package: str) -> Cmake:
-    """Return what the `CMakeLists.txt` in a folder installs; nothing if there is no such file."""
+    """Return what the `CMakeLists.txt` in a folder installs; empty if there is no such file."""
     path = folder / "CMakeLists.txt"
     try:
         text = read_text(path, LARGEST) if path.is_file() else ""

@@ -16,8 +16,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-LARGEST: Final = 100_000  # limit on a computed value, characters or elements
-_WIDTH: Final = re.compile(r"\d{4,}")  # a format width that makes a huge string
+LARGEST: Final = 100_000  # limit on a computed value, in characters or elements
+_WIDTH: Final = re.compile(r"\d{4,}")  # a format width would make a huge string
 _BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,

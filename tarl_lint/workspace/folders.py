@@ -19,8 +19,8 @@ def folders(
 ) -> Iterator[tuple[Path, list[str]]]:
     """Yield the source folders with their files, sorted; skip build output.
 
-    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders `kept`; add the
-    markers that a person has placed to `ignored`.
+    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders in `kept`. Add
+    markers that a person (not a tool) has placed to `ignored`.
     """
     for looked, (folder, names, files) in enumerate(os.walk(root)):
         if looked >= LIMIT:
@@ -50,8 +50,8 @@ def is_ignored(folder: Path, root: Path) -> bool:
 def workspace_root(path: Path) -> Path | None:
     """Return the root of the workspace around a file or folder; None without a package or repository.
 
-    That is the `src` of a colcon or catkin workspace, else the outermost folder of the git repository, else the
-    folder that contains the outermost package.
+    The root is the `src` of a colcon or catkin workspace if there is one, else the top of the git repository, else
+    the folder that contains the outermost package.
     """
     around = (path, *path.parents) if path.is_dir() else tuple(path.parents)
     for folder in around:

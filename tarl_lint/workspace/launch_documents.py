@@ -18,7 +18,7 @@ _LISTS: Final = (
     "launch",
     "group",
     "timer",
-)  # keys of YAML with a list of elements, each a mapping with its tag as key
+)  # keys of YAML whose value is a list of elements; each element is a mapping with its tag as key
 
 
 def xml_tree(text: str) -> Element:
@@ -41,7 +41,7 @@ def xml_tree(text: str) -> Element:
 
 
 def xml_root(path: Path, problems: list[Problem]) -> Element | None:
-    """Return the root element of a file; None, with a problem recorded, if it cannot be read."""
+    """Return the root element of a file; if the file cannot be read, record a problem and return None."""
     try:
         return xml_tree(read_text(path, LARGEST))
     except UnreadableError as reason:
@@ -85,12 +85,12 @@ def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
 
 
 def _pairs(node: Any) -> list[tuple[Any, Any]]:
-    """Return the keys and values of a YAML node; none unless it is a mapping."""
+    """Return the keys and values of a YAML node; empty if it is not a mapping."""
     return node.value if node is not None and node.id == "mapping" else []
 
 
 def _named(node: Any, left: list[int]) -> list[Entity]:
-    """Return the elements of a list of mappings with one key each: the key is the tag."""
+    """Return the elements of a list of mappings; each mapping has one key, the tag."""
     found: list[Entity] = []
     for one in node.value if node.id == "sequence" else ():
         for key, value in _pairs(one):

@@ -128,7 +128,7 @@ def _condition(entity: Entity) -> dict[str, Condition]:
 
 
 def substitutions(text: str) -> Any:
-    """Parse the substitutions `$(…)` in a text; return a text without any unchanged."""
+    """Parse the substitutions `$(…)` in a text; a text without substitutions is returned unchanged."""
     parts: list[Any] = []
     place = 0
     while (start := text.find("$(", place)) >= 0:

@@ -12,7 +12,7 @@ ENDINGS: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".laun
 
 
 class NoLaunchFileError(Exception):
-    """No launch file, or more than one, has the name; the message is a sentence."""
+    """No launch file has the name, or more than one. The message is a sentence."""
 
 
 def is_launch_name(name: str) -> bool:

@@ -14,10 +14,12 @@ Kind = Literal["node", "container", "component"]
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A parameter, or several as YAML. `name` is absolute or begins with `~`; for YAML it is their namespace.
+    """One parameter, or several parameters as YAML.
 
-    `file` contains the value: the launch file, or the YAML file that it loads. `unknown` says that only the robot knows
-    the value; then both are None.
+    `name` is absolute or begins with `~`; for YAML, it is the namespace of the parameters.
+
+    `file` contains the value: the launch file, or the YAML file that it loads. `unknown` says that only the robot
+    knows the value; `value` and `yaml` are then None.
     """
 
     name: str
@@ -31,10 +33,10 @@ class Setting:
 class LaunchedNode:
     """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
-    The first `inherited` of its remappings are those of groups around it.
+    The first `inherited` remappings are those of the groups around the node.
 
-    Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is the condition of which only the
-    robot knows whether it holds, "" if the node is started in any case. For a component, `executable` is its class.
+    Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is a condition that only the robot can
+    evaluate; "" if the node is started in any case. For a component, `executable` is its class.
     """
 
     package: str
@@ -55,7 +57,7 @@ class LaunchedNode:
 class Launch:
     """A launch file with its included files. `settings` are the parameters outside of nodes.
 
-    `arguments` are the names of its launch arguments, `ros2` the generation of ROS that it is for.
+    `arguments` are the names of its launch arguments; `ros2` says whether it is for ROS 2.
     """
 
     file: Path

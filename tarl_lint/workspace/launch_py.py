@@ -58,7 +58,10 @@ class _File:
         self.file = Interpreter(path, self._models())
 
     def actions(self, problems: list[Problem]) -> Any:
-        """Return the launch description. Problems go to `problems`, now and when functions are called later."""
+        """Return the launch description.
+
+        Problems are added to `problems`, also later when the returned functions are called.
+        """
         self.file.problems = problems
         self.file.run()
         description = self.file.called("generate_launch_description")
@@ -189,12 +192,12 @@ def _configuration(variable_name: Any, *, default: Any = None, **_: Any) -> Conf
 
 
 def _as_bool(name: Any) -> Choice:
-    """Return the substitution of Navigation 2 for a launch argument that is a truth value."""
+    """Return the substitution of Navigation 2 for a boolean launch argument."""
     return Choice(Configuration(_hashed(name)), "True", "False")
 
 
 def _rewritten(source_file: Any, param_rewrites: Any = None, **_: Any) -> Any:
-    """Return a parameter file of Navigation 2, which is known where no value in it is replaced."""
+    """Return a parameter file of Navigation 2; its content is known if no value in it is replaced."""
     return source_file if not param_rewrites else Unknown(0, "RewrittenYaml")
 
 

@@ -17,7 +17,7 @@ from tarl_lint.workspace.launch_values import Context, Substitution, performed, 
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined
 
-LARGEST: Final = 1_000_000  # bytes, limit on a YAML file
+LARGEST: Final = 1_000_000  # limit on a YAML file, bytes
 DEEPEST: Final = 20  # limit on nested includes
 MOST: Final = 5_000  # limit on the actions of a launch file and its includes
 
@@ -83,7 +83,7 @@ class Runner:
                 self._problem(context, action.line, f"`{action.text}` is not followed")
 
     def _holds(self, action: Action, context: Context) -> tuple[bool, str]:
-        """Return whether an action is kept, and its condition if it is known only on the robot."""
+        """Return whether an action is kept; if its condition is known only on the robot, also that condition."""
         condition = action.values.get("condition")
         if condition is None:
             return True, ""

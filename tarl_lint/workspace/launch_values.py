@@ -1,6 +1,6 @@
 """Substitutions of ROS 2 launch files, and their texts.
 
-A text known only on the robot stays symbolic: it contains its dependency as `$(…)`, as in `/$(var robot)/odom`.
+A text known only on the robot stays symbolic: it contains what it depends on as `$(…)`, as in `/$(var robot)/odom`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ class Context:
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
     settings: tuple[Setting, ...] = ()  # parameters of all following nodes
-    asked: set[str] = field(default_factory=set)  # launch configurations that were read; shared by all groups
+    # names of the launch configurations that were read; shared by all groups
+    asked: set[str] = field(default_factory=set)
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
 
     @property
@@ -44,7 +45,7 @@ class Context:
         return known(performed(value, self))
 
     def inside(self) -> Context:
-        """Return the context of a group, whose settings do not leave it."""
+        """Return the context of a group; its settings do not apply outside of the group."""
         return Context(
             self.workspace,
             self.file,
@@ -199,7 +200,7 @@ class OnRobot(Substitution):
     default: Any = None
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the default, or the dependency as `$(…)`."""
+        """Return the default, or else what it depends on as `$(…)`."""
         return f"$({self.what})" if self.default is None else performed(self.default, context, depth)
 
 

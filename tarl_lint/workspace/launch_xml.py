@@ -16,7 +16,7 @@ from tarl_lint.workspace.ros_names import joined
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
 DEEPEST: Final = 20  # limit on nested includes
-LARGEST: Final = 1_000_000  # bytes, limit on a launch, text or YAML file
+LARGEST: Final = 1_000_000  # limit on a launch, text or YAML file, bytes
 MOST: Final = 5_000  # limit on the elements of a launch file and its includes
 
 
@@ -29,7 +29,7 @@ class _Place:
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters of all following nodes
     depth: int = 0
-    condition: str = ""  # enclosing condition, known only on the robot
+    condition: str = ""  # enclosing condition that is known only on the robot
 
 
 @dataclass
@@ -161,7 +161,7 @@ class _Reader:
         stated = text(element.get("name", ""))
         name = _parameter(
             above, stated.lstrip("/") if above == "~" else stated
-        )  # those of a node are private
+        )  # remappings of a node are private
         if "command" in element.attrib:
             raise SymbolicError(f"{name} is what a command prints on the robot")
         kind = element.get("type", "auto")
@@ -194,7 +194,10 @@ class _Reader:
         return text
 
     def _holds(self, element: Element, place: _Place) -> tuple[bool, str]:
-        """Return whether `if` and `unless` keep an element, and its condition if unknown; then it is kept."""
+        """Return whether `if` and `unless` keep an element.
+
+        If the condition is unknown, the element is kept; also return that condition.
+        """
         for key, wanted in (("if", True), ("unless", False)):
             if key in element.attrib:
                 try:

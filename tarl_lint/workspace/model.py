@@ -62,7 +62,7 @@ class Package:
 class Workspace:
     """All packages below a folder, sorted by name; of packages with the same name, the first counts.
 
-    `hidden`: names of further packages, each with the file, such as COLCON_IGNORE, that hides it.
+    `hidden` maps the names of further packages to the file, such as COLCON_IGNORE, that hides each of them.
     """
 
     root: Path
@@ -74,7 +74,7 @@ class Workspace:
         return next((one for one in self.packages if one.name == name), None)
 
     def absence(self, name: str) -> str:
-        """Return a sentence's part that says why there is no package of that name."""
+        """Return a clause that says why there is no package of that name."""
         marker = next((path for hidden, path in self.hidden if hidden == name), None)
         if marker is None:
             return f"the package {name} is not in the workspace"

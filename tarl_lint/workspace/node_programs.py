@@ -12,7 +12,7 @@ from tarl_lint.workspace.model import Workspace
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """The file that a node runs, and the function that is its entry point, "" if the file itself is run."""
+    """The file that a node runs, and the function that is its entry point; "" if the file itself is run."""
 
     path: Path
     entry: str = ""
@@ -21,7 +21,7 @@ class Program:
 def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> Program | str:
     """Return the program of a node, or the reason why there is none. `files` are the Python files of the workspace.
 
-    A script that the package installs from a place where it does not exist is looked for in the whole package, as
+    If the package installs a script from a place where it does not exist, the whole package is searched for it, as
     `rosrun` does.
     """
     if node.kind != "node":

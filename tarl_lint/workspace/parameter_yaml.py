@@ -1,4 +1,4 @@
-"""The parameters that YAML of a launch file gives a node: plain YAML of ROS 1, files with sections by node of ROS 2."""
+"""The parameters that YAML in a launch file gives a node: plain YAML in ROS 1, files with sections in ROS 2."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class NoYamlError(Exception):
 
 
 def content(setting: Setting) -> Any:
-    """Return the parsed YAML of a setting; None if it has none.
+    """Return the parsed YAML of a setting; None if it has no YAML.
 
     Raises NoYamlError without PyYAML, and UnreadableError with the reason if the text is not YAML.
     """
@@ -43,9 +43,11 @@ def _parsed(text: str) -> Any:
 
 
 def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]]]:
-    """Yield the sections of a ROS 2 parameter file: the pattern of node names, and the parameters; none for others.
+    """Yield the sections of a ROS 2 parameter file: the pattern of node names, and the parameters.
 
-    Namespaces may be part of the key (`/robot/gate`), or keys around it.
+    Other files have none.
+
+    Namespaces may be part of the key (`/robot/gate`), or enclosing keys.
     """
     for key, value in parsed.items() if isinstance(parsed, dict) and above.count("/") < DEEPEST else ():
         if not isinstance(value, dict):
@@ -73,9 +75,10 @@ def is_wildcard(pattern: str) -> bool:
 
 
 def of_node(parsed: Mapping[Any, Any], node: str) -> dict[Any, Any]:
-    """Return the parameters that parsed YAML has for a node, dotted names for ROS 2; later sections take precedence.
+    """Return the parameters that parsed YAML has for a node (dotted names for ROS 2); later sections win.
 
-    A file without sections has the same parameters for every node. Without a name, a node gets the only section.
+    A file without sections has the same parameters for every node. A node without a name gets the section if there is
+    only one.
     """
     found = list(sections(parsed))
     if not found:

@@ -41,7 +41,7 @@ class _Found:
 
 
 def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
-    """Return the description of the workspace below a folder. Nothing is executed, nothing is written.
+    """Return the description of the workspace below a folder. Nothing is executed or written.
 
     Packages hidden by a marker such as COLCON_IGNORE are skipped, unless they contain one of the folders `kept`.
     """
@@ -77,7 +77,7 @@ def _package(found: _Found) -> Package:
     problems: list[Problem] = []
     if found.declared:
         declared, problems = manifest(found.folder)
-    else:  # definitions outside of packages: use the folder's name as package name
+    else:  # definitions outside of packages get the folder's name as package name
         declared = Manifest(found.folder.name, "unknown")
     executables, modules, more = installed(found.folder, declared, found.scripts)
     return Package(

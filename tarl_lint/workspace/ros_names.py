@@ -17,9 +17,10 @@ def resolved(name: str, namespace: str, node: str) -> str:
 
 
 def remapped(name: str, namespace: str, node: str, remaps: tuple[tuple[str, str], ...]) -> str:
-    """Return the absolute name under which a node's topic or service is known after remapping.
+    """Return the absolute name of a node's topic or service after remapping.
 
-    Both sides of a remapping are resolved as the node's own names; of several for one name, the last counts.
+    Both sides of a remapping are resolved like the node's own names. If several remap the same name, the last one
+    counts.
     """
     table = {resolved(old, namespace, node): resolved(new, namespace, node) for old, new in remaps}
     whole = resolved(name, namespace, node)

@@ -1,4 +1,4 @@
-"""Interpret a file's constant statements: assignments, loops, functions, `if` with known tests.
+"""Interpret the constant statements of a file: assignments, loops, functions, and `if` with known tests.
 
 Neither the file nor its imports are executed; the caller supplies models of library functions.
 """
@@ -157,7 +157,7 @@ class Interpreter(Evaluator):
             self.problem(
                 statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant"
             )
-            self._body(statement.body, names)  # if unknown, keep the node instead of losing it
+            self._body(statement.body, names)  # if the test is unknown, keep the node instead of losing it
         else:
             self._body(statement.body if test else statement.orelse, names)
 
@@ -219,7 +219,7 @@ class Interpreter(Evaluator):
 
 
 def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
-    """Return the syntax tree of a file; None, with a problem recorded, if it cannot be read or parsed."""
+    """Return the syntax tree of a file; if it cannot be read or parsed, record a problem and return None."""
     try:
         return ast.parse(read_bytes(file, LARGEST))
     except UnreadableError as reason:

@@ -20,19 +20,19 @@ _TRUTH: Final = {"true": True, "false": False}
 
 
 class SymbolicError(Exception):
-    """A text depends on values known only on the robot; the message is the reason."""
+    """A text depends on values that are known only on the robot. The message is the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """Names for substitutions: the file's arguments (None: no value), its folder, and the packages."""
+    """The names for substitutions: the arguments of the file (None: no value), its folder, and the packages."""
 
     workspace: Workspace
     file: Path
     arguments: Mapping[str, str | None]
 
     def text(self, text: str) -> str:
-        """Return a text with its substitutions replaced. Raises SymbolicError if one has no value."""
+        """Return a text with its substitutions replaced. Raises SymbolicError if a substitution has no value."""
         if text.startswith("$(eval ") and text.endswith(")"):
             return str(self._evaluated(text[len("$(eval ") : -1]))
         return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
