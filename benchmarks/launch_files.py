@@ -6,7 +6,7 @@ Each FOLDER contains checkouts, one folder per repository. `--ros1` is an interp
 `--ros2` is one with the sources of launch, launch_xml, launch_yaml and launch_ros. Use both in a disposable
 environment, since they execute launch files. Arguments without a default get the value `true`. The figures are the
 shares of nodes (package, program, namespace, name), remappings and parameters on which both agree. Outputs of
-commands, files outside the checkout, and launch files that the original refuses are counted separately.
+commands, files outside the checkout, and launch files that roslaunch or launch rejects are counted separately.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The result of roslaunch for launch files: `python3 ros1.py < request > answer`, with Debian's python3-roslaunch.
 
-Nothing is started. Commands of `<param command>` are not run, and files and packages that are not there are skipped, as
-in a workspace with stub packages; environment variables have `ENV_` and their name as value.
+Nothing is started. Commands of `<param command>` are not run. Missing files and packages are skipped, as in a
+workspace with stub packages. Environment variables have `ENV_` and their name as value.
 """
 
 import json

@@ -1,14 +1,15 @@
-"""Bring the real nodes at their commits, each beside its world: nothing of them is kept in this repository.
+"""Copy the real nodes at their commits next to their worlds. This repository does not contain the nodes.
 
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
 
-PLACE is where repositories are: a folder of clones or checkouts named owner/name or owner+name (a checkout may lack its
-`.git`), or the start of a URL to clone from, such as https://github.com. Each file must be the blob that `nodes.json`
-names, whatever it came from. TARGET/NAME then holds the world's test and, at its path in the repository, the node:
+PLACE is where the repositories are: a folder of clones or checkouts named owner/name or owner+name (a checkout may
+lack its `.git`), or the beginning of a URL to clone from, such as https://github.com. Each file must be the blob that
+`nodes.json` names, whatever its source. TARGET/NAME then holds the world's test and, at its path in the repository,
+the node:
 
     cd TARGET/NAME && pytest --tarl-record && pytest --tarl-online --tarl-repair
 
-With `--by-hand` the nodes hold a repair that a person found, to see that there is one.
+With `--by-hand`, the nodes contain a repair that a person found, which shows that a repair exists.
 """
 
 from __future__ import annotations
@@ -35,9 +36,7 @@ class Node:
     commit: str
     path: str
     blob: str
-    by_hand: list[
-        list[str]
-    ]  # a text of the file, and what to write in its place, which brings the reward back
+    by_hand: list[list[str]]  # a text in the file, and the replacement that restores the reward
 
 
 def nodes() -> list[Node]:
@@ -51,7 +50,7 @@ def blob(text: bytes) -> str:
 
 
 def text_of(node: Node, source: str, scratch: Path) -> bytes:
-    """Return the node's text. Raises SystemExit where it is not there or is another one."""
+    """Return the node's text. Raises SystemExit if the file is missing or differs."""
     place = Path(source)
     found = [place / node.repo, place / node.repo.replace("/", "+")] if place.is_dir() else []
     plain = next((folder / node.path for folder in found if (folder / node.path).is_file()), None)
@@ -79,7 +78,7 @@ def repaired(node: Node, text: bytes) -> bytes:
 
 
 def cloned(node: Node, source: str, scratch: Path) -> str:
-    """Clone a repository once, without a work tree, and return where it is."""
+    """Clone a repository once, without a work tree, and return its folder."""
     target = scratch / node.repo.replace("/", "+")
     if not target.exists():
         command = ["git", "clone", "--quiet", "--bare", f"{source.rstrip('/')}/{node.repo}", str(target)]
@@ -89,7 +88,7 @@ def cloned(node: Node, source: str, scratch: Path) -> str:
 
 
 def main() -> None:
-    """Write each node beside its world."""
+    """Write each node into the folder of its world."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("target", type=Path)
     parser.add_argument(

@@ -85,7 +85,7 @@ def _executed(
 
 
 def _hears(store: Store, last: Run) -> bool:
-    """Return whether other roots may store the same values as at the call's first and last waits."""
+    """Return whether other roots may still store the values that they could store when the call last ran."""
     heard = store.heard()
     if last.heard is not heard and last.heard == heard:
         last.heard = heard

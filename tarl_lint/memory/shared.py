@@ -52,7 +52,7 @@ class Shared:
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     dirty: set[Root] = field(default_factory=set)
-    edition: int = 0  # number of changes so far of classes, `from … import *` and `__dict__`
+    edition: int = 0  # incremented when a class, a `from … import *` or a `__dict__` changes
 
     def read(self, key: Key, root: Root) -> None:
         """Register a root as reader of a key."""

@@ -43,8 +43,8 @@ def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways t
 class Store:
     """The state of one root's run: writes go to the top layer, reads fall through to the shared memory.
 
-    `now` is the union of all layers, so that a read takes one look-up; `hidden` holds for each layer the former
-    values of its keys, None if unset.
+    `now` is the union of all layers, so that a read takes one look-up. For each layer, `hidden` has the values that
+    its keys had before; None if unset.
     """
 
     shared: Shared

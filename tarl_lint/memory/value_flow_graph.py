@@ -40,7 +40,7 @@ class Place:
 class Arrival:
     """The nodes by which items arrive.
 
-    `consulted` maps each carrier asked to the number of nodes it had passed on.
+    `consulted` maps each carrier that was consulted to the number of nodes that it had passed on.
     """
 
     nodes: Nodes

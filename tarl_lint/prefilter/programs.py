@@ -31,8 +31,8 @@ def programs(
     """Return the modules of each program, in the order of the group. A module may be part of several programs.
 
     `endpoints` are the paths of the modules that may subscribe or publish. Programs stay together if they share one
-    of these paths. They also stay together if they share any module and one of the files is imported by no program,
-    or loads modules by name.
+    of these paths. They also stay together if they share any module, and one of them loads modules by name or is not
+    clearly a program.
     """
     imported = {module.path for one in group for module in imports[one.path]}
     runs = [_reached(one, imports) for one in group if one.path not in imported]

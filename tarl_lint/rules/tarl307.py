@@ -98,7 +98,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _lacks(instance: Instance, name: str) -> bool:
-    """Return whether a node surely has no such parameter."""
+    """Return whether a node certainly has no such parameter."""
     interface = instance.interface
     if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
         return False

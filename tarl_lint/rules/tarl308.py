@@ -145,7 +145,7 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _unmatched(instance: Instance, old: str) -> bool:
-    """Return whether a node surely uses no such name."""
+    """Return whether a node certainly uses no such name."""
     interface = instance.interface
     last = old.strip("~/").rpartition("/")[2]
     if (

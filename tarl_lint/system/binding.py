@@ -98,14 +98,14 @@ def undetermined(interface: Interface) -> bool:
 
 
 def with_prints(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters with the fingerprints of the general one, which depend on no launch."""
+    """Return an interface for known parameters, with the fingerprints that its flows have without a launch file."""
     prints = {_ends(one): one.fingerprint for one in every.flows}
     flows = (replace(one, fingerprint=prints.get(_ends(one), one.fingerprint)) for one in decided.flows)
     return replace(decided, flows=tuple(flows))
 
 
 def with_names_in_code(decided: Interface, every: Interface) -> Interface:
-    """Return an interface for known parameters that also has the names in the code, from the general interface."""
+    """Return an interface for known parameters that also has the names as they are in the code."""
     written = {(one.role, one.span): one.written for one in every.endpoints if one.written}
     ends = (replace(one, written=written.get((one.role, one.span), one.written)) for one in decided.endpoints)
     return replace(decided, endpoints=tuple(ends))

@@ -109,7 +109,7 @@ def parameter(ctx: Interpreter, it: Invocation) -> Value:
 def _listed(
     ctx: Interpreter, it: Invocation, name: Value, default: Value, slot: Hashable = ()
 ) -> Value | None:
-    """Return the list or mapping that the launch, or else the default, gives a parameter; None without one."""
+    """Return the value of a parameter that is a list or mapping, from the launch file or its default; else None."""
     names = name.texts()
     given = launched.value_of(ctx, names[0]) if len(names) == 1 else None
     if given is DEFAULT and default.pts and ctx.launched is not None:

@@ -267,7 +267,7 @@ def call_later(ctx: Interpreter, target: Obj, values: Sequence[Value]) -> None:
 
 
 def _for_each_object(root: Root) -> bool:
-    """Return whether a thread or framework runs a method, which it does for each object of a class."""
+    """Return whether a thread or framework runs a method, and thus runs it for each object of the class."""
     return root.kind == "thread" or (isinstance(root.key, tuple) and root.key[0] == "framework")
 
 

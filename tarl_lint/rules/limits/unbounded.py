@@ -28,7 +28,7 @@ class Magnitudes:
         self.free = self._follow()
 
     def computed(self, sink: SinkRecord) -> list[Span]:
-        """Return the last statements that compute the unlimited values of a published message."""
+        """Return the statements that last compute the unlimited values of a published message."""
         found: dict[Span, None] = {}
         seen = set(sink.nodes & self.free)
         pending = list(seen)

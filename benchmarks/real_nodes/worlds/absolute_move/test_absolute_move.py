@@ -39,7 +39,7 @@ class Floor:
         return self.asked > 3
 
     def publish(self, bus):
-        """Tell odometry and floor."""
+        """Publish odometry and floor."""
         odom = Odometry()
         odom.pose.pose.position.x, odom.pose.pose.position.y = self.x, self.y
         heading = self.heading + self.rng.normal(0.0, 0.001)

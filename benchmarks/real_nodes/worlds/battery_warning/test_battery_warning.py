@@ -1,7 +1,7 @@
 """Fetch's battery_warning.py sends a mail when the battery is low. An aged battery empties quickly at the end.
 
-The robot patrols until somebody has read the mail and calls it home. The two messages of this folder are the fields
-that the node uses; `sound_play` is a speaker that takes no time.
+The robot patrols until somebody has read the mail and calls it home. The two message types of this folder have the
+fields that the node uses; `sound_play` is a speaker that takes no time.
 """
 
 import sys
@@ -37,7 +37,7 @@ class Shift:
         return self.mailed and self.way <= 0.0
 
     def publish(self, bus):
-        """Tell the state of the battery."""
+        """Publish the state of the battery."""
         level = max(0.0, min(1.0, self.charge + self.rng.normal(0.0, 0.002)))
         bus.publish(
             "/battery_state",

@@ -16,7 +16,7 @@ TIME_BOUND = 30.0
 
 
 class Yard:
-    """A ball that rolls across; `zoom` is the lens against the usual one."""
+    """A ball that rolls across; `zoom` is the magnification of the lens relative to the usual one."""
 
     def __init__(self, rng, zoom):
         self.rng = rng
@@ -26,7 +26,7 @@ class Yard:
         self.rolls = rng.uniform(-0.1, 0.1)
         self.speed, self.turn = 0.0, 0.0
         self.time, self.hidden = 0.0, 0.0
-        self.pictures = [0.0] * 3  # on their way: the camera takes three periods
+        self.pictures = [0.0] * 3  # images on their way: the camera takes three periods
         self.failure = ""
 
     @property
@@ -40,7 +40,7 @@ class Yard:
         return self.away < 0.6
 
     def publish(self, bus):
-        """Tell what the camera sees: from -1 at the left to 1 at the right edge, and which lens is on."""
+        """Publish what the camera sees, from -1 at the left edge to 1 at the right edge, and which lens is mounted."""
         bearing = math.atan2(self.ball[1] - self.y, self.ball[0] - self.x) - self.heading
         seen = -self.zoom * math.tan(max(-1.4, min(1.4, bearing))) / 0.8 + self.rng.normal(0.0, 0.01)
         self.pictures.append(seen)

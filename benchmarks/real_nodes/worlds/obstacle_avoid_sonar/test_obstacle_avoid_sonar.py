@@ -13,7 +13,7 @@ NODE = "donkey_car/src/obstacle_avoid_sonar.py"
 DT = 0.2
 PILLAR = 0.2  # its radius, m
 CAR = 0.1
-CONE = 0.45  # half of a sonar's, rad
+CONE = 0.45  # half of a sonar's field of view, rad
 GOAL = 5.0
 TIME_BOUND = 25.0
 SONARS = (("/dkcar/sonar/0", 0.7, -0.5), ("/dkcar/sonar/1", 0.0, 0.0), ("/dkcar/sonar/2", -0.7, 0.5))
@@ -42,7 +42,7 @@ class Path:
         return math.hypot(self.pillar[0] - self.x, self.pillar[1] - self.y) - PILLAR
 
     def publish(self, bus):
-        """Tell what three sonars hear; the node tells them apart by the sign of their field of view."""
+        """Publish what three sonars measure; the node distinguishes them by the sign of their field of view."""
         bearing = math.atan2(self.pillar[1] - self.y, self.pillar[0] - self.x) - self.heading
         for topic, angle, view in SONARS:
             heard = self.gap if abs(bearing - angle) < CONE else 3.0

@@ -31,7 +31,7 @@ class Hall:
         self.failure = ""
 
     def publish(self, bus):
-        """Tell what the lidar sees and the operator wants."""
+        """Publish what the lidar measures and the operator commands."""
         ranges = []
         for degree in range(360):
             cos = math.cos(math.radians(degree))

@@ -31,7 +31,7 @@ class Yard:
         self.failure = ""
 
     def publish(self, bus):
-        """Send odometry: the heading is a gyroscope's, the distance is counted by nobody."""
+        """Publish odometry: a gyroscope measures the heading, but no sensor measures the distance."""
         odom = Odometry()
         heading = self.heading + self.rng.normal(0.0, 0.0005)
         odom.pose.pose.orientation.z, odom.pose.pose.orientation.w = (

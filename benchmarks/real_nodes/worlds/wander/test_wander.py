@@ -13,7 +13,7 @@ Float32 = message_type("std_msgs/Float32")
 NODE = "wanderbot/wander.py"
 DT = 0.1
 TIME = 25.0
-ROOM = 3.5  # half of its width, m
+ROOM = 3.5  # half of the room's width, m
 RADIUS = 0.25
 RAYS = [math.radians(angle) for angle in range(-40, 41, 10)]
 
@@ -39,7 +39,7 @@ class Room:
         return min(along, across)
 
     def publish(self, bus):
-        """Tell what scanner and scales see."""
+        """Publish what scanner and scales measure."""
         bus.publish("/load", Float32(data=self.load))
         bus.publish("/scan", LaserScan(ranges=[self.ray(a) + self.rng.normal(0.0, 0.01) for a in RAYS]))
 
