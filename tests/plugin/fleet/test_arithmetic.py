@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from math import erfc, inf, log2, sqrt
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -321,3 +324,49 @@ def test_the_inverse_of_a_singular_matrix() -> None:
     assert small == pytest.approx(1e10 * np.eye(2))
     nothing, rank = components._inverse(np.zeros((2, 2)))
     assert (rank, nothing.tolist()) == (0, [[0.0, 0.0], [0.0, 0.0]])
+
+
+def test_a_map_has_the_missions_of_a_robot_from_its_onset_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, int]] = []
+
+    def following(*arguments: Any) -> Iterator[str]:
+        asked.extend(arguments[-1])
+        return iter(["first", "second", "third"])
+
+    database: Any = SimpleNamespace(columns=lambda _, name: {"first": ints(10), "ends": ints(int(name))})
+    monkeypatch.setattr(residual_maps, "following", following)
+    monkeypatch.setattr(residual_maps, "_map", lambda name, sample, _: (name, sample))
+    told = [status(evidence(2.0, mission)) for mission in (1, 4, 99)]
+    some = [robot(name, 5.0, 1.0, one) for name, one in zip(("20", "30", "40"), told, strict=True)]
+    nothing: Any = None
+    found = residual_maps.residual_maps(database, nothing, nothing, fixture(), nothing, some)
+    assert asked == [(10, 20), (13, 30), (39, 40)]  # one mission at least
+    assert found == [("20", "first"), ("30", "second"), ("40", "third")]
+
+
+def test_robots_with_most_evidence_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared: list[str] = []
+
+    def maps(*arguments: Any) -> list[ResidualMap]:
+        compared.extend(one.name for one in arguments[-1])
+        return [ResidualMap(one.name, np.array([9.0]), np.array([0.01])) for one in arguments[-1]]
+
+    monkeypatch.setattr(clusters, "MOST", 3)
+    monkeypatch.setattr(clusters, "designed", lambda _: SimpleNamespace(variance=np.array([0.0, 0.0])))
+    monkeypatch.setattr(clusters, "residual_maps", maps)
+    every = [
+        robot("a", 1.0, 2.0),
+        robot("b", 9.0, 1.0),
+        robot("c", 1.0, 5.0),
+        robot("d", 2.0, 2.0),
+        robot("e", 5.0, 1.0),
+    ]
+    named = robots.Robots(0.1, tuple(every), tuple(every[:3]), tuple(every[2:]))
+    recording: Any = SimpleNamespace(sample=SimpleNamespace(cells=((0,),)))
+    nothing: Any = None
+    found = clusters.clustered(nothing, nothing, nothing, recording, named, 0.05)
+    assert compared == ["b", "c", "e"]
+    assert found.left_out == 2
+    assert [one.robots for one in found.found] == [("b", "c", "e")]
+    none = clusters.clustered(nothing, nothing, nothing, recording, robots.Robots(0.1, (), (), ()), 0.05)
+    assert none == clusters.Clusters()

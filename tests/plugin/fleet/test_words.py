@@ -187,7 +187,7 @@ def test_the_missions_of_one_robot_with_the_lowest_reward() -> None:
 def test_notes_state_each_condition_once_it_holds() -> None:
     quiet = [*words.notes(answer())]
     assert len(quiet) == 2
-    groups = (group("a", compared=39, outside=1200), group("b", outside=34))
+    groups = (group("a", compared=39, outside=1200), group("b", outside=34), group("c"))
     found = [*words.notes(answer(groups=groups, copies=1001, left_out={"of another test": 2000}))][2:]
     assert found == [
         "note: verdicts compare 1,000 missions of a larger group, chosen by their digests.",
