@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint.interpret import context_selection, literals, nullness, replay, shared_contexts
-from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE
+from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_LIMIT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
@@ -54,19 +54,21 @@ def invoke(
 
     If the call passes no data into a module that neither subscribes nor publishes, its budget is limited.
     """
-    before, start = ctx.work.leisure, ctx.work.spent
+    before, start = ctx.work.call_limit, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
         ctx.store.reads.whole = False
         return _again(ctx, closure, arguments)
     if matters:
-        ctx.work.leisure = None
+        ctx.work.call_limit = None
     elif before is None:
-        ctx.work.leisure = start + max(0, min(LEISURE, ALL_LEISURE - ctx.work.idled))
+        ctx.work.call_limit = start + max(
+            0, min(IRRELEVANT_CALL_LIMIT, IRRELEVANT_CALLS_LIMIT - ctx.work.idled)
+        )
     result = _invoke(ctx, closure, arguments, caller, call, owner)
     if not matters and before is None:
         ctx.work.idled += ctx.work.spent - start
-    ctx.work.leisure = before + ctx.work.spent - start if matters and before is not None else before
+    ctx.work.call_limit = before + ctx.work.spent - start if matters and before is not None else before
     return result
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from tarl_lint.interpret import shared_contexts
-from tarl_lint.interpret.budget import MANY, MAX_CALLS, MAX_FRAMES, OFTEN
+from tarl_lint.interpret.budget import MAX_CALLS, MAX_FRAMES, SEPARATE_CALLS, SEPARATE_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
@@ -29,7 +29,11 @@ def make_frame(
     receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
     statement = caller.statement.id if caller.statement is not None else -1
     own = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
-    if ctx.work.executed > MANY and runs > OFTEN and shared_contexts.may_share(arguments):
+    if (
+        ctx.work.executed > SEPARATE_STATEMENTS
+        and runs > SEPARATE_CALLS
+        and shared_contexts.may_share(arguments)
+    ):
         ctx.widened.add(own)
     ctx.store.reads.ask(ctx.widened.__contains__, own)
     shares = own in ctx.widened

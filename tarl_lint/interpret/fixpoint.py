@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tarl_lint.interpret import entry_points, statements, wiring
-from tarl_lint.interpret.budget import HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.interpret.budget import (
+    IRRELEVANT_CALL_LIMIT,
+    LARGE_RUN,
+    LATE_RUN_LIMIT,
+    MAX_ROUNDS,
+    MAX_STATEMENTS,
+    PROGRAM_LIMIT,
+)
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.lower_statements import lower_module
@@ -95,11 +102,14 @@ class Linker(Interpreter):
             batch = sorted(self.pending, key=self._turn)
             if not batch:
                 return
-            small = [root for root in batch if self.took.get(root, 0) < LARGE]
+            small = [root for root in batch if self.took.get(root, 0) < LARGE_RUN]
             for root in small or batch:
                 self.pending.pop(root, None)
                 late = self.hurried(root.program)
-                if late and (self.took.get(root, 0) > HASTE or self.work.totals[root.program] > 2 * PATIENCE):
+                if late and (
+                    self.took.get(root, 0) > LATE_RUN_LIMIT
+                    or self.work.totals[root.program] > 2 * PROGRAM_LIMIT
+                ):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
@@ -120,7 +130,7 @@ class Linker(Interpreter):
         self.store = Store(self.shared, root, gather=self.gathered)
         self.graph.reads = self.store.reads
         self.stack = []
-        self.work.begin(HASTE if self.hurried(root.program) else MAX_STATEMENTS)
+        self.work.begin(LATE_RUN_LIMIT if self.hurried(root.program) else MAX_STATEMENTS)
         self.graph.edges = self.work.edges_of.get(root.program, 0)
         self.graph.made = self.work.nodes_of.get(root.program, 0)
         self.delivered = frozenset()
@@ -163,7 +173,7 @@ class Linker(Interpreter):
             frame.root_waits = True
             self.stack.append(frame)
             if not program.takes_part:
-                self.work.leisure = LEISURE + len(program.body)
+                self.work.call_limit = IRRELEVANT_CALL_LIMIT + len(program.body)
             statements.run(self, frame)
 
         self.ops.add_root(self, root, run)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
-from tarl_lint.interpret.budget import LOOKS
+from tarl_lint.interpret.budget import READS_PER_STATEMENT
 from tarl_lint.interpret.operations import Operations
 from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
@@ -136,8 +136,8 @@ class Interpreter:
 
     def count(self, looks: int = 0) -> None:
         """Convert object reads and graph operations to statements, and add them to the work."""
-        self.work.spent += (looks + self.graph.asked) // LOOKS
-        self.graph.asked %= LOOKS
+        self.work.spent += (looks + self.graph.asked) // READS_PER_STATEMENT
+        self.graph.asked %= READS_PER_STATEMENT
 
     def look(self, objects: Iterable[Obj]) -> None:
         """Note that the running call depends on the meaning, fields and data of these objects, by their stamps."""

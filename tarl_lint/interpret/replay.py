@@ -131,7 +131,7 @@ def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
     """Return whether all reads of a run are unchanged."""
     if last.mode != mode or last.passed != passed:
         return False
-    if ctx.work.leisure is not None and ctx.work.spent + last.cost > ctx.work.leisure:
+    if ctx.work.call_limit is not None and ctx.work.spent + last.cost > ctx.work.call_limit:
         return False
     reads, store = last.reads, ctx.store
     if reads.waits and not _hears(store, last):

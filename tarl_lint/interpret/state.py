@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from tarl_lint.interpret.budget import MAX_STATEMENTS, PATIENCE
+from tarl_lint.interpret.budget import MAX_STATEMENTS, PROGRAM_LIMIT
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import Key
@@ -48,7 +48,7 @@ class Work:
     saved: int = 0  # in replayed calls, included in `spent`
     idled: int = 0  # in calls into modules without ROS calls, included in `spent`
     limit: int = MAX_STATEMENTS
-    leisure: int | None = (
+    call_limit: int | None = (
         None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
     )
     activations: dict[ir.Function, int] = field(default_factory=dict)  # executions in this run, by function
@@ -70,9 +70,9 @@ class Work:
     def begin(self, limit: int) -> None:
         """Start counting for a run of a root."""
         self.spent = self.saved = self.idled = 0
-        self.limit, self.leisure = limit, None
+        self.limit, self.call_limit = limit, None
         self.activations.clear()
 
     def exhausted(self, program: str) -> bool:
         """Return whether a program has used its budget."""
-        return self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
+        return self.totals.get(program, 0) > PROGRAM_LIMIT or self.edges_of.get(program, 0) >= MAX_EDGES

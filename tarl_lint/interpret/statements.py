@@ -14,7 +14,7 @@ from tarl_lint.interpret import (
     literals,
     nullness,
 )
-from tarl_lint.interpret.budget import LOOKS
+from tarl_lint.interpret.budget import READS_PER_STATEMENT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.nullness import RETURNED
@@ -48,7 +48,7 @@ def block(ctx: Interpreter, body: Sequence[ir.Stmt], frame: Frame) -> bool:
     for statement in body:
         frame.statement = statement
         ctx.work.spent += 1
-        if ctx.graph.asked > LOOKS:
+        if ctx.graph.asked > READS_PER_STATEMENT:
             ctx.count()
         if ctx.watch is not None:
             ctx.watch(frame, statement)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Set
 
-from tarl_lint.interpret.budget import EXCHANGED
+from tarl_lint.interpret.budget import VALUES_PER_STATEMENT
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root
@@ -30,7 +30,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
     reads.wait(len(store.heard()))
     reads.keys.update((heeds & store.now.keys()) - reads.written)
     changed = show(ctx)
-    ctx.work.spent += len(changed) // EXCHANGED
+    ctx.work.spent += len(changed) // VALUES_PER_STATEMENT
     for key in changed:
         news = store.others(key) if key in heeds else None
         if news is None:

@@ -25,8 +25,8 @@ HELPERS = [
 @pytest.fixture
 def sharing(monkeypatch):
     """Make all calls of a function share a context."""
-    monkeypatch.setattr(context_selection, "MANY", -1)
-    monkeypatch.setattr(context_selection, "OFTEN", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_CALLS", -1)
 
 
 def pairs(unit: Path) -> set[tuple[object, object]]:
@@ -42,8 +42,8 @@ def linked(text: str) -> Linker:
 @pytest.mark.parametrize("unit", HELPERS, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
 def test_no_pair_of_source_and_sink_is_missed(unit, monkeypatch):
     apart = pairs(unit)
-    monkeypatch.setattr(context_selection, "MANY", -1)
-    monkeypatch.setattr(context_selection, "OFTEN", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_CALLS", -1)
     assert apart <= pairs(unit)
 
 
@@ -64,8 +64,8 @@ rospy.Subscriber("in", F, on)
 def test_data_crosses_callers_only_if_they_share_a_context(tmp_path, monkeypatch):
     (tmp_path / "node.py").write_text(TWO)
     assert [f.sink.topics for f in analyse([tmp_path]).flows] == [("out",)]
-    monkeypatch.setattr(context_selection, "MANY", -1)
-    monkeypatch.setattr(context_selection, "OFTEN", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", -1)
+    monkeypatch.setattr(context_selection, "SEPARATE_CALLS", -1)
     assert [f.sink.topics for f in analyse([tmp_path]).flows] == [("out",), ("clean",)]
 
 
@@ -121,7 +121,7 @@ def tree_of_calls(depth: int, width: int) -> str:
 
 
 def test_programs_with_exponentially_many_contexts_are_analysed_completely(monkeypatch):
-    monkeypatch.setattr(context_selection, "MANY", 300)
+    monkeypatch.setattr(context_selection, "SEPARATE_STATEMENTS", 300)
     machine = linked(tree_of_calls(depth=8, width=4))
     assert not machine.cut
     assert machine.widened

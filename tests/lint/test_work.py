@@ -11,7 +11,7 @@ from tarl_lint import engine
 from tarl_lint.cli import main
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret import fixpoint
-from tarl_lint.interpret.budget import LEISURE, MAX_GENERATIONS, PATIENCE
+from tarl_lint.interpret.budget import IRRELEVANT_CALL_LIMIT, MAX_GENERATIONS, PROGRAM_LIMIT
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import Obj
@@ -19,7 +19,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.settings.config import Config
 
-MOST = 2.5 * PATIENCE  # statements, limit for any program
+MOST = 2.5 * PROGRAM_LIMIT  # statements, limit for any program
 
 
 def work(text: str, *others: str, thorough: bool = False) -> Linker:
@@ -111,7 +111,7 @@ def test_ignoring_values_without_a_source_does_not_change_the_flows():
 
 
 def test_incomplete_programs_are_counted(in_directory, capsys, monkeypatch):
-    monkeypatch.setattr(fixpoint, "PATIENCE", 20_000)
+    monkeypatch.setattr(fixpoint, "PROGRAM_LIMIT", 20_000)
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 5_000)
     in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
     main(["--no-cache"])
@@ -141,7 +141,7 @@ rospy.Subscriber("a", Float64, on)
 
 def test_calls_without_data_into_irrelevant_modules_have_a_small_budget():
     given, idle = (work(USER.format(start=50, given=g), TOOL).total for g in ("msg.data", "1"))
-    assert idle < LEISURE + 100 < given
+    assert idle < IRRELEVANT_CALL_LIMIT + 100 < given
 
 
 def test_calls_with_data_are_followed_everywhere():

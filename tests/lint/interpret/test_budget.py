@@ -37,10 +37,10 @@ def test_a_program_within_its_budget_is_not_cut():
 
 def test_after_its_budget_a_program_gets_few_statements_in_each_run(monkeypatch):
     whole = executed()
-    monkeypatch.setattr(state, "PATIENCE", 0)
+    monkeypatch.setattr(state, "PROGRAM_LIMIT", 0)
     assert executed() == whole
     assert list(run(CALLS, HELPERS).cut) == ["node.py"]
-    monkeypatch.setattr(fixpoint, "HASTE", 10)
+    monkeypatch.setattr(fixpoint, "LATE_RUN_LIMIT", 10)
     assert 10 <= executed() < whole - 30
 
 
