@@ -1,12 +1,13 @@
 """TARL306: a loop goes on publishing commands when its messages stop.
 
 A callback stores what it receives, and a loop or timer publishes a command from it again and again. If the messages
-stop because a sensor hangs, a cable breaks or a node crashes, the robot goes on with the last command. For this
-reason, a Pioneer robot collided with expensive equipment (https://github.com/amor-ros-pkg/rosaria/pull/51). Remember
-when the last message arrived, and stop when it is too old.
+stop because a sensor hangs, a cable breaks or a node crashes, the robot continues with the last command. For this
+reason, a Pioneer robot collided with expensive equipment (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the
+time of the last message, and stop the robot when the message is too old.
 
-Nothing is reported if the program reads the time anywhere, resets the values that the callback stored, or contains
-words such as `timeout`, `last_` and `counter`, which suggest that it detects old messages in another way.
+The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored. It also
+reports nothing if the program contains words such as `timeout`, `last_` and `counter`, because they suggest that it
+detects old messages in another way.
 """
 
 from __future__ import annotations
