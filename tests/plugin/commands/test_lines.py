@@ -1,0 +1,178 @@
+"""Lines that commands print, for recordings and results written down by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.commands import diff, show, summary
+from pytest_tarl.commands.diff import FixtureDiff, Moved
+from pytest_tarl.learning.tables import Edges, ListSample, Visits
+from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.sensors import Sensor
+
+X = Sensor("x", topic="/odom", field="pose.x", low=0, high=4, bins=4, unit="m")
+SITE = SitePlace("m:f", "a.py", 7, "f(\n  1)", "data", "assign")
+MOVED = SitePlace("m:f", "a.py", 9, "f(\n  1)", "data", "assign")
+AWAY = SitePlace("m:f", "b.py", 9, "f(\n  1)", "data", "assign")
+
+
+def difference(**changes: Any) -> FixtureDiff:
+    every = {"loss": 2.0, "p_loss": 0.04, "success": (0.9, 0.75), "gone": (), "new": (), "moved": ()}
+    return FixtureDiff(**{**every, "cells": (1, 2, 3), "same_sensors": True, **changes})
+
+
+@pytest.mark.parametrize(
+    ("loss", "p", "most", "expected"),
+    [
+        (2.0, 0.04, 0.0, True),
+        (2.0, 0.05, 0.0, False),
+        (0.0, 0.0, 0.0, False),
+        (2.0, 0.0, 2.0, False),
+        (2.0, 0.0, 1.9, True),
+    ],
+)
+def test_a_recording_is_worse_by_a_significant_loss_beyond_what_is_allowed(
+    loss: float, p: float, most: float, expected: bool
+) -> None:
+    assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
+
+
+def test_a_recording_changed_if_its_sites_or_sensors_did() -> None:
+    assert not difference(moved=(Moved(SITE, MOVED),)).changed
+    for one in ({"gone": (SITE,)}, {"new": (SITE,)}, {"same_sensors": False}):
+        assert difference(**one).changed
+
+
+def recording(test: str, episodes: int, total: float, sites: tuple[SitePlace, ...] = ()) -> Any:
+    sample = SimpleNamespace(
+        episodes=episodes,
+        total=np.full(episodes, total),
+        passed=np.array([True] * (episodes - 1) + [False]),
+        cells=tuple((n,) for n in range(episodes)),
+    )
+    return SimpleNamespace(test=test, sample=sample, sensors=(X,), lists=(SimpleNamespace(sites=sites),))
+
+
+def test_two_recordings_are_compared_by_reward_cells_and_sites() -> None:
+    other = SitePlace("m:g", "a.py", 8, "g()", "data", "assign")
+    found = diff.compared(recording("t", 4, 3.0, (SITE, other)), recording("t", 2, 1.0, (AWAY,)))
+    assert (found.loss, found.success, found.cells) == (2.0, (0.75, 0.5), (2, 2, 0))
+    assert (found.gone, found.new, found.moved) == ((other,), (), (Moved(SITE, AWAY),))
+    same = diff.compared(recording("t", 4, 3.0, (SITE,)), recording("t", 4, 3.0, (SITE,)))
+    assert (same.moved, same.loss, same.same_sensors) == ((), 0.0, True)
+
+
+def test_the_lines_of_a_difference() -> None:
+    one, two = recording("t", 4, 3.0), recording("u", 2, 1.0)
+    found = difference(gone=(SITE,), new=(AWAY,), moved=(Moved(SITE, MOVED), Moved(SITE, AWAY)))
+    assert [*diff.lines(one, two, found)] == [
+        "t → u",
+        "  episodes   4 → 2",
+        "  reward     3 → 1 per episode (less: p = 0.04)",
+        "  success    90 % → 75 %",
+        "  cells      2 in both, 1 gone, 3 new",
+        "  gone       `f( 1)` of a.py:7: its slice is lost; verdict and region remain valid",
+        "  new        `f( 1)` at b.py:9: it has no slice in the first recording",
+        "  moved      `f( 1)` from line 7 to 9: its slice is kept",
+        "  moved      `f( 1)` from a.py:7 to b.py:9: its slice is kept",
+    ]
+    lines = [*diff.lines(one, one, difference(same_sensors=False, gone=(SITE,) * 13))]
+    assert (lines[0], lines[4]) == ("t", "  cells      not comparable: the sensors differ")
+    assert (len(lines), lines[-1]) == (18, "             … and 1 more")
+    assert len([*diff.lines(one, one, difference(gone=(SITE,) * 12))]) == 17
+
+
+@pytest.mark.parametrize(
+    ("sensor", "bins", "expected"),
+    [
+        (X, (1, 1, 3), "x: /odom pose.x, 0 to 4 m in 4 bins, 2 seen"),
+        (Sensor("v", low=0, high=1, bins=2, expr="self.v"), (0,),
+         "v: observed, node variable self.v, 0 to 1 in 2 bins, 1 seen"),
+        (Sensor("light", topic="/l", field="data", categories=("day", "night")), (1, 0, 1),
+         "light: /l data, seen day, night"),
+    ],
+)  # fmt: skip
+def test_a_sensor_is_described_with_its_origin_and_its_bins(
+    sensor: Sensor, bins: tuple[int, ...], expected: str
+) -> None:
+    assert show.described(sensor, bins) == expected
+
+
+def listed() -> tuple[TaintList, ListSample]:
+    """Return a list of two sites; the first ran 3 times with a flow of 6, the second once with 0.5."""
+    none = np.empty(0, np.int64)
+    visits = Visits(
+        np.zeros(4, np.int64),
+        np.array([0, 1, 2, 3]),
+        np.array([9, 2, 1, 1]),
+        *(np.zeros(4) for _ in range(4)),
+    )
+    decided = SitePlace("m:g", "b.py", 12, "if " + "x" * 70 + ":", "control", "condition")
+    recorded = ListSample(2, Edges(none, none, none, none), visits, np.array([[5.0, 0.5], [1.0, 0.0]]))
+    return TaintList("/in", "/out", (SITE, decided)), recorded
+
+
+def test_statements_are_listed_with_their_executions_and_mean_flow() -> None:
+    heading, first, second = show._list(*listed(), 1500)
+    assert heading.endswith(": 4 events, mean |f| 1.625, 1.5 kB")
+    assert first == f"    a.py:7    ● {'f( 1)':<60}       3 × 2"
+    assert second == f"    b.py:12   ◆ {'if ' + 'x' * 56}…       1 × 0.5"
+    assert show._summary(*listed(), 1500) == f"{heading}, 2 statements in a.py, b.py"
+
+
+def result(**changes: Any) -> dict[str, Any]:
+    every: dict[str, Any] = {
+        "test": "t.py::test|a",
+        "drift": "mud",
+        "verdict": {"result": "degraded", "loss": 1.2345, "p_loss": 0.0123},
+        "region": [{"x": [1.0, 2.5], "wet": [1, 1]}, {"x": [4, 4]}],
+        "culprits": [{"path": "a.py", "line": 7}],
+        "repair": {
+            "accepted": True,
+            "guard": "wet",
+            "edits": [{"code": "5", "value": 12.0}, {"code": "KP", "value": 0.5}],
+        },
+        "sites": [],
+    }
+    return every | changes
+
+
+def test_a_result_is_a_row_of_a_table() -> None:
+    assert summary._row(result()) == (
+        "| `t.py::test¦a` | mud | ❌ degraded | 1.23 (p = 0.012) | x 1 to 2.5, wet 1; x 4 | `a.py:7` | "
+        "5 → 12, KP → 0.5 where wet |"
+    )
+    quiet = {"result": "no difference", "loss": 1.0, "p_loss": 0.5}
+    assert summary._row(result(verdict=quiet, repair=None)).endswith(
+        "| ✅ no difference |  | x 1 to 2.5, wet 1; x 4 |  |  |"
+    )
+    drifted = {"result": "drifted", "loss": 1.0, "p_loss": 0.5}
+    refused = result(verdict=drifted, repair={"accepted": False}, culprits=[], region=[])
+    assert summary._row(refused) == "| `t.py::test¦a` | mud | ⚠️ drifted |  |  |  |  |"
+    everywhere = {"accepted": True, "guard": "", "edits": [{"code": "5", "value": 12.0}]}
+    assert summary._repair(everywhere) == "5 → 12"
+
+
+def test_a_chart_has_the_statements_with_the_largest_losses_in_their_order() -> None:
+    sites = [
+        {
+            "path": f"src/{'ba'[n % 2]}.py",
+            "line": 20 - n,
+            "offline": 10.0,
+            "online": 10.0 - n,
+            "difference": float(-n),
+        }
+        for n in range(10)
+    ]
+    told = [*summary._picture(result(sites=sites))]
+    assert told[0] == "```mermaid"
+    assert told[2] == '  title "Utility by statement: designed (bars), mud (line)"'
+    assert told[3] == (
+        '  x-axis ["a.py:11", "a.py:13", "a.py:15", "a.py:17", "b.py:12", "b.py:14", "b.py:16", "b.py:18"]'
+    )
+    assert told[4] == f"  bar [{', '.join(['10'] * 8)}]"
+    assert told[5] == "  line [1, 3, 5, 7, 2, 4, 6, 8]"
