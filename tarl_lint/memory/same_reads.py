@@ -43,7 +43,7 @@ def unchanged(
 def _as_it_was(obj: Obj, stamp: int, store: Store) -> bool:
     """Return whether no change of an object since a stamp is visible in the current state.
 
-    What the call itself added is visible only where another run left it in the shared memory.
+    Fields that the call itself added are visible only if another run left them in the shared memory.
     """
     if stamp == NEW:  # the call allocated the object, which clears all its fields
         return _empty(obj, store) and not _held(obj, store)

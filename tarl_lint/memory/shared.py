@@ -27,7 +27,8 @@ class Root:
     maker: Root | None = None  # the root that added it
     program: str = ""  # the file whose budget it uses
     number: int = 0  # roots are numbered in order of addition
-    heeds: set[Key] = field(default_factory=set)  # keys that it stores itself and reads after a wait
+    # keys to which the root itself stores, and which it reads after a wait
+    heeds: set[Key] = field(default_factory=set)
 
     def generations(self) -> int:
         """Return the number of ancestors, by `maker`, with the same function."""

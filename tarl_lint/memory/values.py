@@ -15,7 +15,7 @@ Consts = frozenset[object] | None  # None: unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
-# constants of a value that is certainly an object, so not None either
+# constants of a value that is certainly an object: it is no constant, not even None
 NO_CONSTANTS: frozenset[object] = frozenset()
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])

@@ -28,7 +28,7 @@ KEPT_APART: Final = 500  # callables of one call; calls made by libraries have a
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Let a library call the functions among its arguments at any time, with the arguments that follow them."""
+    """Let a library call a function among its arguments at any time, with the arguments that follow the function."""
     plain, named = arguments
     for number, value in enumerate(plain):
         for target in value.objects:
@@ -155,7 +155,7 @@ def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> No
 
 
 def held_by(ctx: Interpreter, base: Value) -> list[Obj]:
-    """Return the callables passed to library objects before."""
+    """Return the callables that were passed to library objects earlier."""
     found = [v for o in base.pts if o.kind == "lib" and (v := ctx.store.get((o, HELD))) is not None]
     return in_order(frozenset(o for v in found for o in v.pts))
 

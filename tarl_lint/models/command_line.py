@@ -1,7 +1,7 @@
 """The command line of a launched node: `sys.argv`, and the lists that a program makes of it.
 
-Its arguments are constants, so topic names among them are known. The lists keep their separate elements where the
-program selects and groups them.
+Its arguments are constants, so topic names among them are known. Lists that the program makes by selecting or
+grouping arguments keep their separate elements.
 """
 
 from __future__ import annotations

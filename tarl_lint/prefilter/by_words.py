@@ -84,7 +84,7 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
 
 
 def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
-    """Yield the modules that contain one of the words of which every subscribing or publishing module has one."""
+    """Yield the modules whose words suggest that they subscribe or publish; no other module does."""
     has_word = endpoint_words(config)
     return (m for m in modules if has_word(m.text))
 

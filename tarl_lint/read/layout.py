@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 class Layout:
-    """Names modules and packages; examines each directory once. Paths are absolute.
+    """Derives the names of modules and packages; examines each directory once. Paths are absolute.
 
     The nearest import root counts. It is a script's own directory, the directory that holds the outermost package
     (whatever its name: `src/`, `include/`, `scripts/`), or a `package_dir` in setup.py or setup.cfg.

@@ -162,7 +162,7 @@ def common_directory(paths: Sequence[Path]) -> Path:
     places = [os.path.abspath(p) for p in paths] or [os.getcwd()]  # noqa: PTH100, PTH109 - also for missing files
     try:
         common = Path(os.path.commonpath(places))
-    except ValueError:  # the paths are on different drives of Windows
+    except ValueError:  # raised if the paths are on different drives (Windows)
         return Path.cwd()
     return common if common.is_dir() else common.parent
 

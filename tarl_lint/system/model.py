@@ -167,7 +167,7 @@ class System:
         )
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
-        """Yield the endpoints of a role of all nodes, by launched name."""
+        """Yield the endpoints that all nodes have in a role, by launched name."""
         for instance in self.instances:
             for name, endpoint in instance.ends(role):
                 yield name, instance, endpoint

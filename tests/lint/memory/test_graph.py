@@ -154,7 +154,7 @@ def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypat
     assert graph.arriving_through(item, {carrier}) == {item}
 
 
-def test_much_content_and_large_programs_arrive_without_carriers(graph, node, monkeypatch):
+def test_carriers_are_ignored_for_much_content_and_large_programs(graph, node, monkeypatch):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     assert not graph.large()
