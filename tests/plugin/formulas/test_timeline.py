@@ -28,3 +28,16 @@ def test_at_each_instant_the_last_value_given_holds(given: list[tuple[int, float
         assert timeline.at(["x"], instant) == {"x": expected}
     first = [value for time, value in numbers if time == numbers[0][0]]
     assert timeline.samples(["x"])["x"][0] == [0, first[-1]]
+
+
+def test_instants_are_those_of_changes_before_the_end_with_both_ends() -> None:
+    line = Timeline(("a", "b"))
+    for name, value, time in (("a", 1.0, 5), ("a", 1.0, 6), ("a", 2.0, 9), ("b", 0.0, 7), ("b", True, 12)):
+        line.give(name, value, time)
+    assert line.instants(("a", "b"), 12) == [0, 5, 7, 9, 12]
+    assert line.instants(("b",), 7) == [0, 7]
+    assert line.at(("a", "b"), 8) == {"a": 1.0, "b": 0.0}
+    assert line.at(("a",), 3) == {"a": 1.0}
+    assert line.samples(("a",)) == {"a": [[0, 1.0], [9, 2.0]]}
+    assert line.missing(("a", "b")) is None
+    assert Timeline(("a", "c")).missing(("c", "a")) == "c"

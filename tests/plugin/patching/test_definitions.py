@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.model import Guard
-from pytest_tarl.patching.definitions import configured, defined, parameter
+from pytest_tarl.patching.definitions import _entry_name, configured, defined, parameter
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate
@@ -124,3 +125,21 @@ def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None
 )
 def test_other_files_and_other_parameters_are_left_alone(path: str, text: str) -> None:
     assert list(configured("ki", {path: text})) == []
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ("declare_parameters('arm', [('ki', 'fast', d)])", "arm.ki"),
+        ("declare_parameters('', [('ki', 0.5)])", "ki"),
+        ("declare_parameters(namespace='arm', parameters=[('ki', 0.5)])", "arm.ki"),
+        ("declare_parameters(name, [('ki', 0.5)])", ""),
+        ("declare_parameters('arm', [(name, 'fast')])", ""),
+        ("declare_parameters('arm', [entry])", ""),
+    ],
+)
+def test_an_entry_is_named_by_its_namespace_and_its_first_element(code: str, expected: str) -> None:
+    call = ast.parse(code, mode="eval").body
+    assert isinstance(call, ast.Call)
+    entries = next(one for one in ast.walk(call) if isinstance(one, ast.List))
+    assert _entry_name(call, entries.elts[0]) == expected
