@@ -38,7 +38,7 @@ METHODS = ("missions differ", "below a bound", "z-score")
 def drawn(
     rng: np.random.Generator, drifted: np.ndarray[tuple[int], np.dtype[np.bool_]], cells: int
 ) -> Sample:
-    """Return missions as `drive` of benchmarks/fleet.py runs them; in those in `drifted`, the place costs reward."""
+    """Return missions as `drive` of benchmarks/fleet.py runs them; the place costs reward in the missions `drifted`."""
     count = len(drifted)
     wet = rng.random(count) < 0.3
     stays = rng.random((count, PLACES)) < 0.5

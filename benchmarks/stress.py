@@ -49,7 +49,7 @@ EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
 
 @dataclass(frozen=True)
 class Sized:
-    """Episodes of a task whose drift is a single number, taken from the plan's point."""
+    """Runs episodes of a task whose drift is a single number: the coordinate of the point to evaluate."""
 
     stage: Stage
     name: str  # of the drift
@@ -217,7 +217,9 @@ def main() -> None:
     """Print a line per task, and the sums."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
-    parser.add_argument("--harmless", type=int, default=0, help="runs per task where nothing breaks")
+    parser.add_argument(
+        "--harmless", type=int, default=0, help="additional runs per task on a range where nothing breaks"
+    )
     parser.add_argument("--grids", type=Path, help="JSON Lines file of the grids' boundaries")
     arguments = parser.parse_args()
     print("| task | grid | stress | interval | contains | episodes | of the grid | false |")

@@ -305,8 +305,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
-    parser.add_argument("--peer-seconds", type=float, default=600.0, help="limit of a peer's process")
-    parser.add_argument("--harmless", type=int, default=0, help="only runs where nothing breaks, so many")
+    parser.add_argument(
+        "--peer-seconds", type=float, default=600.0, help="time limit of a peer's process, in seconds"
+    )
+    parser.add_argument(
+        "--harmless", type=int, default=0, help="only do this number of runs in which nothing breaks"
+    )
     arguments = parser.parse_args()
     if arguments.harmless:
         print(harmless_runs(arguments.harmless))

@@ -94,7 +94,7 @@ def _pool(world: str, size: float) -> Sample:
 
 @cache
 def total_range(world: str) -> Range | None:
-    """Return a range of a mission's total, with or without drift, as a marker would declare it; None without one."""
+    """Return the range of a mission's total, with or without drift, as a marker declares it; None if it has none."""
     if world in UNBOUNDED:
         return None
     totals = [_pool(world, size).total for size in ((0.0, 1.0) if world not in SYNTHETIC else (0.0,))]

@@ -2,9 +2,8 @@
 
 Each proposes a factor for every operand (on a log scale, between a tenth and ten; signs and booleans flip at random),
 and then receives the reward of one drifted episode with these factors. A proposal that comes near the designed reward
-is tested on five more seeds; the first one that passes counts. With "our guard", every mutation applies only where
-the guard is true under which our method would search first. The nominal world is not tested, since these tools do not
-test it.
+is tested on five more seeds; the first one that passes counts. With "our guard", a mutation applies only where our
+method's first guard is true. The nominal world is not tested, since these tools do not test it.
 """
 
 from __future__ import annotations

@@ -61,14 +61,18 @@ def main() -> None:
     """Run the missing entries, each task and seed in its own process, and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--methods", default=";".join(METHODS), help="separated by semicolons")
-    parser.add_argument("--folder", type=Path, default=HERE, help="that holds the tasks")
-    parser.add_argument("--tasks", help="separated by commas; all of the folder where nothing is given")
+    parser.add_argument("--methods", default=";".join(METHODS), help="methods, separated by semicolons")
+    parser.add_argument("--folder", type=Path, default=HERE, help="folder of the tasks")
+    parser.add_argument("--tasks", help="tasks, separated by commas (default: all in the folder)")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--results", type=Path, help="results.json of the folder where nothing is given")
-    parser.add_argument("--fresh", action="store_true", help="forget earlier results of what is asked for")
-    parser.add_argument("--table", action="store_true", help="run nothing")
-    parser.add_argument("--fauxpy", metavar="PYTHON", help="of an environment that has fauxpy and tarl")
+    parser.add_argument("--results", type=Path, help="file of results (default: results.json in the folder)")
+    parser.add_argument(
+        "--fresh", action="store_true", help="forget earlier results of the requested methods and tasks"
+    )
+    parser.add_argument("--table", action="store_true", help="only print the tables of earlier results")
+    parser.add_argument(
+        "--fauxpy", metavar="PYTHON", help="Python of an environment that has fauxpy and tarl"
+    )
     parser.add_argument("--one", nargs=3, metavar=("METHODS", "TASK", "SEED"), help="print results as JSON")
     arguments = parser.parse_args()
     home = arguments.folder = arguments.folder.resolve()

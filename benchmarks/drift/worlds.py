@@ -66,8 +66,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--episodes", type=int, default=100)
-    parser.add_argument("--folder", type=Path, default=HERE, help="that holds the tasks")
-    parser.add_argument("--by-hand", action="store_true", help="look at copies that are repaired by hand")
+    parser.add_argument("--folder", type=Path, default=HERE, help="folder of the tasks")
+    parser.add_argument(
+        "--by-hand", action="store_true", help="check copies of the tasks that are repaired by hand"
+    )
     arguments = parser.parse_args()
     home = arguments.folder.resolve()
     print("| task | sites | operands | ms designed / drift | success | ATR |\n|---|---|---|---|---|---|")

@@ -92,10 +92,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("target", type=Path)
     parser.add_argument(
-        "--source", default="https://github.com", help="folder of repositories, or start of a URL"
+        "--source", default="https://github.com", help="folder of repositories, or beginning of a URL"
     )
     parser.add_argument(
-        "--by-hand", action="store_true", help="write the nodes as they were repaired by hand"
+        "--by-hand", action="store_true", help="write the nodes with the repair that a person found"
     )
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:

@@ -1,4 +1,7 @@
-"""Rounds are done in time. A locked door needs the way round; in winter some doors are stiff and open slowly."""
+"""Rounds are done in time.
+
+At a locked door the robot has to go round; in winter some doors are stiff and open slowly.
+"""
 
 import pytest
 

@@ -1,4 +1,7 @@
-"""A boat is lifted in a lock. In a flood the fall is higher, and the same sluice tears at the boat's lines."""
+"""A boat is lifted in a lock.
+
+In a flood the fall is higher, and the same opening of the sluice strains the boat's lines.
+"""
 
 import math
 

@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 CODES = {"7031": 1, "4410": 2, "9256": 3, "1188": 4}
-COIL = 1.4  # s of current without a break that the coil bears
+COIL = 1.4  # s, longest uninterrupted current that the coil bears
 TIME_BOUND = 12.0
 
 
