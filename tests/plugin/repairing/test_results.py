@@ -14,10 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytest_tarl.drifts import Drift
+from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.model import Band, Conjunct, Guard, Reason, Sizes
 from pytest_tarl.patching.charts import SHARE
 from pytest_tarl.patching.mutate import Mutation, mutations, stepped
-from pytest_tarl.repairing import ranges, telling_sensors
+from pytest_tarl.repairing import partial, ranges, telling_sensors
 from pytest_tarl.repairing.between import Between, factor, further, stronger
 from pytest_tarl.repairing.centring import centred, moved, neighbours
 from pytest_tarl.repairing.incumbent import Watch
@@ -472,3 +473,22 @@ def test_a_step_on_a_chart_is_a_factor() -> None:
     step = stepped(share, 2.0, SHARE, mutations)
     assert step is not None
     assert factor(step) == pytest.approx(2.0, rel=0.01)
+
+
+def test_a_partial_gain_is_paired_by_seed_and_shares_its_risk(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(partial, "EPISODES", 4)
+    asked: list[Any] = []
+
+    def run(one: Candidate, seed: int, drift: str | None) -> Outcome:
+        place = ran.setdefault(one, []).append(seed) or len(ran[one])
+        return Outcome(10.0 * place + (place if one.mutations else 0), not one.mutations or place > 1)
+
+    ran: dict[Candidate, list[int]] = {}
+    order = SimpleNamespace(options=SimpleNamespace(seed=3, alpha=0.1))
+    mutants: Any = SimpleNamespace(order=order, run=run, foresee=lambda *one: asked.append(one))
+    found = partial._gained(mutants, scaled(2.0), "mud", 1)
+    assert (found.mean, found.failures) == (2.5, 1)
+    assert found.low == mean_of([1.0, 2.0, 3.0, 4.0], 0.95).low
+    with_it, without = ran.values()
+    assert with_it == without
+    assert [drift for _, drift in asked] == ["mud", "mud"]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.candidates import ALWAYS, _hull, _spans, _steepest, _widened
+from pytest_tarl.searching.candidates import ALWAYS, _hull, _spans, _steepest, _widened, holds
 from pytest_tarl.searching.course import deviation
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import COARSE, FINE, another_way, gentler
@@ -381,3 +381,21 @@ def test_intervals_are_widened_by_two_bins() -> None:
     assert widened(ANGLE, 7.0, 1.0) == (5.0, 3.0)
     assert widened(ANGLE, 0.0, 4.0) == (-math.inf, math.inf)
     assert widened(Sensor("wet", topic="/wet", field="data"), 1.0, 1.0) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "low", "high", "expected"),
+    [
+        (LINE, 3.0, 5.0, [3, 4]),
+        (LINE, 3.0 + 1e-10, 5.0 - 1e-10, [3, 4]),
+        (LINE, 3.0 + 1e-6, 5.0 - 1e-6, []),
+        (LINE, -math.inf, 1.0, [0]),
+        (ANGLE, 7.0, 1.0, [0, 7]),
+        (ANGLE, 7.0 + 1e-10, 1.0 - 1e-10, [0, 7]),
+    ],
+)
+def test_a_guard_holds_in_the_bins_that_it_covers_up_to_rounding(
+    sensor: Sensor, low: float, high: float, expected: list[int]
+) -> None:
+    guard = Guard((Conjunct(sensor, low, high),))
+    assert [index for index in range(8) if holds(guard, (index,), [sensor])] == expected
