@@ -52,7 +52,7 @@ class CvBridge:
         return (
             image
             if desired_encoding == "passthrough"
-            else _converted(image, img_msg.encoding, desired_encoding)
+            else converted(image, img_msg.encoding, desired_encoding)
         )
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
@@ -89,7 +89,7 @@ class CvBridge:
         if image is None:
             raise CvBridgeError("the compressed image cannot be decoded")
         origin = "bgr8" if image.ndim == 3 else "mono8"
-        return image if desired_encoding == "passthrough" else _converted(image, origin, desired_encoding)
+        return image if desired_encoding == "passthrough" else converted(image, origin, desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
         """Return an array as a compressed message; needs OpenCV."""
@@ -121,7 +121,7 @@ def _depth_of(dtype: Any) -> str:
     raise CvBridgeError(f"arrays of {dtype.name} cannot be images")
 
 
-def _converted(image: Any, origin: str, wanted: str) -> Any:
+def converted(image: Any, origin: str, wanted: str) -> Any:
     """Convert channels and depth between named encodings. Raises CvBridgeError if that is impossible."""
     import numpy as np
 

@@ -11,6 +11,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from types import CodeType, FrameType, ModuleType
 from typing import TYPE_CHECKING, Any
 
+from pytest_tarl.ros.environment import set_variables, variables_restored
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.messages.definitions import Kind
@@ -99,7 +100,10 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "ament_index_python": "packages",
     "ament_index_python.packages": "packages",
     "rospkg": "packages",
+    "rospkg.common": "packages",
     "roslib.packages": "packages",
+    "roslib.rostime": "genpy",
+    "sound_play.libsoundplay": "sound_play",
     "sensor_msgs.point_cloud2": "point_cloud2",
     "sensor_msgs_py": "point_cloud2",
     "sensor_msgs_py.point_cloud2": "point_cloud2",
@@ -116,6 +120,8 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "tf2_ros.transform_listener": "tf2_ros.broadcasting",
     "cv_bridge": "cv_bridge",
     "cv_bridge.core": "cv_bridge",
+    "cv_bridge.boost": "cv_bridge_boost",
+    "cv_bridge.boost.cv_bridge_boost": "cv_bridge_boost",
     "tf.transformations": "transformations",
     "tf_transformations": "transformations",
     "rclpy.parameter_client": "rclpy.parameter_client",
@@ -136,7 +142,7 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
 }
 _TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
-            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag")  # fmt: skip
+            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play")  # fmt: skip
 _MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 _STANDALONE = (
@@ -248,6 +254,7 @@ class StandinFinder:
     def _settle_kind(self, kind: Kind) -> Kind:
         """Fix the ROS generation of this episode's messages; hide installed ones of the other generation."""
         self._kind = kind
+        set_variables(kind)
         if installed_kind("std_msgs") not in (None, kind):
             self.hidden.update(_hide({name for name in sys.modules if could_be_package(name)}))
         return kind
@@ -321,7 +328,7 @@ def standins_installed(
     sys.meta_path.insert(0, finder)
     sys.meta_path.append(uninstalled)
     try:
-        with virtual_host_time(scheduler), threads_as_tasks(), terminals(processes):
+        with virtual_host_time(scheduler), threads_as_tasks(), terminals(processes), variables_restored():
             yield
     finally:
         sys.meta_path.remove(finder)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,16 @@ __all__ = [
     "PackageNotFoundError",
     "ResourceNotFound",
     "RosPack",
+    "find_node",
+    "find_resource",
+    "get_package_name",
     "get_package_prefix",
     "get_package_share_directory",
     "get_package_share_path",
     "get_packages_with_prefixes",
     "get_pkg_dir",
+    "get_ros_home",
+    "get_ros_package_path",
     "on_ros_path",
 ]  # fmt: skip
 
@@ -68,6 +75,41 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
     if found is None and required:
         raise InvalidROSPkgException(f"cannot locate package {package!r} in the node's repository")
     return None if found is None else str(found)
+
+
+def get_package_name(path: str) -> str | None:
+    """Return the name of the package that contains a path; None outside of packages."""
+    place = Path(path).resolve()
+    around = [
+        (len(folder.parts), name)
+        for name, folder in package_folders().items()
+        if place.is_relative_to(folder)
+    ]
+    return max(around)[1] if around else None
+
+
+def get_ros_home(env: Mapping[str, str] | None = None) -> str:
+    """Return the folder of ROS's logs and settings: `ROS_HOME`, else `.ros` in the home folder."""
+    given = os.environ if env is None else env
+    return given.get("ROS_HOME") or str(Path.home() / ".ros")
+
+
+def get_ros_package_path(env: Mapping[str, str] | None = None) -> str | None:
+    """Return the variable `ROS_PACKAGE_PATH`."""
+    return (os.environ if env is None else env).get("ROS_PACKAGE_PATH")
+
+
+def find_node(pkg: str, node_type: str) -> list[str]:
+    """Return the paths of a package's executable files of that name. Raises InvalidROSPkgException for the package."""
+    return [found for found in find_resource(pkg, node_type) if os.access(found, os.X_OK)]
+
+
+def find_resource(pkg: str, resource_name: str) -> list[str]:
+    """Return the paths of a package's files of that name. Raises InvalidROSPkgException for an unknown package."""
+    folder = Path(str(get_pkg_dir(pkg)))
+    named = folder / resource_name
+    inside = [one for one in sorted(folder.rglob(named.name)) if one.is_file() and one != named]
+    return [str(one) for one in ([named] if named.is_file() else []) + inside]
 
 
 def on_ros_path(p: str) -> bool:

@@ -103,5 +103,10 @@ TRANSFORMERS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Return a stamped message class, which the library exposes; raise for a name that the stand-in lacks."""
+    if name in TRANSFORMERS:
+        from pytest_tarl.ros.install import kind_of_caller
+        from pytest_tarl.ros.messages import class_of
+
+        return class_of(kind_of_caller(), f"geometry_msgs/{name}")
     raise refuse("tf2_geometry_msgs", name)

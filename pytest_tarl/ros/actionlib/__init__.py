@@ -16,8 +16,15 @@ from pytest_tarl.ros.missing import refuse
 
 __all__ = [
     "GoalID", "GoalManager", "GoalStatus", "SimpleActionClient", "SimpleActionServer", "SimpleClientGoalState",
-    "SimpleGoalState",
+    "SimpleGoalState", "get_name_of_constant",
 ]  # fmt: skip
+
+
+def get_name_of_constant(C: Any, n: int) -> str:  # noqa: N803 (actionlib's names)
+    """Return the name of the constant of a class that has the value `n`, such as a state; else "No such constant"."""
+    return next(
+        (name for name, value in vars(C).items() if type(value) is int and value == n), "No such constant"
+    )
 
 
 def __getattr__(name: str) -> Any:

@@ -13,7 +13,7 @@ from pytest_tarl.ros.messages.workspace import workspace_packages
 
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")
 _OTHERS = {"turtlesim", "rospy_tutorials", "actionlib_tutorials", "beginner_tutorials", "turtle_actionlib",
-           "roscpp_tutorials", "laser_assembler", "roscpp", "bond", "theora_image_transport"}  # fmt: skip
+           "roscpp_tutorials", "laser_assembler", "roscpp", "bond", "theora_image_transport", "sound_play"}  # fmt: skip
 PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 

@@ -16,6 +16,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from pytest_tarl.ros.messages.definitions import (
+    Constant,
     Definition,
     Field,
     find_action,
@@ -165,7 +166,7 @@ def build(definition: Definition, module: str) -> type[Message]:
         "_tarl_fields": tuple(fields),
         "_fields_and_field_types": {field.name: _idl_text(field) for field in fields},
         "_tarl_copy": staticmethod(scope["copy"]),
-        **{constant.name: constant.value for constant in definition.constants},
+        **{constant.name: _constant(constant) for constant in definition.constants},
         **{
             name: property(operator.attrgetter("_" + name), scope[function])
             for name, function in setters.items()
@@ -176,6 +177,11 @@ def build(definition: Definition, module: str) -> type[Message]:
     if not module.endswith(".msg"):
         _parts[f"{definition.package}/{definition.name}"] = built
     return built
+
+
+def _constant(constant: Constant) -> Any:
+    """Return the value of a constant; rosidl makes those of type `byte` a `bytes` object of length 1."""
+    return bytes([constant.value]) if constant.text.split()[0] in ("byte", "octet") else constant.value
 
 
 PACKED = frozenset(CODES) - {"byte"}  # types that rosidl stores in an `array.array`

@@ -127,6 +127,13 @@ def test_ros2_defaults_constants_and_field_types_are_those_of_the_definitions() 
     assert message_type("nav_msgs/msg/Odometry").get_fields_and_field_types()["child_frame_id"] == "string"
 
 
+def test_ros2_constants_of_type_byte_can_be_assigned() -> None:
+    status = message_type("diagnostic_msgs/msg/DiagnosticStatus")
+    assert (status.OK, status.STALE) == (b"\x00", b"\x03")
+    assert status(level=status.ERROR).level == b"\x02"
+    assert message_type("diagnostic_msgs/DiagnosticStatus").ERROR == 2
+
+
 def test_ros2_arrays_are_packed_and_sized() -> None:
     scan = message_type("sensor_msgs/msg/LaserScan")()
     scan.ranges = [1.0, 2.0]

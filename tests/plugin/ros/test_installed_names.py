@@ -1,0 +1,173 @@
+"""Names, types and variables that a ROS installation has beside the client libraries."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pytest_tarl.ros import cv_bridge_boost, message_type, packages
+from pytest_tarl.ros.messages import find_class, snapshot
+from pytest_tarl.ros.messages.known import known_types
+from pytest_tarl.ros.messages.workspace import search
+from tests.plugin.ros.conftest import Start, heard
+
+
+@pytest.mark.parametrize("part", ["msg", "srv", "action"])
+@pytest.mark.parametrize("kind", ["ros1", "ros2"])
+def test_every_known_type_can_be_built_with_all_that_it_contains(kind: str, part: str) -> None:
+    for name in known_types(kind, part):  # type: ignore[arg-type]
+        package, short = name.split("/")
+        if part == "action" and kind == "ros1":
+            made = find_class("ros1", package, f"{short}Action")
+        else:
+            made = find_class(kind, package, short, part)  # type: ignore[arg-type]
+        assert made is not None, name
+        if part == "msg" or (part, kind) == ("action", "ros1"):
+            snapshot.snapshot(made())
+        elif part == "srv":
+            halves = (
+                (made._request_class, made._response_class)
+                if kind == "ros1"
+                else (made.Request, made.Response)
+            )
+            assert all(half() is not None for half in halves)
+        else:
+            assert all(half() is not None for half in (made.Goal, made.Result, made.Feedback))
+
+
+def test_moveit_types_have_their_constants() -> None:
+    codes, scene = (
+        message_type("moveit_msgs/MoveItErrorCodes"),
+        message_type("moveit_msgs/msg/CollisionObject"),
+    )
+    assert (codes.SUCCESS, codes.NO_IK_SOLUTION) == (1, -31)
+    assert "message" not in codes.__slots__
+    assert message_type("moveit_msgs/msg/MoveItErrorCodes")().message == ""
+    assert scene().operation == scene.ADD == b"\x00"
+
+
+def test_sound_client_publishes_requests(start: Start) -> None:
+    ros = start("""
+        import rospy
+        from sound_play.libsoundplay import SoundClient
+        from sound_play.msg import SoundRequest
+        rospy.init_node("speaker")
+        client = SoundClient()
+        rospy.sleep(0.1)
+        client.say("hello", volume=7)
+        client.startWaveFromPkg("a_package", "bell.wav", 0.5)
+        client.builtinSound(SoundRequest.BACKINGUP).stop()
+        client.stopAll()
+        rospy.spin()
+    """)
+    requests = heard(ros, "/robotsound")
+    ros.step(0.2)
+    assert [(one.sound, one.command, one.arg, one.arg2, one.volume) for one in requests] == [
+        (-3, 1, "hello", "", 1.0), (-2, 2, "bell.wav", "a_package", 0.5), (1, 0, "", "", 1.0), (-1, 0, "", "", 1.0)
+    ]  # fmt: skip
+
+
+def test_blocking_sound_client_waits_for_its_server(start: Start) -> None:
+    ros = start("""
+        import actionlib, rospy
+        from sound_play.msg import SoundRequestAction, SoundRequestResult
+        rospy.init_node("server")
+        def play(goal):
+            rospy.sleep(0.5)
+            server.set_succeeded(SoundRequestResult(playing=False))
+        server = actionlib.SimpleActionServer("sound_play", SoundRequestAction, play, auto_start=False)
+        server.start()
+        rospy.spin()
+    """)
+    start(
+        """
+        import rospy
+        from sound_play.libsoundplay import SoundClient
+        rospy.init_node("speaker")
+        begun = rospy.get_time()
+        SoundClient(blocking=True).playWave("bell.wav")
+        took = rospy.get_time() - begun
+    """,
+        ros=ros,
+    )
+    ros.step(2)
+    assert 0.5 <= ros.namespace["took"] < 1
+
+
+def test_numbers_of_encodings_are_those_of_opencv() -> None:
+    number = cv_bridge_boost.getCvType("bgr8")
+    assert (number, cv_bridge_boost.CV_MAT_CNWrap(number), cv_bridge_boost.CV_MAT_DEPTHWrap(number)) == (
+        16,
+        3,
+        0,
+    )
+    assert cv_bridge_boost.CV_MAT_DEPTHWrap(cv_bridge_boost.getCvType("32FC1")) == 5
+    image = np.array([[[1, 2, 3]]], dtype=np.uint8)
+    assert cv_bridge_boost.cvtColor2(image, "bgr8", "rgb8").tolist() == [[[3, 2, 1]]]
+
+
+def test_names_of_small_libraries_can_be_imported(start: Start) -> None:
+    ros = start("""
+        import actionlib, rospy
+        from actionlib_msgs.msg import GoalStatus
+        from cv_bridge.boost.cv_bridge_boost import getCvType
+        from roslib.rostime import Time
+        from rospkg.common import ResourceNotFound
+        from tf2_geometry_msgs import PoseStamped
+        import rospkg
+        state = actionlib.get_name_of_constant(GoalStatus, 3)
+        unknown = actionlib.get_name_of_constant(GoalStatus, 77)
+        same = PoseStamped._type, Time is rospy.Time.__base__, rospkg.ResourceNotFound is ResourceNotFound
+    """)
+    assert (ros.namespace["state"], ros.namespace["unknown"]) == ("SUCCEEDED", "No such constant")
+    assert ros.namespace["same"] == ("geometry_msgs/PoseStamped", True, True)
+
+
+def test_rospkg_and_roslib_find_files_of_packages(tmp_path: Path) -> None:
+    folder = tmp_path / "driver"
+    (folder / "scripts" / "inner").mkdir(parents=True)
+    (tmp_path / ".git").mkdir()
+    (folder / "package.xml").write_text("<package><name>driver</name></package>")
+    node, data = folder / "scripts" / "run.py", folder / "scripts" / "inner" / "run.yaml"
+    for file in (node, data):
+        file.write_text("")
+    node.chmod(0o755)
+    search(folder)
+    assert packages.get_package_name(str(data)) == "driver"
+    assert packages.get_package_name(str(tmp_path)) is None
+    assert packages.find_node("driver", "run.py") == [str(node)]
+    assert packages.find_node("driver", "run.yaml") == []
+    assert packages.find_resource("driver", "run.yaml") == [str(data)]
+    with pytest.raises(packages.InvalidROSPkgException):
+        packages.find_node("drivers", "run.py")
+    assert packages.get_ros_home({"ROS_HOME": "/var/ros"}) == "/var/ros"
+    assert packages.get_ros_home({}) == str(Path.home() / ".ros")
+
+
+@pytest.mark.parametrize(
+    ("library", "version", "distribution"), [("rospy", "1", "noetic"), ("rclpy", "2", "humble")]
+)
+def test_nodes_read_the_variables_of_a_sourced_ros(
+    library: str, version: str, distribution: str, start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    monkeypatch.setenv("ROS_VERSION", "")
+    ros = start(f"import os, {library}; read = os.environ['ROS_DISTRO'], os.environ['ROS_VERSION']")
+    assert ros.namespace["read"] == (distribution, "")  # a variable that is set, also to nothing, stays
+    monkeypatch.delenv("ROS_VERSION")
+    assert start(f"import os, {library}; read = os.environ.get('ROS_VERSION')").namespace["read"] == version
+
+
+def test_variables_of_ros_are_gone_after_the_episode(monkeypatch: pytest.MonkeyPatch) -> None:
+    from pytest_tarl.ros import Ros
+
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    ros = Ros()
+    with ros.installed():
+        ros.start(lambda: exec("import rospy"), name="node.py")
+        assert os.environ["ROS_DISTRO"] == "noetic"
+    ros.close()
+    assert "ROS_DISTRO" not in os.environ
