@@ -26,13 +26,15 @@ from tarl_lint.workspace.ros_names import joined
 class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
-    `node` is the absolute name of a node that is started under the name of the launch file, else empty.
+    `node` is the absolute name of a node that is started under the name of the launch file, else empty. `valueless`
+    are the names of private parameters that are null in YAML, which the parameter server cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
     shared: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
     node: str = ""
+    valueless: tuple[str, ...] = ()
 
 
 NOTHING = Given()
@@ -63,7 +65,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 
 
 def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: Sequence[Path]) -> Given:
-    """Return the parameters if all files agree; else if all files of the script's package agree."""
+    """Return the parameters on which all files agree; if not on all, those on which the files of its package do."""
     own = workspace.package_of(script)
     telling = [(one, file) for one, file in zip(found, files, strict=True) if one.private or one.shared]
     near = [(one, file) for one, file in telling if own is not None and file.is_relative_to(own.folder)]
@@ -72,12 +74,37 @@ def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: S
             return some[0][0]
     if not telling:
         return NOTHING
-    names = sorted({file.name for _, file in near or telling})
+    differing = near or telling
+    names = sorted({file.name for _, file in differing})
     shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-    return Given(
-        note=f"{script.name} is started with different parameters by launch files ({shown}), so it got none of them: "
+    private = _agreed([one.private for one, _ in differing])
+    shared = _agreed([one.shared for one, _ in differing])
+    got = "only those that are equal in all of them" if private or shared else "none of them"
+    note = (
+        f"{script.name} is started with different parameters by launch files ({shown}), so it got {got}: "
         "name one with tarl.start(…, launch=FILE), or state parameters={…}."
     )
+    return Given(private, shared, note)
+
+
+def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the entries that all mappings have with the same value; of nested mappings, those of the parts."""
+    first, *others = mappings
+    agreed: dict[str, Any] = {}
+    for name, value in first.items():
+        values = [other.get(name, NOTHING) for other in others]
+        if all(_equal(value, other) for other in values):
+            agreed[name] = value
+        elif isinstance(value, Mapping) and all(isinstance(other, Mapping) for other in values):
+            part = _agreed([value, *values])
+            if part:
+                agreed[name] = part
+    return agreed
+
+
+def _equal(one: Any, other: Any) -> bool:
+    """Return whether two values of YAML are the same: 1, 1.0 and True differ."""
+    return repr(one) == repr(other)
 
 
 def _same(one: Given, other: Given) -> bool:
@@ -113,13 +140,18 @@ def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
     private: dict[str, Any] = {}
     shared: dict[str, Any] = {}
     files: dict[Path, None] = {}
+    valueless: dict[str, None] = {}
     for one in _stated((*launch.settings, *node.settings), full_name):
-        if one.value is not ON_ROBOT:
+        if one.value is None:
+            valueless[one.name.removeprefix("~")] = None
+        elif one.value is not ON_ROBOT:
             (private if one.name.startswith("~") else shared)[one.name.removeprefix("~")] = one.value
             files[one.file] = None
     sources = ", ".join(file.name for file in files if file != launch.file)
     note = f"parameters of {node.name or node.executable} come from {launch.file.name}"
-    return Given(private, shared, f"{note} ({sources})." if sources else f"{note}.")
+    return Given(
+        private, shared, f"{note} ({sources})." if sources else f"{note}.", valueless=tuple(valueless)
+    )
 
 
 def _rooted(name: str, node: LaunchedNode) -> str:

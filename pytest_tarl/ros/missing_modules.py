@@ -2,29 +2,80 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Final
+
 from pytest_tarl.ros.messages.workspace import packages, workspaces
 from pytest_tarl.ros.uninstalled import candidates
 
+PYTHON_2: Final = "This is Python 2, which no supported ROS uses: port the node to Python 3."
+_OF_PYTHON_2: Final = frozenset(
+    ["ConfigParser", "HTMLParser", "Queue", "StringIO", "Tkinter", "cPickle", "commands", "cookielib", "cv", "httplib",
+     "sets", "thread", "urllib2", "urlparse"]
+)  # fmt: skip
+_PIP_NAMES: Final[Mapping[str, str]] = {  # module → its name for pip, where the two differ
+    "Crypto": "pycryptodome",
+    "OpenGL": "PyOpenGL",
+    "PIL": "pillow",
+    "bluetooth": "PyBluez",
+    "cv2": "opencv-python-headless",
+    "dynamixel_sdk": "dynamixel-sdk",
+    "git": "GitPython",
+    "serial": "pyserial",
+    "skimage": "scikit-image",
+    "sklearn": "scikit-learn",
+    "speech_recognition": "SpeechRecognition",
+    "usb": "pyusb",
+    "websocket": "websocket-client",
+    "yaml": "PyYAML",
+    "zmq": "pyzmq",
+}
+_DEVICES: Final = frozenset(
+    ["Adafruit_PCA9685", "Jetson", "RPi", "alsaaudio", "board", "busio", "picamera", "pigpio", "pyaudio",
+     "pyrealsense2", "rpi_ws281x", "smbus", "smbus2", "spidev"]
+)  # fmt: skip
+_COMPILED: Final = frozenset(["PyKDL", "kdl_parser_py", "ompl", "openravepy", "pcl", "tf_conversions"])
 
-def advice(error: BaseException) -> str:
-    """Return one sentence on how to make a failed import work; empty for other errors."""
-    if not isinstance(error, ModuleNotFoundError) or not error.name:
-        return ""
-    root, _, inner = error.name.partition(".")
-    if inner:
+
+def module_advice(error: ModuleNotFoundError) -> str:
+    """Return one sentence on how to make a failed import work."""
+    root, _, inner = (error.name or "").partition(".")
+    if inner or not root:
         return ""  # the package is there, so the name is misspelled
+    return _in_workspace(root) or _elsewhere(root)
+
+
+def _in_workspace(root: str) -> str:
+    """Return a sentence if the workspace has a package or files of that name, else an empty string."""
     known = packages().get(root)
     if known is not None:
         return (
             f"The package {root} is in the workspace ({known.folder}), but installs no Python module of this name: "
             "name it in packages of its setup.py, or in ament_python_install_package."
         )
+    for workspace in workspaces():
+        marker = dict(workspace.hidden).get(root)
+        if marker is not None:
+            return (
+                f"The package {root} is in the workspace, but {marker} hides it from the build: delete that file, or "
+                "put a replacement into sys.modules in the test."
+            )
     places = candidates(root)
     if len(places) > 1:
         told = " and ".join(str(one) for one in places[:3])
         return f"No package installs {root}, and more than one file has this name ({told}): name one in a setup.py."
+    return ""
+
+
+def _elsewhere(root: str) -> str:
+    """Return a sentence for a module that comes from outside of the workspace."""
+    if root in _OF_PYTHON_2:
+        return PYTHON_2
     within = " and ".join(str(one.root) for one in workspaces()) or "around the node"
-    return (
-        f"No package of the workspace {within} installs {root}, and it is not installed here: install it with pip, or "
-        "put a replacement into sys.modules in the test."
-    )
+    missing = f"No package of the workspace {within} installs {root}, and it is not installed here"
+    replacement = "put a replacement into sys.modules in the test"
+    if root in _DEVICES:
+        return f"{missing}: it drives a device, so {replacement}."
+    if root in _COMPILED:
+        return f"{missing}: it is a compiled library of a ROS installation, so {replacement}."
+    return f"{missing}: run pip install {_PIP_NAMES.get(root, root)}, or {replacement}."

@@ -10,7 +10,7 @@ from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, Unsupported
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.launched import NOTHING
-from pytest_tarl.ros.missing_modules import advice
+from pytest_tarl.ros.node_advice import advice
 from pytest_tarl.ros.parameter_server import ParameterServer
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
 from pytest_tarl.ros.services import ServiceDirectory
@@ -185,7 +185,7 @@ class Process:
             else f"raised {type(error).__name__}: {error}"
         )
         where = blame.describe(blame.of_traceback(error.__traceback__))
-        failure = NodeError(f"Node {self.label!r} {what} ({where}). {advice(error)}".rstrip())
+        failure = NodeError(f"Node {self.label!r} {what} ({where}). {advice(error, self.launched)}".rstrip())
         failure.__cause__ = error
         return failure
 

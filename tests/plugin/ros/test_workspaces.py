@@ -232,14 +232,20 @@ def test_parameters_of_the_namespace_follow_the_node(launches: Path) -> None:
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
-def test_conflicting_launch_files_set_no_parameters_and_give_a_note(launches: Path) -> None:
-    write(launches, {"launch/two.launch": LAUNCH1.format(rate=9)})
+def test_conflicting_launch_files_set_what_is_equal_in_all_and_give_a_note(launches: Path) -> None:
+    other = LAUNCH1.format(rate=9).replace('name="rate"', 'name="limits/low" value="1.0"/><param name="rate"')
+    write(launches, {"launch/two.launch": other})
     workspace.forget()
     found = given(launches / "node.py")
-    assert (found.private, found.shared) == ({}, {})
+    assert found.private == {"kp": 1.5, "limits": {"top": 3, "low": 1}}
+    assert found.shared == {"/robot/mass": 12.5}
     assert found.note.startswith(
-        "node.py is started with different parameters by launch files (one.launch, two.launch)"
+        "node.py is started with different parameters by launch files (one.launch, two.launch), so it got only those"
     )
+    write(launches, {"launch/two.launch": LAUNCH1.format(rate=9).replace("arm.yaml", "low.yaml"),
+                     "config/low.yaml": "kp: true\nlimits: {top: 3.0, low: 1}\n"})  # fmt: skip
+    workspace.forget()
+    assert given(launches / "node.py").private == {"limits": {"low": 1}}
     assert given(launches / "node.py", launches / "launch/two.launch").private["rate"] == 9
     assert given(launches / "smoothing.py") == NOTHING
     with pytest.raises(SettingsError, match=r"one\.launch starts no node from smoothing\.py"):

@@ -1,0 +1,87 @@
+"""Errors of nodes end in one sentence that says what is missing and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.errors import NodeError
+from pytest_tarl.ros import Ros
+from pytest_tarl.ros.launched import given
+from pytest_tarl.ros.messages import workspace
+from tests.plugin.ros.conftest import Start
+
+CASES = {
+    "import cv2000": r"No package of the workspace .* installs cv2000, .*: run pip install cv2000, or put",
+    "import sklearn_not, sklearn": "run pip install sklearn_not",
+    "import skimage": "run pip install scikit-image, or put a replacement into sys.modules in the test",
+    "import RPi.GPIO as GPIO": "it drives a device, so put a replacement into sys.modules",
+    "import PyKDL": "it is a compiled library of a ROS installation, so put a replacement",
+    "import urllib2": "This is Python 2, which no supported ROS uses: port the node to Python 3",
+    "raw_input('go?')": "This is Python 2",
+    "{}.iteritems()": "This is Python 2",
+    "from sys import maxint": "This is Python 2",
+    "exec(compile('print 1', 'x.py', 'exec'))": "This is Python 2",
+    "os.environ['ROBOT_MODEL_OF_TEST']": r"ROBOT_MODEL_OF_TEST is not set: call monkeypatch\.setenv\(\"ROBOT_MODEL_OF",
+    "rospy.get_param('~frame_id')": r"sets this parameter: pass parameters=\{\"frame_id\": …\} to tarl\.start",
+    "rospy.get_param('/robot/mass')": r"pass parameters=\{\"/robot/mass\": …\} to tarl\.start",
+    "yaml.load('a: 1')": r"PyYAML 6 has no default for it: call yaml\.safe_load",
+    "sys.argv[1]": r"The node reads its command line: pass argv=\[…\] to tarl\.start",
+    "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
+    "argparse.ArgumentParser().parse_args(['--what'])": r"incomplete \(unrecognized arguments: --what\): pass argv=",
+}
+SILENT = ["{}['key']", "[][0]", "None.name", "1 / 0", "sys.exit(3)", "undefined_name", "'a' + 1"]
+IMPORTS = "import argparse, os, sys, yaml\nimport rospy\nrospy.init_node('it')\n"
+
+
+@pytest.mark.parametrize("line", CASES)
+def test_an_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -> None:
+    with pytest.raises(NodeError, match=CASES[line]) as error:
+        start(IMPORTS + line)
+    assert "line 4)" in str(error.value)
+    assert str(error.value).count("\n") == 0
+
+
+@pytest.mark.parametrize("line", SILENT)
+def test_other_errors_get_no_advice(line: str, start: Start) -> None:
+    with pytest.raises(NodeError) as error:
+        start(IMPORTS + line)
+    assert str(error.value).endswith("line 4).")
+
+
+def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    for package in ("seen", "tools/unseen"):
+        (tmp_path / package).mkdir(parents=True)
+        name = Path(package).name
+        (tmp_path / package / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    marker = tmp_path / "tools" / "CATKIN_IGNORE"
+    marker.touch()
+    workspace.search(tmp_path / "seen")
+    workspace.forget()
+    with pytest.raises(
+        NodeError, match=r"unseen is in the workspace, but .*CATKIN_IGNORE hides it from the build"
+    ):
+        start("import rospy, unseen")
+
+
+def test_a_parameter_that_is_null_in_yaml_is_not_set(start: Start, tmp_path: Path) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "package.xml").write_text("<package><name>saver</name></package>")
+    (tmp_path / "save.launch").write_text(
+        '<launch><arg name="target" default=""/><node pkg="saver" type="node.py" name="saver">'
+        '<rosparam subst_value="true">\ntarget: $(arg target)\nrate: 5\n</rosparam></node></launch>'
+    )
+    (tmp_path / "node.py").write_text("")
+    workspace.search(tmp_path)
+    workspace.forget()
+    found = given(tmp_path / "node.py")
+    assert (found.private, found.valueless) == ({"rate": 5}, ("target",))
+    ros = Ros()
+    source = "import rospy\nrospy.init_node('saver')\nrospy.get_param('~target')"
+    with ros.installed():
+        ros.launch(found)
+        with pytest.raises(NodeError, match="gives the parameter no value: pass parameters="):
+            start(source, ros=ros)
+    ros.close()
