@@ -11,16 +11,15 @@ from foreign_scripts import DISTRIBUTED
 KINDS = {  # pattern in the message of a failed test → name of the missing feature
     r"No module named '([\w.]+)'": "module {0}",
     r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
-    r"([\w.]+) is not in the in-process ROS yet": "ROS API {0}",
-    r"Message type ([\w/]+) is not known": "message {0}",
+    r"([\w.]+) is not in the in-process ROS": "ROS API {0}",
+    r"Message type ([\w/]+) is unknown": "message {0}",
     r"KeyError: '?([~/\w]+)'? \(.*get_param": "parameter {0}",
     r"exited with status (2)": "command line arguments",
     r"(EOFError|termios.error|reading from stdin)": "keyboard",
     r"KeyError: '(?:TURTLEBOT3_MODEL|LDS_MODEL|[A-Z_]{5,})'": "environment variable",
     r"closed here: ([\w.]+)": "operating system ({0})",
     r"never (waits)": "time: it never waits",
-    r"PackageNotFoundError: \S*package '(\w+)'": "package {0}",
-    r"ResourceNotFound: (\w+)": "package {0}",
+    r"package '(\w+)' not found": "package {0}",
     r"No such file or directory: '([^']+)'": "file {0}",
     r"raised (\w+: .{0,60})": "own {0}",
 }
@@ -48,8 +47,8 @@ def set_apart(fails: str, repository: Path) -> str:
         return f"Python 2 only ({old[1]})"
     if "highgui" in fails:
         return "needs a display: a window of OpenCV"
-    found = re.search(r"No module named '(\w+)|essage type (\w+)/\w+ is not known", fails)
-    name = next((one for one in found.groups() if one), "") if found is not None else ""
+    found = re.search(r"No module named '(\w+)", fails)
+    name = found[1] if found is not None else ""
     if not name or name in DISTRIBUTED or name in _in_checkout(repository):
         return ""
     return f"needs a package from elsewhere: {name}"

@@ -63,6 +63,10 @@ class UnsupportedApiError(TarlError):
     """A node uses a part of the ROS API that the in-process ROS does not implement."""
 
 
+class UnsupportedModuleError(UnsupportedApiError, ModuleNotFoundError):
+    """A node imports a ROS module that the in-process ROS does not implement; it may do without."""
+
+
 class RepairError(TarlError):
     """A mutation cannot be written to the source."""
 

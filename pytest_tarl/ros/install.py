@@ -18,7 +18,7 @@ from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.messages.workspace import packages
-from pytest_tarl.ros.missing import unsupported
+from pytest_tarl.ros.missing import unsupported_module
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
 from pytest_tarl.ros.threads import threads_as_tasks
 from pytest_tarl.stale_modules import holders
@@ -132,6 +132,7 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "ros_numpy.point_cloud2": "ros_numpy",
     "rosgraph": "tools.rosgraph",
     "rosgraph.masterapi": "tools.rosgraph",
+    "rosgraph.names": "tools.rosgraph_names",
     "rosnode": "tools.rosnode",
     "rosparam": "tools.rosparam",
     "rosservice": "tools.rosservice",
@@ -206,7 +207,12 @@ class StandinFinder:
         name = spec.name
         if name in STANDINS:
             module = ModuleType(name)
-            module.__dict__.update(_contents(_HOME + STANDINS[name]))
+            contents = _contents(_HOME + STANDINS[name])
+            inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
+            hidden = {
+                key for key in inner if f"{name}.{key}" in STANDINS
+            }  # modules of ours named like a submodule
+            module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
             module = generated(name)
@@ -215,7 +221,7 @@ class StandinFinder:
         else:
             made = package_module(self._kind or "ros2", name)
             if made is None:
-                raise unsupported(name)
+                raise unsupported_module(name)
             module = made
         module.__path__ = []
         self.loaded.append(name)
@@ -225,21 +231,21 @@ class StandinFinder:
         """Do nothing: the module is complete."""
 
     def _talking_spec(self, name: str) -> ModuleSpec:
-        """Find a message part (`msg`, `srv`, `action`) of a package. Raises UnsupportedApiError if there is none."""
+        """Find a message part (`msg`, `srv`, `action`) of a package. Raises UnsupportedModuleError if there is none."""
         root, _, part = name.partition(".")
         kind = self._kind or "ros1"
         if part.partition(".")[0] in PARTS and is_package(kind, root):
             return self._spec(name)
         if name == root and is_package(kind, root):
             return self._spec(name)
-        raise unsupported(name)
+        raise unsupported_module(name)
 
     def _spec(self, name: str) -> ModuleSpec:
         root = name.partition(".")[0]
         if self._kind is None and root in ("rospy", "rclpy"):
             self._settle_kind("ros1" if root == "rospy" else "ros2")
         if root in _STANDALONE and name not in STANDINS:
-            raise unsupported(name)
+            raise unsupported_module(name)
         return ModuleSpec(name, self, origin="pytest_tarl.ros", is_package=True)  # type: ignore[arg-type]
 
     def _kind_of_importer(self) -> Kind:

@@ -27,7 +27,7 @@ class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
     `node` is the absolute name of a node that is started under the name of the launch file, else empty. `valueless`
-    are the names of private parameters that are null in YAML, which the parameter server cannot store.
+    are the names of parameters whose values are known only at launch, or null in YAML, which ROS 1 cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
@@ -84,7 +84,8 @@ def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: S
         f"{script.name} is started with different parameters by launch files ({shown}), so it got {got}: "
         "name one with tarl.start(…, launch=FILE), or state parameters={…}."
     )
-    return Given(private, shared, note)
+    valueless = {name: None for one, _ in differing for name in one.valueless}
+    return Given(private, shared, note, valueless=tuple(valueless))
 
 
 def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -142,9 +143,9 @@ def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
     files: dict[Path, None] = {}
     valueless: dict[str, None] = {}
     for one in _stated((*launch.settings, *node.settings), full_name):
-        if one.value is None:
+        if one.value is None or one.value is ON_ROBOT:
             valueless[one.name.removeprefix("~")] = None
-        elif one.value is not ON_ROBOT:
+        else:
             (private if one.name.startswith("~") else shared)[one.name.removeprefix("~")] = one.value
             files[one.file] = None
     sources = ", ".join(file.name for file in files if file != launch.file)

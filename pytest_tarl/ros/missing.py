@@ -2,14 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Final
 
-from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.errors import UnsupportedApiError, UnsupportedModuleError
+
+_REPLACE: Final = "put a module of that name into sys.modules in your test"
+_ADVICE: Final[Mapping[str, str]] = {  # package → what to do instead of waiting for it
+    "moveit_commander": f"since MoveIt plans in compiled libraries: {_REPLACE} that plays the planner, or run the test "
+    "on a real ROS (--tarl-ros=real).",
+    "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",
+    "image_transport": f"since its plugins are compiled libraries: {_REPLACE}, or use rospy and cv_bridge.",
+    "tf2_kdl": f"since PyKDL is a compiled library: {_REPLACE}, or use tf2_geometry_msgs.",
+}
 
 
 def unsupported(api: str) -> UnsupportedApiError:
     """Return the error for an API that is not implemented, with advice."""
-    return UnsupportedApiError(
+    return UnsupportedApiError(_sentence(api))
+
+
+def unsupported_module(name: str) -> UnsupportedModuleError:
+    """Return the error for a module that is not implemented, with advice; it is a ModuleNotFoundError, too."""
+    return UnsupportedModuleError(_sentence(name), name=name)
+
+
+def _sentence(api: str) -> str:
+    advice = _ADVICE.get(api.partition(".")[0])
+    if advice is not None:
+        return f"{api} is not in the in-process ROS, {advice}"
+    return (
         f"{api} is not in the in-process ROS yet: give the node a small stand-in for it in your test (monkeypatch "
         "the call, or put a module of that name into sys.modules), or drive the node through the parts that are there."
     )

@@ -58,7 +58,7 @@ def _of_lookup(error: KeyError, given: Given) -> str:
         return ""
     plain = name.removeprefix("~")
     why = (
-        "The launch file gives the parameter no value"
+        "The launch file gives the parameter no value that is known before the launch"
         if plain in given.valueless
         else "Neither the test nor a launch file that starts the node sets this parameter"
     )

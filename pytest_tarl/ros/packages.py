@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.ros.messages.workspace import package_folders, packages
+from pytest_tarl.ros.messages.workspace import package_folders, packages, workspaces
 from pytest_tarl.ros.missing import refuse
 
 __all__ = [
@@ -42,6 +42,18 @@ class InvalidROSPkgException(Exception):  # noqa: N818
     """The package is not in the node's repository (roslib's exception)."""
 
 
+def _absent(package: str) -> str:
+    """Return the sentence for a package whose folder is unknown."""
+    hidden = next((dict(one.hidden)[package] for one in workspaces() if package in dict(one.hidden)), None)
+    if hidden is not None:
+        return f"package '{package}' not found: {hidden} hides it from the build; delete that file"
+    within = " and ".join(str(one.root) for one in workspaces()) or "the node's repository"
+    return (
+        f"package '{package}' not found in {within}: put a checkout of it, or a folder with its package.xml and the "
+        "files that the node reads, below it"
+    )
+
+
 def _folder(package: str) -> Path | None:
     return package_folders().get(package)
 
@@ -50,7 +62,7 @@ def get_package_share_directory(package_name: str) -> str:
     """Return a package's source folder, which stands in for its share directory. Raises PackageNotFoundError."""
     found = _folder(package_name)
     if found is None:
-        raise PackageNotFoundError(f"package '{package_name}' not found, looked in the node's repository")
+        raise PackageNotFoundError(_absent(package_name))
     return str(found)
 
 
@@ -73,7 +85,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
     """Return a package's folder, as roslib does. Raises InvalidROSPkgException if it is unknown."""
     found = _folder(package)
     if found is None and required:
-        raise InvalidROSPkgException(f"cannot locate package {package!r} in the node's repository")
+        raise InvalidROSPkgException(_absent(package))
     return None if found is None else str(found)
 
 
@@ -124,7 +136,7 @@ class RosPack:
         """Return a package's folder. Raises ResourceNotFound if it is unknown."""
         found = _folder(name)
         if found is None:
-            raise ResourceNotFound(name)
+            raise ResourceNotFound(_absent(name))
         return str(found)
 
     def list(self) -> Any:

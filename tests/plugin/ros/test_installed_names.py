@@ -171,3 +171,42 @@ def test_variables_of_ros_are_gone_after_the_episode(monkeypatch: pytest.MonkeyP
         assert os.environ["ROS_DISTRO"] == "noetic"
     ros.close()
     assert "ROS_DISTRO" not in os.environ
+
+
+def test_names_are_joined_and_resolved_as_rosgraph_does(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_NAMESPACE", "robot")
+    ros = start("""
+        import rosgraph, rospy
+        from rosgraph import names
+        from rosgraph.names import load_mappings
+        same = rosgraph.names is names
+        mappings = load_mappings(["scan:=laser", "__name:=x", "_rate:=3", "file.yaml"])
+        joined = [names.ns_join(*pair) for pair in (("/a", "b"), ("/a/", "/b"), ("", "b"), ("~", "b"), ("a", "~b"))]
+        resolved = [names.resolve_name(name, "/ns/node", {"/ns/scan": "/laser"}) for name in ("scan", "/x/", "~y", "")]
+        spaces = [names.namespace("/a/b"), names.make_global_ns("a"), names.make_caller_id("me")]
+        script = [names.script_resolve_name("rostopic", name) for name in ("scan", "/scan", "")]
+        legal = [names.is_legal_name(name) for name in ("a/b", "1a", "a//b", "~a", "", None)]
+        base = [names.is_legal_base_name(name) for name in ("a_1", "a/b", "")]
+        two = {names.anonymous_name("cam"), names.anonymous_name("cam2")}
+        plain = names.canonicalize_name("/a//b/"), names.get_ros_namespace({}, ["__ns:=left"])
+        refused = []
+        for function, argument in ((names.make_global_ns, "~a"), (names.namespace, None)):
+            try:
+                function(argument)
+            except ValueError:
+                refused.append(function.__name__)
+    """)
+    found = ros.namespace
+    assert found["same"]
+    assert found["mappings"] == {"scan": "laser"}
+    assert found["joined"] == ["/a/b", "/b", "b", "~b", "~b"]
+    assert found["resolved"] == ["/laser", "/x", "/ns/node/y", "/ns/"]
+    assert found["spaces"] == ["/a/", "/a/", "/robot/me"]
+    assert found["script"] == ["/robot/scan", "/scan", "/robot/"]
+    assert found["legal"] == [True, False, False, True, True, False]
+    assert found["base"] == [True, False, False]
+    assert len(found["two"]) == 2
+    assert found["plain"] == ("/a/b", "/left/")
+    assert found["refused"] == ["make_global_ns", "namespace"]

@@ -26,6 +26,9 @@ CASES = {
     "os.environ['ROBOT_MODEL_OF_TEST']": r"ROBOT_MODEL_OF_TEST is not set: call monkeypatch\.setenv\(\"ROBOT_MODEL_OF",
     "rospy.get_param('~frame_id')": r"sets this parameter: pass parameters=\{\"frame_id\": …\} to tarl\.start",
     "rospy.get_param('/robot/mass')": r"pass parameters=\{\"/robot/mass\": …\} to tarl\.start",
+    "import rospkg; rospkg.RosPack().get_path('gripper')": r"package 'gripper' not found in .*: put a checkout of it",
+    "import ament_index_python as a; a.get_package_share_directory('gripper')": "'gripper' not found in .*package.xml",
+    "from roslib.packages import get_pkg_dir; get_pkg_dir('gripper')": "'gripper' not found in .*: put a checkout",
     "yaml.load('a: 1')": r"PyYAML 6 has no default for it: call yaml\.safe_load",
     "sys.argv[1]": r"The node reads its command line: pass argv=\[…\] to tarl\.start",
     "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
@@ -50,6 +53,19 @@ def test_other_errors_get_no_advice(line: str, start: Start) -> None:
     assert str(error.value).endswith("line 4).")
 
 
+def test_a_node_may_do_without_a_module_that_is_not_implemented(start: Start) -> None:
+    ros = start("""
+        import rospy
+        found = []
+        for name in ("moveit_commander", "nav2_simple_commander.robot_navigator", "rospy.impl"):
+            try:
+                __import__(name)
+            except ImportError as error:
+                found.append(error.name)
+    """)
+    assert ros.namespace["found"] == ["moveit_commander", "nav2_simple_commander", "rospy.impl"]
+
+
 def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
     for package in ("seen", "tools/unseen"):
@@ -64,13 +80,20 @@ def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path
         NodeError, match=r"unseen is in the workspace, but .*CATKIN_IGNORE hides it from the build"
     ):
         start("import rospy, unseen")
+    with pytest.raises(
+        NodeError, match=r"'unseen' not found: .*CATKIN_IGNORE hides it from the build; delete"
+    ):
+        start("import rospkg, rospy; rospkg.RosPack().get_path('unseen')")
 
 
-def test_a_parameter_that_is_null_in_yaml_is_not_set(start: Start, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "argument", ['name="target" default=""', 'name="target"'], ids=["null in YAML", "no default"]
+)
+def test_a_parameter_without_a_value_is_not_set(argument: str, start: Start, tmp_path: Path) -> None:
     (tmp_path / ".git").mkdir()
     (tmp_path / "package.xml").write_text("<package><name>saver</name></package>")
     (tmp_path / "save.launch").write_text(
-        '<launch><arg name="target" default=""/><node pkg="saver" type="node.py" name="saver">'
+        f'<launch><arg {argument}/><node pkg="saver" type="node.py" name="saver">'
         '<rosparam subst_value="true">\ntarget: $(arg target)\nrate: 5\n</rosparam></node></launch>'
     )
     (tmp_path / "node.py").write_text("")
