@@ -105,6 +105,6 @@ def test_a_parameter_without_a_value_is_not_set(argument: str, start: Start, tmp
     source = "import rospy\nrospy.init_node('saver')\nrospy.get_param('~target')"
     with ros.installed():
         ros.launch(found)
-        with pytest.raises(NodeError, match="gives the parameter no value: pass parameters="):
+        with pytest.raises(NodeError, match="no value that is known before the launch: pass parameters="):
             start(source, ros=ros)
     ros.close()
