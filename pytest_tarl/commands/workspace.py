@@ -33,17 +33,29 @@ def table(workspace: Workspace) -> Iterator[str]:
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     for row in rows:
         yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-    problems = list(workspace.problems())
+    problems = [f"{_place(workspace, one)}: {one.reason}" for one in workspace.problems()]
+    problems += [
+        f"{_relative(workspace, one.marker)}: hides the package {one.package.name}"
+        for one in workspace.hidden
+    ]
     if problems:
         yield ""
         yield "Not read:"
-        yield from (f"  {_place(workspace, one)}: {one.reason}" for one in problems)
+        yield from (f"  {one}" for one in problems)
 
 
 def document(workspace: Workspace) -> str:
     """Return the whole description as JSON; paths are relative to `root`."""
     packages = [_package(workspace, one) for one in workspace.packages]
-    whole = {"version": FORMAT_VERSION, "root": str(workspace.root), "packages": packages}
+    hidden = [
+        {"name": one.package.name, "marker": _relative(workspace, one.marker)} for one in workspace.hidden
+    ]
+    whole = {
+        "version": FORMAT_VERSION,
+        "root": str(workspace.root),
+        "packages": packages,
+        "hidden": hidden,
+    }
     return json.dumps(whole, indent=2) + "\n"
 
 

@@ -16,6 +16,7 @@ from pytest_tarl.ros.launched import WITH_TEXTS, Given, parameters, python_files
 from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.hidden_packages import problems as hidden
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
@@ -150,7 +151,9 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
         why = f": {launch.problems[0].reason}" if launch.problems else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
     return LaunchPlan(
-        file, tuple(_launched(launch, one, workspace) for one in launch.nodes), tuple(_notes(launch))
+        file,
+        tuple(_launched(launch, one, workspace) for one in launch.nodes),
+        tuple(_notes(launch, workspace)),
     )
 
 
@@ -227,9 +230,10 @@ def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
     )
 
 
-def _notes(launch: Launch) -> Iterator[str]:
+def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
     """Yield one note on what of the launch file is not known."""
     problems = [f"{one.file.name}:{one.line}: {one.reason}" for one in launch.problems]
+    problems += [f"{one.file.parent.name}/{one.file.name}: {one.reason}" for one in hidden(launch, workspace)]
     if problems:
         more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
         yield f"not known of {launch.file.name}: {'; '.join(problems[:SHOWN])}{more}."

@@ -54,7 +54,7 @@ def _in_workspace(root: str) -> str:
             "name it in packages of its setup.py, or in ament_python_install_package."
         )
     for workspace in workspaces():
-        marker = dict(workspace.hidden).get(root)
+        marker = workspace.marker_of(root)
         if marker is not None:
             return (
                 f"The package {root} is in the workspace, but {marker} hides it from the build: delete that file, or "

@@ -44,9 +44,9 @@ class InvalidROSPkgException(Exception):  # noqa: N818
 
 def _absent(package: str) -> str:
     """Return the sentence for a package whose folder is unknown."""
-    hidden = next((dict(one.hidden)[package] for one in workspaces() if package in dict(one.hidden)), None)
-    if hidden is not None:
-        return f"package '{package}' not found: {hidden} hides it from the build; delete that file"
+    markers = [marker for one in workspaces() if (marker := one.marker_of(package)) is not None]
+    if markers:
+        return f"package '{package}' not found: {markers[0]} hides it from the build; delete that file"
     within = " and ".join(str(one.root) for one in workspaces()) or "the node's repository"
     return (
         f"package '{package}' not found in {within}: put a checkout of it, or a folder with its package.xml and the "

@@ -32,6 +32,7 @@ from tarl_lint.system.interface_cache import SPARE, keep, kept, key
 from tarl_lint.system.interfaces import interface
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.hidden_packages import folders_with, named_by
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
@@ -85,11 +86,14 @@ class _Workbench:
     Analyses each program at most once, or not at all if `cache` has its interface.
     """
 
-    def __init__(self, root: Path, config: Config, tell: Tell, cache: Cache) -> None:
+    def __init__(self, asked: Request, config: Config, tell: Tell, cache: Cache) -> None:
         self.config, self.tell, self.cache = config, tell, cache
         tell("Looking for packages")
+        root = asked.root.resolve()
         self.workspace = read(root)
-        found = discover.find((root,), config)
+        self.launches = tuple(_launches(asked, self.workspace))
+        hidden = {one for launch in self.launches for one in named_by(launch, self.workspace)}
+        found = discover.find((root, *folders_with(hidden, self.workspace)), config)
         self.files: dict[Path, SourceFile] = {one.path.resolve(): one for one in found.files}
         self._known: dict[tuple[Program, str], Interface | str] = {}
 
@@ -135,10 +139,10 @@ def systems(
     if not asked.root.is_dir():
         raise UsageError(f"{asked.root}: no such folder. Name the folder of a workspace.")
     cache = opened([asked.root], config, "system-", SPARE) if cached else Cache(None)
-    bench = _Workbench(asked.root.resolve(), config, tell, cache)
+    bench = _Workbench(asked, config, tell, cache)
     made = [
         compose.composed(launch, bench.workspace, tuple(bench.files), bench.interface)
-        for launch in _launches(asked, bench.workspace)
+        for launch in bench.launches
     ]
     cache.save()
     return tuple(replace(one, arguments=asked.arguments) for one in made)

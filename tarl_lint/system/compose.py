@@ -20,6 +20,7 @@ from tarl_lint.system.binding import (
 from tarl_lint.system.cpp_sources import named_topics
 from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.system.service_calls import PARTS, part
+from tarl_lint.workspace import hidden_packages
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
@@ -41,7 +42,7 @@ Reader = Callable[[Program, Mapping[str, object]], Interface | str]
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
     """Return the system of a launch file. `files` are the Python files of the workspace."""
     instances = [_instance(node, launch, workspace, files, read) for node in launch.nodes]
-    problems = (*launch.problems, *_unparsed(launch))
+    problems = (*launch.problems, *hidden_packages.problems(launch, workspace), *_unparsed(launch))
     return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), problems)
 
 

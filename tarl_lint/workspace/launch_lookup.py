@@ -25,19 +25,20 @@ def launch_file(named: str, workspace: Workspace, shown: str) -> Path:
 
     Raises NoLaunchFileError if there is none, or if several packages have it.
     """
-    known = {
-        (package.name, file.name): file for package in workspace.packages for file in package.launch_files
-    }
     package, _, name = named.rpartition("/")
-    found = [
-        file for (owner, file_name), file in known.items() if file_name == name and package in ("", owner)
-    ]
+    for packages in (workspace.packages, tuple(one.package for one in workspace.hidden)):
+        known = {(one.name, file.name): file for one in packages for file in one.launch_files}
+        found = [
+            file for (owner, file_name), file in known.items() if file_name == name and package in ("", owner)
+        ]
+        if found:
+            break
     if len(found) == 1:
         return found[0]
     if found:
         owners = ", ".join(sorted(f"{owner}/{one}" for owner, one in known if one == name))
         raise NoLaunchFileError(f"{named} is a launch file of several packages: name one of {owners}.")
-    names = sorted({file_name for _, file_name in known})
+    names = sorted({file.name for one in workspace.packages for file in one.launch_files})
     close = difflib.get_close_matches(name, names, n=1)
     meant = f" Did you mean {close[0]}?" if close else ""
     raise NoLaunchFileError(

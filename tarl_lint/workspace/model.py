@@ -59,31 +59,44 @@ class Package:
 
 
 @dataclass(frozen=True, slots=True)
+class Hidden:
+    """A package that is hidden from the build tools by `marker`, a file such as COLCON_IGNORE."""
+
+    package: Package
+    marker: Path
+
+
+@dataclass(frozen=True, slots=True)
 class Workspace:
     """All packages below a folder, sorted by name; of packages with the same name, the first counts.
 
-    `hidden` maps the names of further packages to the file, such as COLCON_IGNORE, that hides each of them.
+    `hidden` are further packages. They are found by name and by path, but are not among `packages`.
     """
 
     root: Path
     packages: tuple[Package, ...] = ()
-    hidden: tuple[tuple[str, Path], ...] = ()
+    hidden: tuple[Hidden, ...] = ()
 
     def package(self, name: str) -> Package | None:
-        """Return the package of that name."""
-        return next((one for one in self.packages if one.name == name), None)
-
-    def absence(self, name: str) -> str:
-        """Return a clause that says why there is no package of that name."""
-        marker = next((path for hidden, path in self.hidden if hidden == name), None)
-        if marker is None:
-            return f"the package {name} is not in the workspace"
-        return f"the package {name} is hidden by {marker.relative_to(self.root).as_posix()}"
+        """Return the package of that name, a hidden one if there is no other."""
+        return next((one for one in self._all() if one.name == name), None)
 
     def package_of(self, path: Path) -> Package | None:
         """Return the innermost package that contains a file."""
-        around = [one for one in self.packages if path.is_relative_to(one.folder)]
+        around = [one for one in self._all() if path.is_relative_to(one.folder)]
         return max(around, key=lambda one: len(one.folder.parts), default=None)
+
+    def hidden_at(self, path: Path) -> Hidden | None:
+        """Return the innermost hidden package that contains a file or folder."""
+        around = [one for one in self.hidden if path.is_relative_to(one.package.folder)]
+        return max(around, key=lambda one: len(one.package.folder.parts), default=None)
+
+    def marker_of(self, name: str) -> Path | None:
+        """Return the file that hides the package of that name, if it is hidden."""
+        return next((one.marker for one in self.hidden if one.package.name == name), None)
+
+    def _all(self) -> tuple[Package, ...]:
+        return (*self.packages, *(one.package for one in self.hidden))
 
     def problems(self) -> Iterator[Problem]:
         """Yield everything that could not be read."""

@@ -28,7 +28,7 @@ def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> 
         return "a composable node" if node.kind == "component" else "a container of composable nodes"
     package = workspace.package(node.package)
     if package is None:
-        return workspace.absence(node.package)
+        return f"the package {node.package} is not in the workspace"
     declared = next((one for one in package.executables if one.name == node.executable), None)
     if declared is not None and declared.path is not None:
         return Program(declared.path, declared.entry or "")

@@ -10,7 +10,7 @@ from tarl_lint.workspace.executables import installed, may_be_started
 from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_lookup import ENDINGS
 from tarl_lint.workspace.manifests import Manifest, manifest
-from tarl_lint.workspace.model import INTERFACES, Package, Problem, Workspace
+from tarl_lint.workspace.model import INTERFACES, Hidden, Package, Problem, Workspace
 
 _YAML: Final = (".yaml", ".yml")
 
@@ -43,11 +43,26 @@ class _Found:
 def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     """Return the description of the workspace below a folder. Nothing is executed or written.
 
-    Packages hidden by a marker such as COLCON_IGNORE are skipped, unless they contain one of the folders `kept`.
+    Packages below a marker such as COLCON_IGNORE are hidden, unless the marked folder contains one of `kept`.
     """
+    markers: list[Path] = []
+    packages = {one.name: one for one in reversed(_packages(root.resolve(), kept, markers))}
+    hidden: dict[str, Hidden] = {}
+    for marker in markers:  # grows with the markers below hidden folders
+        for package in _packages(marker.parent, kept, markers):
+            if package.name not in packages:
+                hidden.setdefault(package.name, Hidden(package, marker))
+    return Workspace(
+        root.resolve(),
+        tuple(packages[name] for name in sorted(packages)),
+        tuple(hidden[name] for name in sorted(hidden)),
+    )
+
+
+def _packages(root: Path, kept: frozenset[Path], markers: list[Path]) -> list[Package]:
+    """Return the packages below a folder in the order of their folders; add the markers of others to `markers`."""
     found: dict[Path, _Found] = {}
-    ignored: list[Path] = []
-    for folder, files in folders(root.resolve(), kept, ignored):
+    for folder, files in folders(root, kept, markers):
         if "package.xml" in files:
             found[folder] = _Found(folder, declared=True)
         owner = next((found[one] for one in (folder, *folder.parents) if one in found), None)
@@ -60,17 +75,7 @@ def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
         elif owner is not None:
             for name in files:
                 owner.take(folder / name)
-    packages: dict[str, Package] = {}
-    for one in found.values():
-        package = _package(one)
-        packages.setdefault(package.name, package)
-    hidden = tuple((name, marker) for marker in ignored for name in _names(marker.parent))
-    return Workspace(root.resolve(), tuple(packages[name] for name in sorted(packages)), hidden)
-
-
-def _names(root: Path) -> list[str]:
-    """Return the names of the packages below a folder."""
-    return [manifest(folder)[0].name for folder, files in folders(root) if "package.xml" in files]
+    return [_package(one) for one in found.values()]
 
 
 def _package(found: _Found) -> Package:

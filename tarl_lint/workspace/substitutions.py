@@ -67,7 +67,7 @@ class Scope:
     def _found(self, package: str) -> str:
         known = self.workspace.package(package)
         if known is None:
-            raise SymbolicError(self.workspace.absence(package))
+            raise SymbolicError(f"the package {package} is not in the workspace")
         return str(known.folder)
 
     def _argument(self, name: str) -> str:

@@ -284,11 +284,33 @@ def workspace(tmp_path: Path) -> Workspace:
     return read(tmp_path / "ws/src")
 
 
-def test_a_package_that_a_marker_hides_is_said_to_be_hidden(tmp_path: Path) -> None:
+def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Path) -> None:
     found = workspace(tmp_path)
-    assert found.absence("old") == "the package old is hidden by old/COLCON_IGNORE"
-    assert found.absence("elsewhere") == "the package elsewhere is not in the workspace"
-    assert [name for name, _ in found.hidden] == ["old"]  # build output has no marker of a person
+    assert [(one.package.name, one.marker) for one in found.hidden] == [
+        ("old", tmp_path / "ws/src/old/COLCON_IGNORE")
+    ]  # build output has no marker of a person
+    assert "old" not in {one.name for one in found.packages}
+    for old in (found.package("old"), found.package_of(tmp_path / "ws/src/old/scripts/drive.py")):
+        assert old is not None
+        assert old.folder == tmp_path / "ws/src/old"
+    assert found.package("elsewhere") is None
+
+
+def test_a_visible_package_counts_before_a_hidden_one_of_the_same_name(tmp_path: Path) -> None:
+    write(package(tmp_path / "a_fork", "arm"), CATKIN_IGNORE="")
+    package(tmp_path / "arm", "arm")
+    found = read(tmp_path)
+    arm = found.package("arm")
+    assert arm is not None
+    assert (arm.folder, found.hidden) == (tmp_path / "arm", ())
+
+
+def test_markers_below_a_hidden_folder_hide_too(tmp_path: Path) -> None:
+    package(tmp_path / "arms/left", "left")
+    write(tmp_path / "arms", CATKIN_IGNORE="")
+    write(package(tmp_path / "arms/right", "right"), COLCON_IGNORE="")
+    found = [(one.package.name, one.marker.name) for one in read(tmp_path).hidden]
+    assert found == [("left", "CATKIN_IGNORE"), ("right", "COLCON_IGNORE")]
 
 
 def test_a_workspace_lists_its_packages_programs_modules_and_files(tmp_path: Path) -> None:

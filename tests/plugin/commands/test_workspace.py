@@ -66,3 +66,18 @@ def test_user_mistakes_give_one_sentence(
     (tmp_path / "empty").mkdir()
     assert main(["workspace", str(tmp_path / name)]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_hidden_packages_are_named_with_the_file_that_hides_them(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old = folder / "old"
+    old.mkdir()
+    (old / "package.xml").write_text("<package><name>arm_old</name></package>")
+    (old / "COLCON_IGNORE").write_text("")
+    assert main(["workspace", str(folder)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "  old/COLCON_IGNORE: hides the package arm_old"
+    assert main(["workspace", "--format", "json", str(folder)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [one["name"] for one in found["packages"]] == ["arm_base"]
+    assert found["hidden"] == [{"name": "arm_old", "marker": "old/COLCON_IGNORE"}]

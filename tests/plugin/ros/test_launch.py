@@ -171,6 +171,15 @@ def test_ros1_nodes_get_names_parameters_and_modules_of_their_own(tarl: Tarl) ->
     )
 
 
+def test_a_node_of_a_hidden_package_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
+    write(tmp_path, {"other/CATKIN_IGNORE": ""})
+    workspace.forget()
+    tarl.launch("one/launch/robot.launch", only=["first", "second"])
+    assert sent(tarl, "/r1/start", 1.0) == 3.0 * 10.0 * (0.5 * 10.0 * 2.0)
+    (note,) = tarl.ros.notes
+    assert "other/CATKIN_IGNORE: the file hides the package other from ROS" in note
+
+
 def test_launch_arguments_and_the_choice_of_nodes(tarl: Tarl) -> None:
     tarl.launch("robot.launch", arguments={"robot": "husky"}, only=["first"], parameters={"gain": 1.0})
     assert sent(tarl, "/husky/start", 2.0) is None
