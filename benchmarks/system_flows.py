@@ -2,9 +2,10 @@
 
     python benchmarks/system_flows.py TREES [--judged benchmarks/system_flows_2.json]
 
-TREES holds the repositories of the judgements as folders `owner+name`, at the commits named there. There is a
-judgement (node, topic, topic, kind) for each pair of topics between which data passes in one node. Flows of nodes
-that are not Python are not judged. A flow is right if node, topics and kind agree.
+TREES holds the repositories of the judgements as folders `owner+name`, at the commits named there. For the launch file
+"", all nodes of the tree are analysed without launch files. There is a judgement (node, topic, topic, kind) for each
+pair of topics between which data passes in one node. Flows of nodes that are not Python are not judged. A flow is right
+if node, topics and kind agree.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def _launches(judged: Mapping[str, Any], trees: Path) -> Iterator[tuple[Path, li
 def _found(launch: Path, trees: Path) -> dict[Flow, str]:
     """Return the reported flows of the nodes that were read, with their kinds."""
     tree = trees / launch.relative_to(trees).parts[0]
-    asked = Request(str(launch), paths=(tree,))
+    asked = Request("" if launch == tree else str(launch), paths=(tree,))
     return {
         (hop.node, hop.source, hop.sink): hop.kind
         for system in systems(asked, resolve(Options()))
