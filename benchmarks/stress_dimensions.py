@@ -2,7 +2,7 @@
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
-    python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours random CMA-ES Ψ-TaLiRo STGEM]
+    python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
 The worlds of stress_worlds.py, stress_worlds_2.py and stress_worlds_3.py are formulas; the last ones were not used in
 development. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the
@@ -10,7 +10,9 @@ task, and three faults of the topic of its first numeric sensor (bias, latency, 
 every task. Each method may run BUDGET episodes. For each drift that it proposes, a peer is given a cost. If the
 guarantee fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the
 largest distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer
-its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1).
+its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that
+it confirmed, for which it spent episodes, and those that it expects to fail. The method `confirmed` offers only the
+confirmed ones.
 """
 
 from __future__ import annotations
@@ -52,7 +54,7 @@ from pytest_tarl.stressing.evaluating import BudgetSpentError, Evaluator, outcom
 from pytest_tarl.stressing.findings import Curve, confirmed  # noqa: E402
 from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
-from pytest_tarl.stressing.search import explore  # noqa: E402
+from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS}
 BUDGET = 600  # episodes of a run
@@ -134,13 +136,22 @@ def formula(name: str) -> Arena:
 
 
 def ours(one: Arena, seed: int) -> list[Point]:
-    """Return the failing drifts of a stress run, the nearest first."""
+    """Return the failing drifts of a stress run, confirmed or only expected, the nearest first."""
+    reported, together = searched(one, seed)
+    expected = [failure.point for failure in together.expected]
+    unique = {tuple(point.values()): point for point in [*reported, *expected]}
+    return sorted(unique.values(), key=lambda point: distance(one.space, point))
+
+
+def searched(one: Arena, seed: int) -> tuple[list[Point], Together]:
+    """Return the drifts that a stress run reports as failing, and its search in several directions."""
     evaluator = one.evaluator(seed, BUDGET)
     curves = [Curve(ray) for ray in rays(one.space, {})]
-    together = Together(RISK / (len(curves) + 2), curves)
-    explore(evaluator, together)
-    found = [*confirmed(curves), *together.found]
-    return [failure.point for failure in sorted(found, key=lambda failure: failure.distance)]
+    risks = divided(RISK, len(curves))
+    together = Together(risks.combinations, curves)
+    explore(evaluator, together, risks.each)
+    found = sorted([*confirmed(curves), *together.found], key=lambda failure: failure.distance)
+    return [failure.point for failure in found], together
 
 
 class Uniform:
@@ -257,6 +268,13 @@ def at_least_as_near(own: float | None, other: float | None) -> bool:
     return own <= other * (1 + 1e-9)
 
 
+def offered(one: Arena, seed: int, method: str, home: Path, seconds: float) -> list[Point]:
+    """Return the failing drifts of a method, the nearest first."""
+    if method == "confirmed":
+        return searched(one, seed)[0]
+    return ours(one, seed) if method == "ours" else peer_run(one, seed, method, home, seconds)
+
+
 def compare(
     one: Arena, methods: Sequence[str], seeds: int, home: Path, seconds: float
 ) -> dict[str, list[float | None]]:
@@ -264,8 +282,7 @@ def compare(
     found: dict[str, list[float | None]] = {method: [] for method in methods}
     for seed in range(seeds):
         for method in methods:
-            points = ours(one, seed) if method == "ours" else peer_run(one, seed, method, home, seconds)
-            found[method].append(verified(one, seed, points))
+            found[method].append(verified(one, seed, offered(one, seed, method, home, seconds)))
         told = " ".join(f"{method} {_shown(found[method][-1])}" for method in methods)
         print(f"{one.task} {seed}: {told}", file=sys.stderr, flush=True)
     return found
@@ -280,7 +297,7 @@ def harmless_runs(runs: int) -> str:
     one = recorded("harmless", Formula(harmless), world_space(), FORMULA)
     false = 0
     for number in range(1, runs + 1):
-        false += bool(ours(one, number))
+        false += bool(searched(one, number)[0])
         print(f"{false} of {number}", file=sys.stderr, flush=True)
     return f"A failure was reported in {false} of {runs} harmless runs."
 

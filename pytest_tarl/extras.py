@@ -12,7 +12,7 @@ from urllib.request import url2pathname
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
 FLEET = ("dask", "duckdb", "fsspec", "pyarrow", "threadpoolctl")
-STRESS = ("cma", "hypothesis")
+STRESS = ("cma", "hypothesis", "threadpoolctl")
 SOBOL = ("SALib",)
 
 

@@ -147,7 +147,7 @@ def stressed(model: Model, robustness: Robustness, seed: int, limit: int) -> int
         usual = runs.value(space.nominal)
         given = Guarantee(0.95, max(usual, 1e-9), (usual,) * 100, 1.0)
         evaluator = Evaluator(runs, space, "inputs", given, seed, 10**6, lambda *_: None)
-        explore(evaluator, Together(0.01, [Curve(ray) for ray in rays(space, {})]))
+        explore(evaluator, Together(0.01, [Curve(ray) for ray in rays(space, {})]), 0.01)
     except FalsifiedError:
         pass
     return runs.falsified

@@ -11,11 +11,14 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.boundary import COARSE, bisect
 from pytest_tarl.stressing.evaluating import NEAREST, RAYS, SIZES, Evaluator
 from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed, failure
-from pytest_tarl.stressing.nearest import Nearest
+from pytest_tarl.stressing.nearest import EXPECTED, FIRM, NEAR, Nearest, Steps
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
 INSIDE = 0.9  # share of each boundary at which directions are combined; each direction alone passes there
 FIRST = 0.5  # share of the budget that the approach to the nearest failing drift may use
+VETTED = (
+    0.55  # share of the budget after which more episodes at the drift found leave the rest to confirmation
+)
 LAST = 0.85  # share of the budget after which pairs and evolution leave the rest to confirmation
 QUICK = SIZES[0]  # episodes at a point of a ray before the approach
 
@@ -30,6 +33,9 @@ class Together:
     tried: int = 0
     margin_map: MarginMap | None = None
     tests: int = 0
+    expected: list[Failure] = field(
+        default_factory=list
+    )  # drifts that fail by the model of the search, not confirmed
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
         """Test drifts on fresh seeds, in order, until one is confirmed; the k-th test of all has risk / k(k + 1).
@@ -73,7 +79,7 @@ class Combined:
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
-        self.nearest = Nearest(evaluator, together.curves)
+        self.nearest = Nearest(evaluator, together.curves, risk=together.risk)
 
     def begin(self) -> None:
         """Look at the rays quickly, approach the nearest failing drift, and confirm it. Raise BudgetSpentError."""
@@ -82,26 +88,31 @@ class Combined:
                 for t in curve.ray.places:
                     curve.evidence[t] = self.evaluator.examine(curve.ray.point(t), QUICK)
             self.nearest.approach()
-        self._confirm()
+        with self.evaluator.limited(VETTED):
+            self.nearest.vet()
+        self._confirm(FIRM)
 
     def end(self) -> None:
         """Look for nearer drifts, test pairs, and confirm what was found. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
             self.nearest.improve()
+            self.nearest.vet()
             pairs(self.evaluator, self.together, proposed)
-        self._confirm()
+        self._confirm(NEAR)
         for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
             self.together.confirm([point], self.evaluator)
 
     def draw(self) -> None:
-        """Predict the map from all episodes, if the budget sufficed to look at the rays."""
+        """Predict the map and the nearest failures from all episodes, if the budget sufficed to look at the rays."""
         if all(curve.evidence for curve in self.together.curves):
+            found = self.nearest.expected(EXPECTED)
+            self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
 
-    def _confirm(self) -> None:
+    def _confirm(self, steps: Steps) -> None:
         self.together.tried = len(self.nearest.tried)
-        self.together.confirm(self.nearest.chain(), self.evaluator)
+        self.together.confirm(self.nearest.chain(steps), self.evaluator)
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:

@@ -5,14 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from math import sqrt
 from time import monotonic
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.spaces import Point, Space
-from pytest_tarl.stressing.guarantee import Evidence, Guarantee, Outcome, examined, margin_of, refuted
+from pytest_tarl.stressing.guarantee import (
+    Evidence,
+    Guarantee,
+    Outcome,
+    examined,
+    hopeless,
+    margin_of,
+    refuted,
+)
 
 SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
 FRESH = (16, 32)  # episodes on fresh seeds after which a failure along a ray is confirmed or not
@@ -84,12 +91,16 @@ class Evaluator:
         """Return whether the fresh seeds of a pool, paired with nominal runs, show at `risk` that the guarantee fails.
 
         A pool may serve several points if none of them was chosen by its outcomes. The test ends after the first of
-        `sizes` at which the failure is shown; the risk is divided among them.
+        `sizes` at which the failure is shown, or hardly can be any more; the risk is divided among them.
         """
+        share = risk / len(sizes)
         for size in sizes:
             outcomes = self._of(pool, point, size)
-            if refuted(self.guarantee, outcomes, self._of(pool, self.space.nominal, size), risk / len(sizes)):
+            nominal = self._of(pool, self.space.nominal, size)
+            if refuted(self.guarantee, outcomes, nominal, share):
                 return True
+            if hopeless(self.guarantee, outcomes, nominal, sizes[-1], share):
+                return False
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
@@ -106,9 +117,17 @@ class Evaluator:
             )
         return self._measured[key]
 
-    def noise(self, point: Point) -> float:
-        """Return the approximate standard deviation of a single episode's margin at a point."""
-        return self.measured(point)[1] * sqrt(len(self._known[("search", *point.values())]))
+    def losses(self, point: Point) -> tuple[list[float], int]:
+        """Return the losses of all episodes that the search ran at a point, and how many of the episodes failed.
+
+        A loss is against the nominal episode on its seed, as a share of the tolerated one.
+        """
+        outcomes = self._known[("search", *point.values())]
+        unit = self.guarantee.tolerance
+        pairs = zip(outcomes, self.common(self.space.nominal, len(outcomes)), strict=True)
+        lost = [before.total - after.total for after, before in pairs]
+        shares = [one / unit if unit > 0.0 else 2.0 * (one > 0.0) for one in lost]
+        return shares, sum(not one.passed for one in outcomes)
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes on the search's first seeds. Raise BudgetSpentError if the budget does not cover them."""

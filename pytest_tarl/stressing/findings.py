@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from pytest_tarl.spaces import Point, Space, Span
@@ -12,6 +13,7 @@ from pytest_tarl.stressing.rays import Ray, distance
 
 CONFIDENCE = 0.9  # that a boundary lies in its interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6  # largest risk that the guarantee holds at the far end of the interval
+NEARER = 0.98  # share of a distance below which another one is nearer
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # largest risk that it fails at the near end
 
 
@@ -193,6 +195,7 @@ class Stress:
     episodes: int
     curves: tuple[Curve, ...]
     combinations: tuple[Failure, ...] = ()
+    expected: tuple[Failure, ...] = ()  # drifts that fail by the model of the search, but are not confirmed
     seconds: float | None = None  # the limit of the time, if that is the budget
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
     tried: int = 0  # combinations
@@ -201,6 +204,12 @@ class Stress:
     sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
     repairs: tuple[Attempt, ...] | None = None  # None if no repair was asked for
     ended: str = ""  # why the search ended early: budget, interrupted, or nominal; else empty
+
+    @property
+    def nearer(self) -> Failure | None:
+        """Return the nearest drift that fails by the model, if it is nearer than every confirmed failure."""
+        limit = min((one.distance for one in self.failures), default=inf)
+        return next((one for one in self.expected if one.distance < NEARER * limit), None)
 
     @property
     def failures(self) -> tuple[Failure, ...]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from itertools import takewhile
 from math import sqrt
 from statistics import fmean, stdev
 from typing import Literal
@@ -16,6 +18,7 @@ from pytest_tarl.learning.guarantees import CONFIDENCE
 
 LOWEST = -1.5  # margin below which a drift says little about the boundary, since it fails clearly
 LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
+HOPEFUL = 0.84  # confidence of a bound one standard error above the mean
 SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it gives no guarantee
 
 Answer = Literal["fails", "holds", "open"]
@@ -140,8 +143,26 @@ def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Out
 
 def most_passed(given: Guarantee, count: int, risk: float) -> int:
     """Return the largest number of passed episodes that refutes the guarantee; -1 if no number does."""
-    refuting = [n for n in range(count + 1) if rate(n, count, 1.0 - risk / 2).high < given.rate]
+    return _most_passed(given.rate, count, risk)
+
+
+@cache
+def _most_passed(least: float, count: int, risk: float) -> int:
+    refuting = takewhile(lambda n: rate(n, count, 1.0 - risk / 2).high < least, range(count + 1))
     return max(refuting, default=-1)
+
+
+def hopeless(
+    given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], most: int, risk: float
+) -> bool:
+    """Return whether `most` episodes would hardly refute the guarantee, if these are the first of them.
+
+    That is so if about one standard error more of loss would be tolerated, and the same of failures would be too few.
+    """
+    count, failed = len(outcomes), sum(not one.passed for one in outcomes)
+    if (failed + sqrt(failed + 1.0)) / count * most >= most - most_passed(given, most, risk):
+        return False
+    return mean_of(_losses(outcomes, nominal), HOPEFUL).high <= given.tolerance
 
 
 def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:

@@ -11,8 +11,9 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs, seconds
-FORMAT_VERSION = 3
+# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs, seconds,
+# 4: drifts that are expected to fail
+FORMAT_VERSION = 4
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
 
@@ -44,6 +45,7 @@ def document(stress: Stress) -> dict[str, Any]:
         "guarantee": {"success": given.rate, "loss": given.tolerance},
         "directions": [_direction(stress, curve) for curve in stress.curves],
         "failures": [_failure(stress, one) for one in stress.failures],
+        "expected_failures": [_failure(stress, one) for one in stress.expected],
         "combinations_tried": stress.tried,
         "statements": None if stress.statements is None else asdict(stress.statements),
         "sobol": _sobol(stress.sobol),

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import islice
 from math import sqrt
+from statistics import fmean, median, variance
 
 import numpy as np
 
@@ -21,30 +23,39 @@ from pytest_tarl.stressing.evaluating import NEAREST, SIZES, Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.generating import generate
+from pytest_tarl.stressing.guarantee import most_passed
 from pytest_tarl.stressing.mapping import margin_map
-from pytest_tarl.stressing.prediction import Prediction, Sample
+from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import spread
 
 NEARER = 0.98  # a drift is looked for up to this share of the best distance
 LARGEST = 2.0  # distance beyond which no failing drift is looked for
-PREDICTED = 80  # drifts tried by predictions, at most
-GAIN = 0.01  # expected gain, in units of the best distance, below which predictions end
-SURE = 0.1  # a tried drift fails for the search if its predicted margin is this far below 0
+PREDICTED = 3  # drifts tried by predictions before others are
+GAIN = 0.01  # expected gain, in units of the best distance, below which a drift is not tried
+BOLD = (0.0, 1.0, 0.0, 0.5)  # standard deviations by which the model may err for the benefit of a drift
+SURE = 0.5  # a tried drift fails for the search if its excess over the tolerated loss is this share of what shows
 CLEAR = 4.0  # or if its margin is this many standard deviations below 0
 GENERATED = 24  # drifts of Hypothesis
-ROUNDS, EXPLORED = 3, 8  # rounds of drifts nearer than the best one, and drifts of a round
+ROUNDS, EXPLORED = 8, 8  # rounds of drifts nearer than the best one, and drifts of a round
+AGAIN = 4  # the same rounds after the single directions
+VETTED = 4  # drifts that run SIZES[2] episodes before confirmation, at most
+SAME = 0.02  # drifts nearer to each other than this are the same for the search
 TRIES = 24  # consecutive drifts of CMA-ES without a nearer failure after which it ends
 SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the best distance
-DEPTHS = (
-    3.0,
-    5.0,
-    9.0,
-)  # predicted margins below 0 of the drifts to confirm, in standard deviations on fresh seeds
-SHALLOW, DEEP = 0.03, 1.2  # limits of these margins
+# The drifts to confirm first and later, and those that are only expected to fail: errors of the model, in standard
+# deviations, and excess over the guarantee, in units of what fresh episodes can show.
+FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
+NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
+EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
+STANDARD = 4.1  # standard errors beyond the tolerated loss that fresh episodes show four times in five
+POWER, IMPOSSIBLE = 0.6, 0.99  # the same for failing episodes, and the largest share of them
+SHALLOW, DEEP = 0.03, 1.2  # limits of the excess that they can show, in units of the tolerated loss
+PRIOR = 4  # episodes that the common variance of losses counts for at a drift
 TRIFLE = 0.15  # a component below this share of the distance is left out of a drift to confirm: noise may explain it
-FARTHEST = 1.6  # in units of the best distance, for confirmation
+
+Steps = Sequence[tuple[float, float]]  # errors of the model and excess, as above
 
 
 @dataclass
@@ -54,6 +65,7 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
+    risk: float = 0.05  # at which a drift is confirmed
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # the episodes that it has seen, and the model
 
@@ -63,13 +75,12 @@ class Nearest:
         if self.best is None:
             self._generate()
             self._predict()
-        for _ in range(ROUNDS):
-            self._explore()
-            self._predict()
+        self._explore_and_predict(ROUNDS)
 
     def improve(self) -> None:
-        """Predict again, evolve and shrink. Raise BudgetSpentError; findings stay."""
+        """Predict and explore again, evolve and shrink. Raise BudgetSpentError; findings stay."""
         self._predict()
+        self._explore_and_predict(AGAIN)
         self._evolve()
         if self.best is not None:
             self.tried.append(shrunk(self.best, self.evaluator))
@@ -85,38 +96,50 @@ class Nearest:
             if not coordinates.covers(point) and self.evaluator.examine(point, SIZES[0]).result == "fails"
         ]
         if own and coordinates.spans:
-            margins = self._model().margins(np.array([coordinates.vector(point) for point in own]))
+            model = self._model()
+            excess = model.excess(np.array([coordinates.vector(point) for point in own]))
+            least = -SURE * model.shown.depth
             other += [
                 point
-                for point, margin in zip(own, margins, strict=True)
-                if margin < -SURE or self._clearly_fails(point)
+                for point, one in zip(own, excess, strict=True)
+                if one > least or self._clearly_fails(point)
             ]
         return min(other, key=self._distance, default=None)
 
-    def chain(self) -> list[Point]:
-        """Return drifts on the ray of the best one, outwards, as candidates for confirmation.
+    def chain(self, steps: Steps) -> list[Point]:
+        """Return drifts as candidates for confirmation, the nearest first.
 
         At the boundary even many episodes rarely show a failure, so the candidates lie beyond it, as far as the noise
-        makes necessary (DEPTHS).
+        and the errors of the model make necessary.
         """
         best = self.best
         if best is None:
             return []
-        coordinates = Coordinates(self.evaluator.space, best)
-        if not self._nominal().covers(best):
-            return [best]
-        vector, model = _without_trifles(coordinates.vector(best)), self._model()
-        shares = np.linspace(0.9, FARTHEST, 141)
-        margins = model.margins(shares[:, None] * vector)
-        noise = self.evaluator.noise(best) / sqrt(NEAREST[-1])
-        depths = [-min(max(times * noise, SHALLOW), DEEP) for times in DEPTHS]
-        places = [
-            int(np.argmax(margins <= depth)) if (margins <= depth).any() else len(shares) - 1
-            for depth in depths
-        ]
-        clearly = [coordinates.point(vector)] if self.evaluator.measured(best)[0] <= -DEEP else []
-        near = [*clearly, *(coordinates.point(vector * shares[place]) for place in dict.fromkeys(places))]
-        return [*near, *self._farther(max(map(self._distance, near)))]
+        near = self.expected(steps) or [best]
+        return (
+            [*near, *self._farther(max(map(self._distance, near)))]
+            if self._nominal().covers(best)
+            else [best]
+        )
+
+    def expected(self, steps: Steps) -> list[Point]:
+        """Return the nearest drift that fails by the model, for each step of excess and of errors of the model.
+
+        Drifts that hardly differ are left out. Nothing is returned if no drift that was tried fails.
+        """
+        best, coordinates = self.best, self._nominal()
+        if best is None or not coordinates.covers(best):
+            return []
+        draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} chain {len(self.tried)}")
+        near: list[Point] = []
+        for errors, depth in steps:
+            model = self._model().deeper(depth)
+            vector = model.shortest(errors, LARGEST, draws)
+            if vector is not None:
+                point = coordinates.point(_without_trifles(vector, model, errors))
+                if not near or self._distance(point) > (1.0 + SAME) * self._distance(near[-1]):
+                    near.append(point)
+        return near
 
     def map(self) -> MarginMap | None:
         """Return the map of margins by the model of all drifts that were tried."""
@@ -155,14 +178,35 @@ class Nearest:
     def _model(self) -> Prediction:
         """Return the model of the drifts with nominal options."""
         if self._fitted is None or self._fitted[0] != self.evaluator.spent:
-            coordinates = self._nominal()
+            evaluator, coordinates = self.evaluator, self._nominal()
             unique = {tuple(point.values()): point for point in self._known() if coordinates.covers(point)}
+            points = list(unique.values())
+            measured = [evaluator.losses(point) for point in points]
+            typical = _typical([losses for losses, _ in measured])
             samples = [
-                Sample(coordinates.vector(point), *self.evaluator.measured(point))
-                for point in unique.values()
+                Sample(
+                    coordinates.vector(point), fmean(losses), _spread(losses, typical), failed, len(losses)
+                )
+                for point, (losses, failed) in zip(points, measured, strict=True)
             ]
-            self._fitted = self.evaluator.spent, Prediction(coordinates, self.curves, samples)
+            model = Prediction(coordinates, evaluator.guarantee, samples, self._shown(sqrt(typical)), typical)
+            self._fitted = evaluator.spent, model
         return self._fitted[1]
+
+    @cached_property
+    def _share(self) -> float:
+        """Return the share of failing episodes that the last of NEAREST episodes show about four times in five."""
+        episodes = NEAREST[-1]
+        most = most_passed(self.evaluator.guarantee, episodes, self.risk / 2 / len(NEAREST))
+        if most < 0:
+            return IMPOSSIBLE
+        share = (episodes - most) / episodes
+        return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
+
+    def _shown(self, noise: float) -> Shown:
+        """Return what the last of NEAREST episodes can show, if the loss of an episode has this standard deviation."""
+        depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
+        return Shown(depth, self._share)
 
     def _limit(self) -> float:
         best = self.best
@@ -180,18 +224,47 @@ class Nearest:
         return found.margin
 
     def _predict(self) -> None:
-        """Try the most promising drifts with nominal options until none promises much."""
+        """Try the nearest drifts that may fail by the model, more or less boldly, and learn from each."""
         evaluator, coordinates = self.evaluator, self._nominal()
         draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} prediction {len(self.tried)}")
         if len(coordinates.spans) < 2:
             return
-        for _ in range(PREDICTED):
-            best = self.best
-            limit = LARGEST if best is None else self._distance(best)
-            vector, gain = self._model().promising(limit, draws)
-            if gain < GAIN * limit:
-                break
+        for number in range(PREDICTED):
+            bold = BOLD[number % len(BOLD)]
+            vector = self._model().shortest(-bold, LARGEST, draws)
+            if vector is None:
+                best = self.best
+                limit = LARGEST if best is None else self._distance(best)
+                vector, gain = self._model().promising(limit, draws)
+                if gain < GAIN * limit:
+                    continue
             self._probe(coordinates.point(vector))
+
+    def vet(self) -> None:
+        """Run more episodes at the nearest drift that fails by the model, until it stays where it is.
+
+        Raise BudgetSpentError.
+        """
+        if len(self._nominal().spans) < 2 or self.best is None:
+            return
+        draws = seeds.generator(
+            self.evaluator.seed, f"stress {self.evaluator.drift} vetting {len(self.tried)}"
+        )
+        last: Vector | None = None
+        for _ in range(VETTED):
+            vector = self._model().shortest(0.0, LARGEST, draws)
+            if vector is None or (
+                last is not None and np.linalg.norm(vector - last) < SAME * np.linalg.norm(vector)
+            ):
+                return
+            last, point = vector, self._nominal().point(vector)
+            self.evaluator.common(point, SIZES[2])
+            self.tried.append(point)
+
+    def _explore_and_predict(self, rounds: int) -> None:
+        for _ in range(rounds):
+            self._explore()
+            self._predict()
 
     def _explore(self) -> None:
         """Try drifts nearer than the best one in all directions, since another failing region may be nearer."""
@@ -245,8 +318,20 @@ class Nearest:
             evolve(start, SPREAD * (self._distance(best) if best is not None else 1.0), draws, margin)
 
 
-def _without_trifles(vector: Vector) -> Vector:
-    """Return a vector of the same length without its smallest components."""
-    length = float(np.linalg.norm(vector))
-    kept: Vector = np.where(np.abs(vector) < TRIFLE * length, 0.0, vector)
-    return kept * length / float(np.linalg.norm(kept))
+def _typical(every: Sequence[Sequence[float]]) -> float:
+    """Return the mean variance of losses, over the drifts; a few very noisy ones count for little."""
+    found = [variance(losses) for losses in every if len(losses) > 1]
+    return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6)
+
+
+def _spread(losses: Sequence[float], typical: float) -> float:
+    """Return the standard deviation of the mean of losses, whose variance is about the typical one."""
+    count = len(losses)
+    squares = variance(losses) * (count - 1) if count > 1 else 0.0
+    return sqrt((squares + PRIOR * typical) / (count - 1 + PRIOR) / count)
+
+
+def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
+    """Return a vector without its smallest components, if it fails without them by the model."""
+    kept: Vector = np.where(np.abs(vector) < TRIFLE * float(np.linalg.norm(vector)), 0.0, vector)
+    return kept if model.excess(kept[None, :], errors)[0] >= 0.0 else vector

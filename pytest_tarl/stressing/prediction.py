@@ -1,136 +1,243 @@
 """Predict the nearest failing drift from the drifts tried so far.
 
-The model of the margin is 1 minus the losses of margin along the single directions, which add up, corrected by Gaussian
-process regression on all drifts tried (Rasmussen & Williams 2006, algorithm 2.1). The drift that promises most is tried
-next, as in Bayesian optimisation.
+A model of the loss and one of the rate of failing episodes tell how probably a drift fails. The drift that promises
+most is tried next, as in Bayesian optimisation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass
+from math import log
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
-from pytest_tarl.stressing.findings import Curve
-from pytest_tarl.stressing.guarantee import LOWEST
+from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
+from pytest_tarl.stressing.one_thread import one_thread
+from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, variance
 
-PAIRS, LOCAL = 4.0, 0.15  # prior variances: of products of two directions, and of local deviations
-LENGTH = 0.25  # of local deviations, in units of the ranges
-DEPTH = 0.1  # margin below 0 at which a drift counts as failing
-DRAWN = 800  # drifts that the model compares
+DRAWN = 400  # drifts that the model compares
 PART = 0.75  # probability that a direction takes part in one of them
 ROUNDS, SPREAD = (
-    4,
+    5,
     0.15,
-)  # refinements around the best one, each three times finer, and the first standard deviation
+)  # refinements around the best one, each twice finer, and the first standard deviation
+STRETCHED = (0.9, 1.1)  # drifts tried are also compared at these multiples
+RAREST = 0.007  # share of failing episodes in the nominal world, at least
+SCALES = (9.0, 36.0, 144.0)  # variances of the logit, in units of those of the loss; the evidence chooses
+IRRELEVANT = 0.3  # factor on a direction that matters little
+LOGIT = 4.0  # a difference of logits that counts as much as the whole tolerated loss
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A drift tried, by coordinates, its margin, and the standard deviation of that."""
+    """A drift tried, by coordinates: its mean loss, as a share of the tolerated one, the standard deviation of that.
+
+    `failed` of `episodes` failed.
+    """
 
     vector: Vector
-    margin: float
+    loss: float
     spread: float
+    failed: int
+    episodes: int
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What fresh episodes can show: a loss beyond the tolerated one by `depth` of it, or such a failing `share`."""
+
+    depth: float
+    share: float
+
+    @property
+    def logit(self) -> float:
+        """Return the logit of the failing share."""
+        return log(self.share / (1.0 - self.share))
+
+
+Field = TypeVar("Field", LossField, RateField)
 
 
 class Prediction:
-    """The model of the margin for the drifts with common options."""
+    """The model of the drifts with common options."""
 
-    def __init__(self, coordinates: Coordinates, curves: Sequence[Curve], samples: Sequence[Sample]) -> None:
-        self.coordinates = coordinates
-        self._knots = [_knots(coordinates, curves, name) for name in coordinates.spans]
+    @one_thread
+    def __init__(
+        self,
+        coordinates: Coordinates,
+        given: Guarantee,
+        samples: Sequence[Sample],
+        shown: Shown,
+        typical: float,
+    ) -> None:
+        """Fit the model; `typical` is the variance of an episode's loss, half of it from the nominal episode."""
+        self.coordinates, self.given, self.shown = coordinates, given, shown
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
         )
-        margins = np.array([max(one.margin, LOWEST) for one in samples])
-        noise = np.array([one.spread**2 for one in samples])
-        matrix = _covariance(self._vectors, self._vectors) + np.diag(noise)
-        self._inverse = np.linalg.inv(np.linalg.cholesky(matrix))
-        self._weights = self._inverse.T @ (self._inverse @ (margins - self._added(self._vectors)))
+        losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
+        counts = np.array([float(one.episodes) for one in samples])
+        common = typical / 2.0 / np.maximum(counts[:, None], counts)  # the nominal episodes serve all drifts
+        own = np.maximum(
+            np.array([one.spread**2 for one in samples]) - typical / 2.0 / counts, typical / 8.0 / counts
+        )
+        self._units = [np.ones(len(coordinates.spans))] * 2
+        self._losses, self._units[0] = _relevant(
+            lambda prior: LossField(prior, losses, common + np.diag(own)), self._vectors
+        )
+        failed = np.array([float(one.failed) for one in samples])
+        usual = max(1.0 - given.share, RAREST)
+        self._rates = None
+        if failed.any():
+            logit = log(usual / (1.0 - usual))
 
+            whole = covariance(self._vectors, self._vectors)
+            rates = max(
+                (RateField(whole, scale, failed, counts, logit) for scale in SCALES),
+                key=lambda one: one.evidence,
+            )
+            self._rates, self._units[1] = _relevant(
+                lambda prior: RateField(prior, rates.scale, failed, counts, logit, rates), self._vectors
+            )
+
+    def deeper(self, times: float) -> Prediction:
+        """Return the same model for failures that exceed the guarantee by a multiple of what can be shown."""
+        other = copy(self)
+        other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
+        return other
+
+    @one_thread
     def promising(self, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
         """Return the vector with the largest expected gain over a failing drift at the distance `limit`, and the gain.
 
         The gain is the probability that the drift fails, times by how much it is nearer, in units of the ranges
         (constrained expected improvement, Gelbart et al. 2014, whose objective is known here).
         """
-        low, high = self.coordinates.low, self.coordinates.high
-        shape = (DRAWN, len(low))
-        vectors = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
-        best, gain = self._largest(vectors, limit, draws)
-        for number in range(ROUNDS):
-            spread = SPREAD / 3**number
-            around = best + spread * draws.standard_normal((DRAWN // 4, len(low)))
-            around[draws.random(around.shape) < 1.0 - PART] = 0.0
-            other, larger = self._largest(np.clip(around, low, high), limit, draws)
-            if larger > gain:
-                best, gain = other, larger
-        return best, gain
+        room = float(np.sqrt(max(limit**2 - self.coordinates.options, 0.0)))
 
-    def _largest(self, vectors: Vector, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
-        """Return the vector with the largest gain, after shortening those that are too long by chance."""
-        lengths = np.linalg.norm(vectors, axis=1)
-        room = np.sqrt(max(limit**2 - self.coordinates.options, 0.0))
-        shares = np.where(
-            lengths > room, room / np.maximum(lengths, 1e-9) * draws.random(len(vectors)) ** 0.25, 1.0
-        )
-        vectors = vectors * shares[:, None]
-        lengths = lengths * shares
-        mean, deviation = self.moments(vectors)
-        failing = 1.0 / (
-            1.0 + np.exp(np.clip(1.702 * (mean + DEPTH) / deviation, -50, 50))
-        )  # about the normal tail
-        gains = failing * np.maximum(room - lengths, 0.0)
-        place = int(np.argmax(gains))
-        return vectors[place], float(gains[place])
+        def gains(vectors: Vector) -> Vector:
+            nearer = np.maximum(room - np.linalg.norm(vectors, axis=1), 0.0)
+            found: Vector = self.failing(vectors) * nearer
+            return found
+
+        return self._largest(gains, room, draws)
+
+    @one_thread
+    def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
+        """Return the shortest vector up to `limit` that fails even if the model errs by so many standard deviations.
+
+        None if no vector was found.
+        """
+
+        def scores(vectors: Vector) -> Vector:
+            excess = self.excess(vectors, errors)
+            lengths = np.linalg.norm(vectors, axis=1)
+            found: Vector = np.where(excess >= 0.0, 10.0 - lengths, np.maximum(excess, -5.0))
+            return found
+
+        vector, score = self._largest(scores, limit, draws)
+        return vector if score > 5.0 else None
+
+    @one_thread
+    def failing(self, vectors: Vector) -> Vector:
+        """Return how probably fresh episodes show a failure at each vector."""
+        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        holds = 1.0 - _normal((mean - 1.0 - self.shown.depth) / deviation)
+        if self._rates is not None:
+            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+            holds *= 1.0 - _normal((logits - self.shown.logit) / spreads)
+        found: Vector = 1.0 - holds
+        return found
+
+    @one_thread
+    def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
+        """Return by how much each vector exceeds what fresh episodes can show, in units of the tolerated loss."""
+        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        found: Vector = mean - errors * deviation - 1.0 - self.shown.depth
+        if self._rates is not None:
+            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+            found = np.maximum(found, (logits - errors * spreads - self.shown.logit) / LOGIT)
+        return found
+
+    @one_thread
+    def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
+        """Return the means and the standard deviations of the margins at vectors."""
+        mean, deviation = self._losses.moments(*self._prior(vectors, 0))
+        margins: Vector = np.maximum(1.0 - mean, LOWEST)
+        if self._rates is not None:
+            logits, spreads = self._rates.moments(*self._prior(vectors, 1))
+            middle, high = (self._rate_margins(logits + change) for change in (0.0, spreads))
+            lower = middle < margins
+            margins = np.where(lower, middle, margins)
+            deviation = np.where(lower, np.maximum(middle - high, 1e-3), deviation)
+        return np.minimum(margins, 1.0), deviation
 
     def margins(self, vectors: Vector) -> Vector:
         """Return the predicted margins at vectors of shape (drifts, ranges)."""
         return self.moments(vectors)[0]
 
-    def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the means and the standard deviations of the margins at vectors."""
-        cross = _covariance(vectors, self._vectors)
-        mean = self._added(vectors) + cross @ self._weights
-        explained = self._inverse @ cross.T
-        variance = _variance(vectors) - (explained**2).sum(axis=0)
-        return mean, np.sqrt(np.maximum(variance, 1e-6))
+    def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
+        """Return the prior covariances with the drifts tried, and the prior variances, of one of the two fields."""
+        units = self._units[field]
+        return covariance(vectors * units, self._vectors * units), variance(vectors * units)
 
-    def _added(self, vectors: Vector) -> Vector:
-        """Return the margins if the losses along the single directions add up."""
-        losses = np.zeros(len(vectors))
-        for column, one in zip(vectors.T, self._knots, strict=True):
-            losses += np.interp(column, *one)
-        return np.maximum(1.0 - losses, LOWEST)
+    def _rate_margins(self, logits: Vector) -> Vector:
+        shares = 1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))
+        found: Vector = np.array([max(self.given.margin(1.0 - one, 0.0), LOWEST) for one in shares])
+        return found
+
+    def _largest(
+        self, score: Callable[[Vector], Vector], room: float, draws: np.random.Generator
+    ) -> tuple[Vector, float]:
+        """Return the vector of length up to `room` with the largest score, and the score."""
+        low, high = self.coordinates.low, self.coordinates.high
+        shape = (DRAWN, len(low))
+        drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
+        near = np.concatenate([np.clip(share * self._vectors, low, high) for share in STRETCHED])
+        vectors = _within(np.concatenate([drawn, near]), room, draws)
+        scores = score(vectors)
+        place = int(np.argmax(scores))
+        best, highest = vectors[place], float(scores[place])
+        for number in range(ROUNDS):
+            spread = SPREAD / 2**number
+            around = best + spread * draws.standard_normal((DRAWN // 4, len(low)))
+            around[draws.random(around.shape) < 0.1] = 0.0
+            vectors = _within(np.clip(around, low, high), room, draws)
+            scores = score(vectors)
+            place = int(np.argmax(scores))
+            if scores[place] > highest:
+                best, highest = vectors[place], float(scores[place])
+        return best, highest
 
 
-def _covariance(one: Vector, other: Vector) -> NDArray[np.float64]:
-    """Return the prior covariances: quadratic in vectors and in their absolute values, plus a squared exponential."""
-    squares = (one**2).sum(axis=1)[:, None] + (other**2).sum(axis=1) - 2 * one @ other.T
-    local = np.exp(-np.maximum(squares, 0.0) / (2 * LENGTH**2))
-    found: NDArray[np.float64] = (
-        PAIRS * ((one @ other.T) ** 2 + (np.abs(one) @ np.abs(other).T) ** 2) + LOCAL * local
+def _within(vectors: Vector, room: float, draws: np.random.Generator) -> Vector:
+    """Return the vectors, shortened by chance where they are longer than `room`."""
+    lengths = np.linalg.norm(vectors, axis=1)
+    shares = np.where(
+        lengths > room, room / np.maximum(lengths, 1e-9) * draws.random(len(vectors)) ** 0.25, 1.0
     )
+    found: Vector = vectors * shares[:, None]
     return found
 
 
-def _variance(vectors: Vector) -> Vector:
-    found: Vector = 2 * PAIRS * (vectors**2).sum(axis=1) ** 2 + LOCAL
+def _normal(values: Vector) -> Vector:
+    """Return about the normal distribution function."""
+    found: Vector = 1.0 / (1.0 + np.exp(-np.clip(1.702 * values, -50.0, 50.0)))
     return found
 
 
-def _knots(coordinates: Coordinates, curves: Sequence[Curve], name: str) -> tuple[Vector, Vector]:
-    """Return coordinates along a direction, ascending, and the margin lost at each."""
-    index = list(coordinates.spans).index(name)
-    found = {0.0: 0.0}
-    for curve in curves:
-        if curve.ray.names == (name,):
-            for t, one in curve.evidence.items():
-                place = float(coordinates.vector(curve.ray.point(t))[index])
-                found[place] = 1.0 - max(one.margin, LOWEST)
-    places = sorted(found)
-    return np.array(places), np.array([found[one] for one in places])
+def _relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
+    """Return a field, and by direction 1 or, where the evidence for it is larger, IRRELEVANT."""
+    units = np.ones(vectors.shape[1])
+    best = field(covariance(vectors, vectors))
+    for place in range(len(units)):
+        fewer = units.copy()
+        fewer[place] = IRRELEVANT
+        other = field(covariance(vectors * fewer, vectors * fewer))
+        if other.evidence > best.evidence:
+            best, units = other, fewer
+    return best, units

@@ -23,6 +23,19 @@ from pytest_tarl.stressing.sobol_indices import sobol
 from pytest_tarl.stressing.statements import Source, statements
 
 
+@dataclass(frozen=True, slots=True)
+class Risks:
+    """The risks of the claims of a run: of each direction and of the nominal drift, and of all combinations."""
+
+    each: float
+    combinations: float
+
+
+def divided(alpha: float, directions: int) -> Risks:
+    """Return alpha divided among the claims; combinations get half, since the nearest failure is mostly one of them."""
+    return Risks(min(alpha / 2 / (directions + 1), FAR_RISK), alpha / 2)
+
+
 @dataclass(frozen=True)
 class Request:
     """The test and space to stress, and the settings."""
@@ -50,10 +63,9 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         name: limits for name, limits in request.designation.must_hold.items() if name in space.extents
     }
     curves = [Curve(ray) for ray in rays(space, must_hold)]
-    share = request.options.alpha / (len(curves) + 2)  # for each ray, all combinations, and nominal
-    share = min(share, FAR_RISK)
-    together = Together(share, curves)
-    ended = explore(evaluator, together, combined=combined)
+    risks = divided(request.options.alpha, len(curves))
+    together = Together(risks.combinations, curves)
+    ended = explore(evaluator, together, risks.each, combined=combined)
     indices, ended = variances(evaluator, ended) if combined else (None, ended)
     executed, ended = _executed(request, evaluator, together, ended)
     return Stress(
@@ -67,6 +79,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
         episodes=evaluator.spent,
         curves=tuple(curves),
         combinations=tuple(together.found),
+        expected=tuple(together.expected),
         must_hold=must_hold,
         tried=together.tried,
         margin_map=together.margin_map,
@@ -87,12 +100,12 @@ def along(request: Request, ray: Ray) -> Curve:
     return curve
 
 
-def explore(evaluator: Evaluator, together: Together, *, combined: bool = True) -> str:
-    """Fill the curves and the combinations of `together`, each curve at its risk; return why the search ended early.
+def explore(evaluator: Evaluator, together: Together, share: float, *, combined: bool = True) -> str:
+    """Fill the curves and the combinations of `together`, each curve at the risk `share`; return why it ended early.
 
     With several directions, the nearest failing drift comes first, since it needs least; the budget has a share for it.
     """
-    curves, share = together.curves, together.risk
+    curves = together.curves
     several = Combined(evaluator, together) if combined and len(evaluator.space.extents) > 1 else None
     try:
         if _nominal_fails(evaluator, share):

@@ -87,7 +87,10 @@ def together(stress: Stress) -> Iterator[str]:
         yield f"Fails with {where} (distance {one.distance:.2g}){_alone(stress, one)}."
     if len(found) > MOST_SHOWN:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
-    if not found and stress.tried:
+    if stress.nearer is not None:
+        where = of_point(stress.space, stress.nearer.point)
+        yield f"Probably fails with {where} already (distance {stress.nearer.distance:.2g}); this is not confirmed."
+    elif not found and stress.tried:
         yield f"No combination was found that fails although each direction alone holds ({stress.tried} tried)."
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pytest_tarl.stressing import prediction
+from pytest_tarl.stressing import prediction, surrogates
 from pytest_tarl.stressing.candidates import CENTRES, SCALES, Model
 from pytest_tarl.stressing.combinations import Together, pairs
 from pytest_tarl.stressing.coordinates import Coordinates
@@ -94,38 +94,55 @@ def test_pairs_are_tested_unless_they_are_farther_than_what_is_known() -> None:
 
 def test_the_prior_of_a_prediction() -> None:
     one, other = np.array([[0.3, 0.0]]), np.array([[0.1, -0.2], [0.3, 0.0]])
-    local = 0.15 * np.exp(-(0.2**2 + 0.2**2) / (2 * 0.25**2))
-    expected = [[4.0 * 2 * 0.03**2 + local, 4.0 * 2 * 0.09**2 + 0.15]]
-    assert prediction._covariance(one, other) == pytest.approx(np.array(expected))
-    assert prediction._variance(other) == pytest.approx(
-        [prediction._covariance(row[None], row[None])[0, 0] for row in np.array([[0.1, 0.2], [0.3, 0.0]])]
+
+    def smooth(a: float, b: float, squares: float) -> float:
+        """Return what two squared distances from nominal and that between the drifts leave of a unit variance."""
+        return float(np.exp(-squares / (2 * 0.3**2)) - np.exp(-(a + b) / (2 * 0.3**2)))
+
+    far = (
+        2 * 1.0 * 0.03 + 2 * 4.0 * 0.03**2 + 0.3 * smooth(0.09, 0.01, 0.04) + 0.15 * smooth(0.09, 0.05, 0.08)
     )
+    same = 2 * 1.0 * 0.09 + 2 * 4.0 * 0.09**2 + (0.3 + 0.15) * smooth(0.09, 0.09, 0.0)
+    assert surrogates.covariance(one, other) == pytest.approx(np.array([[far, same]]))
 
 
-def test_losses_along_directions_add_up_where_nothing_else_is_known() -> None:
+def model(samples: list[tuple[float, float]], failed: int = 0) -> prediction.Prediction:
+    """Return the model of drifts along mud, each by its coordinate and its mean loss of 32 episodes."""
     coordinates = Coordinates(SPACE, SPACE.nominal)
-    curves = [curve(MUD, {0.5: 0.75, 1.0: 0.5}), curve(STEEP, {0.5: 0.5}), curve(FLAT, {1.0: -9.0})]
-    places, lost = prediction._knots(coordinates, curves, "slope")
-    assert (places.tolist(), lost.tolist()) == ([-0.5, 0.0, 0.25], [2.5, 0.0, 0.5])
-    model = prediction.Prediction(coordinates, curves, [])
-    some = np.array([[0.0, 0.0], [-0.25, 0.125], [-1.0, 0.5], [0.0, -0.5]])
-    means, deviations = model.moments(some)
-    assert means == pytest.approx([1.0, 1.0 - 0.125 - 0.25, 0.0, -1.5])
-    assert deviations == pytest.approx(np.sqrt(prediction._variance(some)))
-    tried = [prediction.Sample(np.array([-0.25, 0.125]), -1.0, 0.01)]
-    informed = prediction.Prediction(coordinates, curves, tried)
-    assert informed.margins(some[1:2]) == pytest.approx([-1.0], abs=0.01)
-    assert informed.moments(some[1:2])[1] == pytest.approx([0.01], abs=0.001)
+    tried = [prediction.Sample(np.array([-t, 0.0]), loss, 0.01, failed, 32) for t, loss in samples]
+    return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01)
 
 
-def test_vectors_beyond_the_limit_are_shortened_and_the_nearest_failing_one_wins() -> None:
-    coordinates = Coordinates(SPACE, SPACE.nominal)
-    sure = [prediction.Sample(np.array([-t, 0.0]), -1.0, 0.01) for t in (0.2, 0.4, 0.8)]
-    model = prediction.Prediction(coordinates, [curve(MUD, {0.2: -1.0, 1.0: -1.0})], sure)
+def test_a_prediction_returns_the_losses_where_drifts_were_tried_and_less_on_the_way_to_nominal() -> None:
+    found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
+    margins = found.margins(np.array([[0.0, 0.0], [-0.2, 0.0], [-0.4, 0.0], [-0.8, 0.0], [-0.6, 0.0]]))
+    assert margins == pytest.approx([1.0, 0.6, 0.2, -0.6, -0.2], abs=0.03)
+    # a loss of 1.1 can be shown, by definition in `model`
+    assert found.excess(np.array([[-0.55, 0.0]])) == pytest.approx([0.0], abs=0.03)
+    assert found.deeper(2.0).excess(np.array([[-0.6, 0.0]])) == pytest.approx([0.0], abs=0.03)
+
+
+def test_the_shortest_failing_vector_is_where_the_loss_can_just_be_shown() -> None:
+    found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
+    vector = found.shortest(0.0, 2.0, np.random.default_rng(0))
+    assert vector is not None
+    assert found.excess(vector[None])[0] >= 0.0
+    assert found.excess(0.97 * vector[None])[0] < 0.0
+    assert np.linalg.norm(vector) < 0.57
+    assert found.shortest(0.0, 0.3, np.random.default_rng(0)) is None
+    cautious = found.shortest(1.0, 2.0, np.random.default_rng(0))
+    assert cautious is not None
+    assert np.linalg.norm(cautious) > np.linalg.norm(vector)
+
+
+def test_failing_episodes_make_a_drift_fail_whatever_it_earns() -> None:
+    vectors = np.array([[-0.4, 0.0]])
+    assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
+    assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9
+
+
+def test_vectors_beyond_the_limit_are_shortened() -> None:
     draws: Any = SimpleNamespace(random=lambda count: np.full(count, 0.0625))
-    best, gain = model._largest(np.array([[-0.8, 0.0], [-0.4, 0.0]]), 0.5, draws)
     # the first is shortened to 0.5 · 0.0625^0.25 = 0.25, the other stays at 0.4
-    assert best.tolist() == pytest.approx([-0.25, 0.0])
-    assert 0.2 < gain <= 0.25
-    none, nothing = model._largest(np.array([[-0.4, 0.0]]), 0.4, draws)
-    assert (none.tolist(), nothing) == ([-0.4, 0.0], 0.0)
+    found = prediction._within(np.array([[-0.8, 0.0], [-0.4, 0.0]]), 0.5, draws)
+    assert found == pytest.approx(np.array([[-0.25, 0.0], [-0.4, 0.0]]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import islice
 from math import sqrt
+from statistics import fmean
 
 import numpy as np
 import pytest
@@ -13,11 +14,12 @@ from hypothesis import strategies as st
 from pytest_tarl import Drift, extras
 from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.coordinates import Coordinates
+from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.evolving import evolve
 from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.nearest import Nearest
-from pytest_tarl.stressing.prediction import Prediction, Sample
+from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance, rays
 from pytest_tarl.stressing.spreading import CLOSEST, spread
 from tests.plugin.stressing.worlds import evaluator_of, space_of, stressed
@@ -43,6 +45,12 @@ def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, ca
     assert coordinates.within(np.array([a, b]), 0.9) is None or camera == 0.0
 
 
+def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, int]:
+    """Return the mean loss, the standard deviation of that, and how many of how many episodes failed."""
+    losses, failed = evaluator.losses(point)
+    return fmean(losses), 0.05, failed, len(losses)
+
+
 def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
     weights = {"a": 1.0, "b": 2.0}
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
@@ -54,13 +62,35 @@ def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
         curve.evidence.update({t: evaluator.examine(curve.ray.point(t), 4) for t in curve.ray.places})
     coordinates = Coordinates(space, space.nominal)
     points = [curve.ray.point(t) for curve in curves for t in curve.evidence]
-    samples = [Sample(coordinates.vector(point), *evaluator.measured(point)) for point in points]
-    model = Prediction(coordinates, curves, samples)
+    samples = [Sample(coordinates.vector(point), *measured(evaluator, point)) for point in points]
+    model = Prediction(coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=0.01)
     assert model.margins(np.array([[0.2, 0.4]]))[0] == pytest.approx(0.0, abs=0.1)
     vector, gain = model.promising(0.5, np.random.default_rng(0))
     assert gain > 0.0
     assert 0.35 < np.linalg.norm(vector) < 0.5  # the true distance is 1 / √5 = 0.447
     assert vector[1] > vector[0]
+    shortest = model.shortest(0.0, 2.0, np.random.default_rng(0))
+    assert shortest is not None
+    assert np.linalg.norm(shortest) == pytest.approx(1.05 / sqrt(5.0), rel=0.06)
+    assert model.excess(shortest[None, :])[0] >= 0.0
+    deeper = model.deeper(4.0).shortest(0.0, 2.0, np.random.default_rng(0))
+    assert deeper is not None
+    assert np.linalg.norm(deeper) > 1.05 * np.linalg.norm(shortest)
+
+
+def test_the_prediction_finds_the_nearest_failure_without_a_sign_in_the_reward() -> None:
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
+    evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.8, 1.0), space)
+    coordinates = Coordinates(space, space.nominal)
+    grid = [{"a": a / 5, "b": b / 5} for a in range(6) for b in range(6)]
+    for point in grid:
+        evaluator.examine(point, 4)
+    samples = [Sample(coordinates.vector(point), *measured(evaluator, point)) for point in grid]
+    model = Prediction(coordinates, evaluator.guarantee, samples, Shown(0.05, 0.2), typical=1e-6)
+    vector = model.shortest(0.0, 2.0, np.random.default_rng(0))
+    assert vector is not None
+    assert 0.6 <= vector.sum() <= 0.8  # the grid's points at 0.6 hold, those at 0.8 fail
+    assert (model.margins(np.array([[0.1, 0.1], [0.9, 0.9]])) < 0.0).tolist() == [False, True]
 
 
 def test_generated_drifts_are_the_same_for_a_seed_and_lie_in_the_space() -> None:
@@ -168,3 +198,18 @@ def test_a_narrow_failing_region_near_nominal_is_found_beside_a_wide_one() -> No
     )
     nearest = stressed(world, space, budget=600).failures[0]
     assert nearest.distance < 0.4  # the narrow region begins at 0.27, the wide one at about 0.77
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_expected_failures_lie_a_little_beyond_the_true_boundary(seed: int) -> None:
+    """The boundary of this world is the line 0.6 a + 0.8 b = 0.5, at a distance of 0.5."""
+    space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
+
+    def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+        lost = 0.5 * (0.6 * point["a"] + 0.8 * point["b"]) / 0.5
+        return True, 10.0 - lost + float(draws.normal(0.0, 0.05))
+
+    found = stressed(world, space, seed=seed, budget=600)
+    assert found.expected
+    assert 0.5 <= found.expected[0].distance <= 0.6
+    assert [one.distance for one in found.expected] == sorted(one.distance for one in found.expected)

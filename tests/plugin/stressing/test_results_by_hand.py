@@ -26,6 +26,7 @@ from pytest_tarl.stressing.guarantee import (
     Outcome,
     enough_pass,
     examined,
+    hopeless,
     little_lost,
     margin_of,
     margin_of_one,
@@ -39,6 +40,7 @@ from pytest_tarl.stressing.margin_changes import words as boundary_words
 from pytest_tarl.stressing.margins import Margin, Margins
 from pytest_tarl.stressing.rays import distance, joined, rays
 from pytest_tarl.stressing.regions import outwards, regions
+from pytest_tarl.stressing.search import divided
 from pytest_tarl.stressing.shrinking import weighted
 from pytest_tarl.stressing.sobol_indices import _number, affordable
 from pytest_tarl.stressing.spreading import _inverse, _primes
@@ -171,6 +173,29 @@ def test_counts_of_passed_episodes_that_decide() -> None:
     assert most_passed(GIVEN, 1, 0.01) == -1
     assert most_passed(GIVEN, 3, 0.01) == 0  # 0.1³ = 0.001 < 0.005 < 0.028
     assert most_passed(GIVEN, 32, 0.01) == 23  # 9 failures or more: 0.0038, 8 or more: 0.012
+
+
+def test_a_test_is_hopeless_if_neither_failures_nor_losses_come_near_what_refutes() -> None:
+    nominal = [Outcome(True, 10.0)] * 16
+
+    def ends(failed: int, loss: float) -> bool:
+        outcomes = [Outcome(n >= failed, 10.0 - loss + 0.1 * (-1) ** n) for n in range(16)]
+        return hopeless(GIVEN, outcomes, nominal, 64, 0.01)
+
+    tolerance = GIVEN.tolerance
+    assert ends(0, 0.0)
+    assert ends(0, tolerance - 0.1)  # the mean loss has a standard error of 0.026
+    assert not ends(0, tolerance - 0.02)
+    assert not ends(0, tolerance + 0.1)
+    assert not ends(8, 0.0)
+
+
+@pytest.mark.parametrize("directions", [1, 4, 50])
+@pytest.mark.parametrize("alpha", [0.01, 0.05, 0.3])
+def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, directions: int) -> None:
+    risks = divided(alpha, directions)
+    assert risks.combinations + (directions + 1) * risks.each <= alpha * (1 + 1e-12)
+    assert min(risks.each, risks.combinations) > 0.0
 
 
 def test_little_is_lost_if_the_bound_is_below_the_tolerance() -> None:

@@ -131,7 +131,7 @@ def test_a_combination_whose_direction_fails_alone_is_not_said_to_hold_alone() -
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool((1.0 - point["mud"]) + abs(point["slope"]) < 0.6), float(draws.normal(1.0, 0.01))
 
-    found = stressed(world, space_of(mud=MUD, slope=SLOPE), budget=800)
+    found = replace(stressed(world, space_of(mud=MUD, slope=SLOPE), budget=800), expected=())
     both = {"mud": 0.3, "slope": 0.2}  # mud = 0.4 fails already
     told = list(words.together(replace(found, combinations=(failure(found.space, both),))))
     assert told == ["Fails with mud=0.3 and slope=0.2 (distance 0.73)."]
@@ -248,7 +248,7 @@ def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pyt
     evaluator = evaluator_of(world, space, budget=10**6)
     evaluator.seconds, evaluator.begun = 20.0, now
     curves = [Curve(ray) for ray in rays(space, {})]
-    ended = explore(evaluator, Together(0.01, curves))
+    ended = explore(evaluator, Together(0.01, curves), 0.01)
     assert ended == "budget"
     assert 150 < evaluator.spent <= 201  # 0.1 s each; the last episodes may have been dropped
     assert evaluator.seconds == 20.0

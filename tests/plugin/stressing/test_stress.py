@@ -79,7 +79,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
 def test_kept_failures_and_workers_leave_a_search_in_two_directions_as_it_is(spaced: pytest.Pytester) -> None:
     changed(spaced, "test_tank", "import Drift, Sensor", "import Drift, Sensor, faults")
     changed(spaced, "test_tank", "nominal=1.0)", 'nominal=1.0), high=faults.bias("/level", "data", 0.0, 0.2)')
-    budget = ("--tarl-stress", "--tarl-stress-budget=120")
+    budget = ("--tarl-stress", "--tarl-stress-budget=300")
     spaced.runpytest(*budget).assert_outcomes(passed=1, deselected=1)
     first = written(spaced)
     found = json.loads(first[0])

@@ -163,6 +163,19 @@ def test_combinations_are_told_the_nearest_first() -> None:
     ]
 
 
+def test_an_expected_failure_is_told_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
+    near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
+    told = "Probably fails with mud=3.6 and slope=0.25 already (distance 0.16); this is not confirmed."
+    confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although each alone holds."
+    assert [*words.together(stress(expected=(nearer, near), tried=3))] == [told]
+    assert [*words.together(stress(combinations=(near,), expected=(nearer, near)))] == [confirmed_one, told]
+    assert [*words.together(stress(combinations=(near,), expected=(near,)))] == [confirmed_one]
+    document = json_result.document(stress(combinations=(near,), expected=(nearer,)))
+    assert [one["drift"] for one in document["expected_failures"]] == [
+        {"mud": 3.6, "slope": 0.25, "camera": "up"}
+    ]
+
+
 @pytest.mark.parametrize(
     ("changed", "alone"),
     [

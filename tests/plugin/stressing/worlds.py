@@ -70,7 +70,7 @@ def stressed(
     evaluator = evaluator_of(world, space, seed=seed, budget=budget)
     curves = [Curve(ray) for ray in rays(space, {})]
     together = Together(0.01, curves)
-    ended = explore(evaluator, together)
+    ended = explore(evaluator, together, together.risk)
     indices, ended = variances(evaluator, ended) if variance else (None, ended)
     return Stress(
         test="t",
@@ -82,6 +82,7 @@ def stressed(
         episodes=evaluator.spent,
         curves=tuple(curves),
         combinations=tuple(together.found),
+        expected=tuple(together.expected),
         tried=together.tried,
         margin_map=together.margin_map,
         sobol=indices,

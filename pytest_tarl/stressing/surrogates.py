@@ -1,0 +1,134 @@
+"""Gaussian processes over drifts: the loss by regression, and the rate of failing episodes by classification.
+
+Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2; the rate has a binomial likelihood. Both are 0 at nominal, up to
+a constant.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.stressing.coordinates import Vector
+
+Matrix = NDArray[np.float64]
+
+LINEAR, PAIRS = 1.0, 4.0  # prior variances, per unit: of slopes, and of products of two directions
+SINGLE, SINGLE_LENGTH = 0.3, 0.3  # of a smooth function of each single direction, and its length
+LOCAL, LENGTH = 0.15, 0.3  # of local deviations, and their length
+STEPS = 50  # of Newton's method
+CLOSE = 0.05  # change of the logits after which it ends
+LEAP = 4.0  # largest change of a logit in one step
+JITTER = 1e-8
+
+
+def covariance(one: Vector, other: Vector) -> Matrix:
+    """Return the prior covariances of vectors of shape (drifts, ranges); 0 where one of them is nominal."""
+    plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
+    found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
+    for column, against in zip(one.T, other.T, strict=True):
+        found += SINGLE * _smooth(column[:, None], against[:, None], SINGLE_LENGTH)
+    return found + LOCAL * _smooth(one, other, LENGTH)
+
+
+def variance(vectors: Vector) -> Vector:
+    """Return the prior variances at vectors."""
+    squares = (vectors**2).sum(axis=1)
+    single = (1.0 - np.exp(-(vectors**2) / SINGLE_LENGTH**2)).sum(axis=1)
+    local = 1.0 - np.exp(-squares / LENGTH**2)
+    found: Vector = 2 * LINEAR * squares + 2 * PAIRS * squares**2 + SINGLE * single + LOCAL * local
+    return found
+
+
+def _smooth(one: Vector, other: Vector, length: float) -> Matrix:
+    """Return squared-exponential covariances, given that the function is 0 at nominal."""
+    own, others = (one**2).sum(axis=1), (other**2).sum(axis=1)
+    squares = np.maximum(own[:, None] + others - 2 * one @ other.T, 0.0)
+    found: Matrix = np.exp(-squares / (2 * length**2))
+    found -= np.exp(-own / (2 * length**2))[:, None] * np.exp(-others / (2 * length**2))
+    return found
+
+
+class LossField:
+    """The mean loss at each drift, from means of shape (drifts,) and the covariances of their errors."""
+
+    def __init__(self, prior: Matrix, losses: Vector, errors: Matrix) -> None:
+        whole = prior + errors + JITTER * np.eye(len(losses))
+        self._lower = np.linalg.cholesky(whole)
+        self._weights = np.linalg.solve(whole, losses)
+        self.evidence = -0.5 * float(losses @ self._weights) - float(np.log(np.diag(self._lower)).sum())
+
+    @cached_property
+    def _inverse(self) -> Matrix:
+        found: Matrix = np.linalg.inv(self._lower)
+        return found
+
+    def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
+        """Return the means and the standard deviations at vectors with these prior covariances and variances."""
+        explained = self._inverse @ cross.T
+        left = prior - (explained**2).sum(axis=0)
+        return cross @ self._weights, np.sqrt(np.maximum(left, 1e-6))
+
+
+class RateField:
+    """The logit of the failing share at each drift, from counts of failed episodes and of all."""
+
+    def __init__(
+        self,
+        prior: Matrix,
+        scale: float,
+        failed: Vector,
+        episodes: Vector,
+        usual: float,
+        start: RateField | None = None,
+    ) -> None:
+        """Find the most probable logits by Newton's method, from those of `start` if there is a similar field."""
+        self._usual, self.scale = usual, scale
+        matrix, identity = scale * prior, np.eye(len(failed))
+        weights: Vector = np.zeros(len(failed))
+        logits: Vector = np.full(len(failed), usual) if start is None else start.logits
+        for number in range(STEPS):
+            roots, pull = _newton(logits, usual, failed, episodes)
+            middle = identity + roots[:, None] * matrix * roots
+            step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
+            change = float(np.abs(matrix @ step).max())
+            # the first step from other logits is whole, since it also finds the weights that belong to them
+            whole = start is not None and number == 0
+            weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
+            logits = usual + matrix @ weights
+            if change < CLOSE:
+                break
+        self.weights: Vector = weights
+        self.logits: Vector = logits
+        roots, _ = _newton(logits, usual, failed, episodes)
+        lower = np.linalg.cholesky(identity + roots[:, None] * matrix * roots)
+        self._roots, self._lower = roots, lower
+        likelihood = -failed @ np.logaddexp(0.0, -logits) - (episodes - failed) @ np.logaddexp(0.0, logits)
+        curvature = float(np.log(np.diag(lower)).sum())
+        self.evidence = float(likelihood) - 0.5 * float(weights @ (logits - usual)) - curvature
+
+    @cached_property
+    def _reduce(self) -> Matrix:
+        """Return the matrix that turns covariances with the drifts tried into explained deviations."""
+        found: Matrix = np.linalg.inv(self._lower) * self._roots
+        return found
+
+    def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
+        """Return the means and the standard deviations of the logits, as `LossField.moments` those of the losses."""
+        explained = self.scale * (self._reduce @ cross.T)
+        left = self.scale * prior - (explained**2).sum(axis=0)
+        return self._usual + self.scale * (cross @ self.weights), np.sqrt(np.maximum(left, 1e-4))
+
+
+def _newton(logits: Vector, usual: float, failed: Vector, episodes: Vector) -> tuple[Vector, Vector]:
+    """Return the square roots of the likelihood's curvatures, and the right side of Newton's equation."""
+    shares = _share(logits)
+    roots = np.sqrt(np.maximum(episodes * shares * (1.0 - shares), JITTER))
+    return roots, roots**2 * (logits - usual) + failed - episodes * shares
+
+
+def _share(logits: Vector) -> Vector:
+    found: Vector = 1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))
+    return found
