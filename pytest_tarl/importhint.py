@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pytest_tarl.ros.install import STANDINS
 from pytest_tarl.ros.messages.packages import could_be_package
+from pytest_tarl.ros.standins import STANDINS
 
 
 def import_hint(error: BaseException | None) -> str | None:

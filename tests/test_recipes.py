@@ -12,9 +12,9 @@ import pytest
 from pytest_tarl.patching.document import apply_edits, document
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.templates import contents, template
-from pytest_tarl.ros import install, rospy
-from pytest_tarl.ros.install import STANDINS
+from pytest_tarl.ros import install
 from pytest_tarl.ros.rospy import node as rospy_node
+from pytest_tarl.ros.standins import STANDINS
 from tarl_lint import engine
 from tarl_lint.evidence import Evidence
 from tarl_lint.flows.reachability import Tracer
@@ -111,11 +111,11 @@ def test_the_recipe_of_a_model_replaces_the_default(tmp_path: Path, monkeypatch:
 
 def test_the_recipe_of_a_ros_api_passes_its_own_test(start, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     test, function = snippets("ros.md", "python")
-    assert STANDINS["rospy.core"] == "rospy"
+    assert STANDINS["rospy.names"] == "rospy.node"
     written = made(function, this_node=rospy_node.this_node)
-    monkeypatch.setitem(vars(rospy), "is_initialized", written.is_initialized)
+    monkeypatch.setitem(vars(rospy_node), "get_mappings", written.get_mappings)
     monkeypatch.setattr(install, "_contents", install._contents.__wrapped__)  # read anew, not from the cache
-    made(test).test_is_initialized(start)
+    made(test).test_get_mappings(start)
 
 
 def test_the_recipe_of_a_template_writes_its_example(tmp_path: Path) -> None:

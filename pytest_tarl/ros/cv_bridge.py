@@ -8,7 +8,7 @@ from typing import Any
 
 from pytest_tarl.ros.missing import refuse, unsupported
 
-__all__ = ["CvBridge", "CvBridgeError"]
+__all__ = ["CvBridge", "CvBridgeError", "getCvType"]
 
 _DEPTHS = {
     "8U": "uint8",
@@ -112,6 +112,11 @@ class CvBridge:
         """Return OpenCV's type number for an encoding."""
         dtype, channels = self.encoding_to_dtype_with_channels(encoding)
         return list(_DEPTHS.values()).index(dtype) + ((channels - 1) << 3)
+
+
+def getCvType(encoding: str) -> int:  # noqa: N802 (the library's name)
+    """Return OpenCV's type number for an encoding. Raises CvBridgeError if it is unknown."""
+    return CvBridge().encoding_to_cvtype2(encoding)
 
 
 def _depth_of(dtype: Any) -> str:

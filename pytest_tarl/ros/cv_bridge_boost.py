@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from pytest_tarl.ros.cv_bridge import CvBridge, converted
+from pytest_tarl.ros.cv_bridge import converted, getCvType
 from pytest_tarl.ros.missing import refuse
 
 __all__ = ["CV_MAT_CNWrap", "CV_MAT_DEPTHWrap", "cvtColor2", "getCvType"]
 
 
-def getCvType(encoding: str) -> int:  # noqa: N802 (the module's name)
-    """Return OpenCV's type number for an encoding. Raises CvBridgeError if it is unknown."""
-    return CvBridge().encoding_to_cvtype2(encoding)
-
-
-def cvtColor2(image: Any, encoding_in: str, encoding_out: str) -> Any:  # noqa: N802
+def cvtColor2(image: Any, encoding_in: str, encoding_out: str) -> Any:  # noqa: N802 (the module's name)
     """Return an image in another encoding. Raises CvBridgeError if there is no conversion."""
     return converted(image, encoding_in, encoding_out)
 

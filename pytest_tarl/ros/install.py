@@ -20,7 +20,9 @@ from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_packag
 from pytest_tarl.ros.messages.workspace import packages
 from pytest_tarl.ros.missing import unsupported_module
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
+from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
+from pytest_tarl.ros.uninstalled import is_optional
 from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:
@@ -29,131 +31,6 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.uninstalled import UninstalledFinder
 
 _HOME = "pytest_tarl.ros."
-STANDINS: Mapping[str, str] = {  # imported name → stand-in module
-    "rospy": "rospy",
-    "rospy.exceptions": "rospy.exceptions",
-    "rospy.rostime": "rospy.timing",
-    "rospy.timer": "rospy.timing",
-    "rospy.numpy_msg": "rospy.numpy_msg",
-    "genpy": "genpy",
-    "genpy.rostime": "genpy",
-    "genpy.message": "roslib_message",
-    "genpy.dynamic": "genpy_dynamic",
-    "rosbag": "rosbag",
-    "rosbag.bag": "rosbag",
-    "roslib": "roslib",
-    "roslib.message": "roslib_message",
-    "rospy.client": "rospy",
-    "rospy.core": "rospy",
-    "rospy.msg": "rospy.topics",
-    "rospy.names": "rospy.node",
-    "rospy.service": "rospy.services",
-    "rospy.topics": "rospy.topics",
-    "rclpy": "rclpy",
-    "rclpy.action": "rclpy.action",
-    "rclpy.action.client": "rclpy.action.client",
-    "rclpy.action.server": "rclpy.action.server",
-    "rclpy.clock_type": "rclpy.time",
-    "rclpy.constants": "rclpy.time",
-    "rclpy.context": "rclpy.context",
-    "rclpy.event_handler": "rclpy.event_handler",
-    "rclpy.guard_condition": "rclpy.waitable",
-    "rclpy.lifecycle": "rclpy.lifecycle",
-    "rclpy.lifecycle.node": "rclpy.lifecycle.node",
-    "rclpy.lifecycle.publisher": "rclpy.lifecycle.entities",
-    "rclpy.lifecycle.managed_entity": "rclpy.lifecycle.entities",
-    "rclpy.qos_event": "rclpy.event_handler",
-    "rclpy.qos_overriding_options": "rclpy.qos_overriding_options",
-    "rclpy.signals": "rclpy.signals",
-    "rclpy.topic_endpoint_info": "rclpy.graph",
-    "rclpy.wait_for_message": "rclpy.wait_for_message",
-    "rclpy.callback_groups": "rclpy.callback_groups",
-    "rclpy.client": "rclpy.services",
-    "rclpy.clock": "rclpy.time",
-    "rclpy.duration": "rclpy.time",
-    "rclpy.exceptions": "rclpy.exceptions",
-    "rclpy.executors": "rclpy.executors",
-    "rclpy.logging": "rclpy.logging",
-    "rclpy.impl": "rclpy.impl",
-    "rclpy.impl.logging_severity": "rclpy.logging",
-    "rclpy.impl.rcutils_logger": "rclpy.logging",
-    "rclpy.node": "rclpy.node",
-    "rclpy.parameter": "rclpy.parameter",
-    "rclpy.publisher": "rclpy.topics",
-    "rclpy.qos": "rclpy.qos",
-    "rclpy.service": "rclpy.services",
-    "rclpy.subscription": "rclpy.topics",
-    "rclpy.task": "rclpy.task",
-    "rclpy.time": "rclpy.time",
-    "rclpy.timer": "rclpy.timer",
-    "rclpy.utilities": "rclpy.utilities",
-    "image_geometry": "image_geometry",
-    "image_geometry.cameramodels": "image_geometry",
-    "message_filters": "message_filters",
-    "actionlib": "actionlib",
-    "actionlib.simple_action_client": "actionlib.client",
-    "actionlib.simple_action_server": "actionlib.server",
-    "dynamic_reconfigure": "dynamic_reconfigure",
-    "dynamic_reconfigure.client": "dynamic_reconfigure.client",
-    "dynamic_reconfigure.encoding": "dynamic_reconfigure.encoding",
-    "dynamic_reconfigure.server": "dynamic_reconfigure.server",
-    "ament_index_python": "packages",
-    "ament_index_python.packages": "packages",
-    "rospkg": "packages",
-    "rospkg.common": "packages",
-    "roslib.packages": "packages",
-    "roslib.rostime": "genpy",
-    "sound_play.libsoundplay": "sound_play",
-    "sensor_msgs.point_cloud2": "point_cloud2",
-    "sensor_msgs_py": "point_cloud2",
-    "sensor_msgs_py.point_cloud2": "point_cloud2",
-    "tf": "tf",
-    "tf.broadcaster": "tf",
-    "tf.listener": "tf",
-    "tf2_geometry_msgs": "tf2_geometry_msgs",
-    "tf2_py": "tf2_ros",
-    "tf2_ros": "tf2_ros",
-    "tf2_ros.buffer": "tf2_ros.buffer",
-    "tf2_ros.buffer_interface": "tf2_ros.buffer",
-    "tf2_ros.static_transform_broadcaster": "tf2_ros.broadcasting",
-    "tf2_ros.transform_broadcaster": "tf2_ros.broadcasting",
-    "tf2_ros.transform_listener": "tf2_ros.broadcasting",
-    "cv_bridge": "cv_bridge",
-    "cv_bridge.core": "cv_bridge",
-    "cv_bridge.boost": "cv_bridge_boost",
-    "cv_bridge.boost.cv_bridge_boost": "cv_bridge_boost",
-    "tf.transformations": "transformations",
-    "tf_transformations": "transformations",
-    "rclpy.parameter_client": "rclpy.parameter_client",
-    "ros_numpy": "ros_numpy",
-    "ros_numpy.geometry": "ros_numpy",
-    "ros_numpy.image": "ros_numpy",
-    "ros_numpy.occupancy_grid": "ros_numpy",
-    "ros_numpy.point_cloud2": "ros_numpy",
-    "rosgraph": "tools.rosgraph",
-    "rosgraph.masterapi": "tools.rosgraph",
-    "rosgraph.names": "tools.rosgraph_names",
-    "rosnode": "tools.rosnode",
-    "rosparam": "tools.rosparam",
-    "rosservice": "tools.rosservice",
-    "rostopic": "tools.rostopic",
-    "tf2_ros.buffer_client": "tf2_ros.serving",
-    "tf2_ros.buffer_server": "tf2_ros.serving",
-    "topic_tools": "topic_tools",
-}
-_TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
-            "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
-            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play")  # fmt: skip
-_MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
-            "nav2_simple_commander")  # fmt: skip
-_STANDALONE = (
-    "cv_bridge",
-    "image_geometry",
-    "rospkg",
-    "ament_index_python",
-)  # the real package works without a running ROS and takes precedence
-
-
 _IMPORT_DATA = ("__name__", "__spec__", "__loader__", "__file__", "__cached__", "__path__", "__package__",
                 "__builtins__")  # fmt: skip
 
@@ -174,11 +51,11 @@ class StandinFinder:
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
             return None  # installed message classes need the installed package
-        if name in STANDINS and root not in _STANDALONE:
+        if name in STANDINS and root not in STANDALONE:
             return self._spec(name)
-        if root in _TALKING or root in _MISSING:
+        if root in TALKING or root in MISSING:
             return self._talking_spec(name)
-        if root in _STANDALONE:
+        if root in STANDALONE:
             return None if PathFinder.find_spec(root) is not None else self._spec(name)
         if is_generated(name):
             return self._spec(name)
@@ -244,7 +121,7 @@ class StandinFinder:
         root = name.partition(".")[0]
         if self._kind is None and root in ("rospy", "rclpy"):
             self._settle_kind("ros1" if root == "rospy" else "ros2")
-        if root in _STANDALONE and name not in STANDINS:
+        if root in STANDALONE and name not in STANDINS:
             raise unsupported_module(name)
         return ModuleSpec(name, self, origin="pytest_tarl.ros", is_package=True)  # type: ignore[arg-type]
 
@@ -273,9 +150,16 @@ def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -
         return sys.modules[inner]
     if inner in STANDINS:
         return import_module(inner)
-    if otherwise is None:
+    if otherwise is None or _is_optional_for(sys._getframe(1)):
         raise AttributeError(f"module {module!r} has no attribute {name!r}")
     return otherwise(name)
+
+
+def _is_optional_for(frame: FrameType | None) -> bool:
+    """Return whether the code that reads a name, past the frames of an import, can do without it."""
+    while frame is not None and "importlib" in frame.f_code.co_filename:
+        frame = frame.f_back
+    return frame is not None and is_optional(frame.f_code.co_filename, frame.f_lineno)
 
 
 @cache
@@ -330,7 +214,7 @@ def standins_installed(
 ) -> Iterator[None]:
     """Install the stand-ins, the virtual host clock and the terminals of `processes`; undo all on exit."""
     finder = StandinFinder()
-    finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
+    finder.hidden = _hide(root for root in TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
     sys.meta_path.append(uninstalled)
     try:

@@ -30,6 +30,8 @@ def advice(error: BaseException, given: Given) -> str:
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
     if isinstance(error, ModuleNotFoundError):
         return module_advice(error)
+    if isinstance(error, ImportError) and (error.name or "").partition(".")[0] in ("rclpy", "rospy"):
+        return f"The in-process ROS lacks this name of {error.name}: put a replacement into the module in the test."
     if isinstance(error, NameError | AttributeError | ImportError):
         return PYTHON_2 if _PYTHON_2_NAMES.search(str(error)) else ""
     if isinstance(error, KeyError):

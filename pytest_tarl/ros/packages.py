@@ -18,6 +18,8 @@ __all__ = [
     "RosPack",
     "find_node",
     "find_resource",
+    "get_dir_pkg",
+    "get_log_dir",
     "get_package_name",
     "get_package_prefix",
     "get_package_share_directory",
@@ -98,6 +100,17 @@ def get_package_name(path: str) -> str | None:
         if place.is_relative_to(folder)
     ]
     return max(around)[1] if around else None
+
+
+def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
+    """Return folder and name of the package that contains a path; (None, None) outside of packages."""
+    name = get_package_name(d)
+    return (None, None) if name is None else (str(_folder(name)), name)
+
+
+def get_log_dir(env: Mapping[str, str] | None = None) -> str:
+    """Return the folder of ROS's logs: `ROS_LOG_DIR`, else `log` in `get_ros_home`."""
+    return (os.environ if env is None else env).get("ROS_LOG_DIR") or str(Path(get_ros_home(env)) / "log")
 
 
 def get_ros_home(env: Mapping[str, str] | None = None) -> str:

@@ -15,7 +15,20 @@ from pytest_tarl.ros.messages.ros1_wire import WireError, deserialize, full_text
 from pytest_tarl.ros.messages.times import Time
 from pytest_tarl.ros.missing import refuse, unsupported
 
-__all__ = ["Bag", "BagMessage", "ROSBagException", "ROSBagFormatException", "ROSBagUnindexedException"]
+__all__ = [
+    "Bag",
+    "BagMessage",
+    "Compression",
+    "ROSBagException",
+    "ROSBagFormatException",
+    "ROSBagUnindexedException",
+]
+
+
+class Compression:
+    """Names of the compressions of bags."""
+
+    NONE, BZ2, LZ4 = "none", "bz2", "lz4"
 
 
 class ROSBagException(Exception):  # noqa: N818 (these names are rosbag's)

@@ -13,7 +13,7 @@ from types import FrameType, ModuleType
 from pytest_tarl.ros.messages.workspace import on_forget, packages, workspaces
 from tarl_lint.workspace.folders import folders
 
-_MISSING = frozenset({"ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
+_MISSING = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
 
 
 class UninstalledFinder:
@@ -29,7 +29,7 @@ class UninstalledFinder:
         if path is not None or "." in name:
             return None
         importer = _importer(sys._getframe(1))
-        if importer is None or _is_optional(importer.f_code.co_filename, importer.f_lineno):
+        if importer is None or is_optional(importer.f_code.co_filename, importer.f_lineno):
             return None
         place = _nearest(name, Path(importer.f_code.co_filename).resolve())
         if place is None:
@@ -100,8 +100,8 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 
 @cache
-def _is_optional(file: str, line: int) -> bool:
-    """Return whether an import is in a `try` that catches its failure: the node can do without the module."""
+def is_optional(file: str, line: int) -> bool:
+    """Return whether a line is in a `try` that catches a failed import: the node can do without the module or name."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -115,5 +115,5 @@ def _is_optional(file: str, line: int) -> bool:
     return False
 
 
-for known in (_modules, _is_optional):
+for known in (_modules, is_optional):
     on_forget(known.cache_clear)

@@ -6,15 +6,33 @@ from typing import Any
 
 from pytest_tarl.ros.missing import refuse
 
-__all__: list[str] = []
+__all__ = ["DynamicReconfigureException", "find_reconfigure_services", "get_parameter_names"]
 
 
-class DynamicReconfigureParameterException(Exception):  # noqa: N818 (dynamic_reconfigure's name)
+class DynamicReconfigureException(Exception):  # noqa: N818 (dynamic_reconfigure's name)
+    """Base of the errors."""
+
+
+class DynamicReconfigureParameterException(DynamicReconfigureException):
     """A parameter does not exist or cannot take a value."""
 
 
-class DynamicReconfigureCallbackException(Exception):  # noqa: N818
+class DynamicReconfigureCallbackException(DynamicReconfigureException):
     """A callback failed."""
+
+
+def find_reconfigure_services() -> list[str]:
+    """Return the names of the nodes that offer parameters to change, sorted."""
+    from pytest_tarl.ros.tools import graph
+
+    return sorted(
+        name.removesuffix("/set_parameters") for name in graph.services() if name.endswith("/set_parameters")
+    )
+
+
+def get_parameter_names(config: dict[str, Any]) -> list[str]:
+    """Return the names of the parameters of a configuration."""
+    return list(config.keys())
 
 
 def __getattr__(name: str) -> Any:

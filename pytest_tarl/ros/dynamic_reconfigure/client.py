@@ -29,7 +29,9 @@ class Client:
         self._proxy = ServiceProxy(
             f"{self.name}/set_parameters", find_class("ros1", "dynamic_reconfigure", "Reconfigure", "srv")
         )
-        Subscriber(f"{self.name}/parameter_updates", message_type("dynamic_reconfigure/Config"), self._take)
+        self._subscriber = Subscriber(
+            f"{self.name}/parameter_updates", message_type("dynamic_reconfigure/Config"), self._take
+        )
 
     def get_configuration(self, timeout: float | None = None) -> Config | None:  # noqa: ARG002
         """Return the last configuration from the server."""
@@ -38,6 +40,22 @@ class Client:
     def update_configuration(self, changes: dict[str, Any]) -> Config:
         """Change some parameters; return the resulting configuration."""
         return decode_config(self._proxy(encode_config(changes)).config)
+
+    def get_config_callback(self) -> Callable[[Config], Any] | None:
+        """Return the function that gets every configuration."""
+        return self._callback
+
+    def set_config_callback(self, value: Callable[[Config], Any] | None) -> None:
+        """Set the function that gets every configuration; call it with the current one."""
+        self._callback = value
+        if value is not None and self._config is not None:
+            value(self._config)
+
+    config_callback = property(get_config_callback, set_config_callback)
+
+    def close(self) -> None:
+        """Stop taking configurations."""
+        self._subscriber.unregister()
 
     def _take(self, message: Any) -> None:
         self._config = decode_config(message)

@@ -36,3 +36,14 @@ class PublisherEventCallbacks(_EventCallbacks):
     """Callbacks of a publisher."""
 
     _names = ("deadline", "liveliness", "incompatible_qos", "incompatible_type", "matched")
+
+
+class EventInfo:
+    """The argument of an event's callback; never created here."""
+
+
+# rclpy has one class for each event, and nodes name them in annotations
+IncompatibleTypeInfo = QoSLivelinessChangedInfo = QoSLivelinessLostInfo = QoSMessageLostInfo = EventInfo
+QoSOfferedDeadlineMissedInfo = QoSRequestedDeadlineMissedInfo = EventInfo
+QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = EventInfo
+QoSPublisherMatchedInfo = QoSSubscriptionMatchedInfo = EventInfo

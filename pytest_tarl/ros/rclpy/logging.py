@@ -100,6 +100,31 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
     """Do nothing: pytest decides what is shown."""
 
 
+def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
+    """Return the level of a name, in any case. Raises RuntimeError for an unknown name."""
+    try:
+        return LoggingSeverity[log_severity.upper()]
+    except KeyError:
+        raise RuntimeError(f"failed to get the severity of {log_severity!r}") from None
+
+
+def get_logger_level(name: str) -> LoggingSeverity:
+    """Return that no level is set."""
+    return LoggingSeverity.UNSET
+
+
+def initialize() -> None:
+    """Do nothing."""
+
+
+def shutdown() -> None:
+    """Do nothing."""
+
+
+def clear_config() -> None:
+    """Do nothing."""
+
+
 def get_logger_effective_level(name: str) -> LoggingSeverity:
     """Return the default level of ROS."""
     return LoggingSeverity.INFO

@@ -7,6 +7,7 @@ from enum import IntEnum
 from typing import Any
 
 from pytest_tarl.ros import params_files
+from pytest_tarl.ros.literals import parse_value
 from pytest_tarl.ros.messages import find_class
 
 _FIELDS = {
@@ -156,6 +157,11 @@ class Parameter:
 
     def __repr__(self) -> str:
         return f"Parameter(name={self.name!r}, type={self.type_.name}, value={self.value!r})"
+
+
+def get_parameter_value(string_value: str) -> Any:
+    """Return rcl_interfaces/ParameterValue for a value written in YAML; text that is not YAML is a string."""
+    return Parameter("value", value=parse_value(string_value)).get_parameter_value()
 
 
 def parameter_value_to_python(parameter_value: Any) -> Any:

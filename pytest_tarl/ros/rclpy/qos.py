@@ -135,6 +135,7 @@ qos_profile_best_available = QoSProfile(depth=10)
 qos_profile_services_default = QoSProfile(depth=10)
 qos_profile_parameters = QoSProfile(depth=1000)
 qos_profile_parameter_events = QoSProfile(depth=1000)
+qos_profile_rosout_default = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -166,3 +167,13 @@ class QoSPresetProfiles(Enum):
     PARAMETERS = qos_profile_parameters
     PARAMETER_EVENTS = qos_profile_parameter_events
     ACTION_STATUS_DEFAULT = qos_profile_action_status_default
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        """Return the names of the profiles in lower case."""
+        return [one.lower() for one in cls.__members__]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> Any:
+        """Return the profile of a name, in any case. Raises KeyError."""
+        return cls[name.upper()].value

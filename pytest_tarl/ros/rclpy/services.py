@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.rclpy.task import Future
@@ -14,6 +14,11 @@ from pytest_tarl.ros.services import Answer, adapted
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
+
+
+SrvType = TypeVar("SrvType")  # these names are rclpy's, for annotations of nodes
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 class Service:

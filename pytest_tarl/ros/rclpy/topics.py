@@ -7,7 +7,7 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages.snapshot import type_name
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
 _VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
+
+
+MsgType = TypeVar("MsgType")  # rclpy's name, for annotations of nodes
 
 
 class Publisher:

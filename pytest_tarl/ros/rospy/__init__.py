@@ -95,7 +95,11 @@ __version__ = "1.16.0"
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Return `Header`, which rospy happens to export; raise for a name that the stand-in lacks."""
+    if name == "Header":
+        from pytest_tarl.ros.messages import message_type
+
+        return message_type("std_msgs/Header")
     raise refuse("rospy", name)
 
 

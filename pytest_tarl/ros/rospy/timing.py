@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -189,6 +190,30 @@ class Timer:
             due += self._period
             if clock.time - due > self._period:
                 due = clock.time
+
+
+def is_wallclock() -> bool:
+    """Return False: time is that of the episode."""
+    return False
+
+
+def switch_to_wallclock() -> None:
+    """Do nothing: there is no other clock."""
+
+
+def is_rostime_initialized() -> bool:
+    """Return whether `init_node` was called."""
+    return this_node("rostime.is_rostime_initialized").initialised
+
+
+def set_rostime_initialized(val: bool) -> None:
+    """Do nothing: `init_node` initialises the time."""
+
+
+def wallsleep(duration: float) -> None:
+    """Wait for seconds of the virtual clock, as `time.sleep` does in nodes."""
+    if duration > 0:
+        time.sleep(duration)
 
 
 def wallclock() -> float:

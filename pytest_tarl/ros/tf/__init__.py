@@ -30,7 +30,7 @@ Exception = TransformException  # noqa: A001 (tf.Exception)
 
 __all__ = [
     "ConnectivityException", "Exception", "ExtrapolationException", "LookupException", "TransformBroadcaster",
-    "TransformListener", "TransformerROS", "transformations",
+    "TransformListener", "Transformer", "TransformerROS", "transformations",
 ]  # fmt: skip
 
 Parts = tuple[float, ...]
@@ -93,6 +93,11 @@ class TransformerROS:
         """Return the 4×4 matrix of a translation and a quaternion."""
         return transformations.compose(translation, rotation)
 
+    def asMatrix(self, target_frame: str, hdr: Any) -> Any:
+        """Return the 4×4 matrix that moves points from a header's frame into another."""
+        move, turn = self.lookupTransform(target_frame, hdr.frame_id, hdr.stamp)
+        return self.fromTranslationRotation(tuple(move), tuple(turn))
+
     def transformPoint(self, target_frame: str, ps: Any) -> Any:
         """Return a PointStamped in another frame."""
         return do_transform_point(ps, self._to(target_frame, ps))
@@ -122,6 +127,9 @@ class TransformerROS:
     def _to(self, target_frame: str, message: Any) -> Any:
         header = message.header
         return self._buffer.lookup_transform(clean(target_frame), clean(header.frame_id), header.stamp)
+
+
+Transformer = TransformerROS
 
 
 class TransformListener(TransformerROS):

@@ -10,9 +10,10 @@ from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.tools import graph
+from pytest_tarl.ros.tools.topic_rates import ROSTopicHz
 from pytest_tarl.sensors import field_value
 
-__all__ = ["ROSTopicException", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
+__all__ = ["ROSTopicException", "ROSTopicHz", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
 
 Evaluate = Callable[[Any], Any] | None
 _LOOK = nanoseconds(0.1)  # ns, polling period of a blocking query

@@ -146,11 +146,21 @@ def test_dynamic_parameters_are_clipped_and_passed_with_their_level(start: Start
         answered = client.update_configuration({"speed": 7})
         rospy.sleep(0.1)
         known = client.get_configuration()
+        import dynamic_reconfigure
+        servers = dynamic_reconfigure.find_reconfigure_services()
+        names = sorted(dynamic_reconfigure.get_parameter_names({"speed": 1, "mode": ""}))
+        told = []
+        client.set_config_callback(lambda config: told.append(config["speed"]))
+        client.close()
+        client.update_configuration({"speed": 0.25})
+        rospy.sleep(0.1)
     """,
         parameters={"~mode": "fast"},
     )
     ros.step(1.0)
-    assert ros.namespace["seen"] == [(0.5, "fast", 0xFFFFFFFF), (1.0, "fast", 1)]
+    assert ros.namespace["seen"] == [(0.5, "fast", 0xFFFFFFFF), (1.0, "fast", 1), (0.25, "fast", 1)]
+    assert (ros.namespace["servers"], ros.namespace["names"]) == (["/drive"], ["mode", "speed"])
+    assert ros.namespace["told"] == [1.0]  # a closed client gets no further configuration
     assert ros.namespace["answered"].speed == ros.namespace["known"]["speed"] == 1.0
 
 

@@ -97,6 +97,23 @@ def test_blocking_sound_client_waits_for_its_server(start: Start) -> None:
     assert 0.5 <= ros.namespace["took"] < 1
 
 
+def test_transformers_return_matrices(start: Start) -> None:
+    ros = start("""
+        import rospy, tf
+        from geometry_msgs.msg import PointStamped, TransformStamped
+        rospy.init_node("n")
+        tree = tf.Transformer(True, rospy.Duration(10))
+        sent = TransformStamped()
+        sent.header.frame_id, sent.child_frame_id = "map", "base"
+        sent.transform.translation.x, sent.transform.rotation.w = 2.0, 1.0
+        tree.setTransform(sent)
+        header = PointStamped().header
+        header.frame_id = "base"
+        matrix = tree.asMatrix("map", header).tolist()
+    """)
+    assert ros.namespace["matrix"] == [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
 def test_numbers_of_encodings_are_those_of_opencv() -> None:
     number = cv_bridge_boost.getCvType("bgr8")
     assert (number, cv_bridge_boost.CV_MAT_CNWrap(number), cv_bridge_boost.CV_MAT_DEPTHWrap(number)) == (
@@ -144,6 +161,9 @@ def test_rospkg_and_roslib_find_files_of_packages(tmp_path: Path) -> None:
     with pytest.raises(packages.InvalidROSPkgException):
         packages.find_node("drivers", "run.py")
     assert packages.get_ros_home({"ROS_HOME": "/var/ros"}) == "/var/ros"
+    assert packages.get_dir_pkg(str(node)) == (str(folder), "driver")
+    assert packages.get_dir_pkg(str(tmp_path)) == (None, None)
+    assert packages.get_log_dir({"ROS_HOME": "/var/ros"}) == str(Path("/var/ros/log"))
     assert packages.get_ros_home({}) == str(Path.home() / ".ros")
 
 
@@ -210,3 +230,26 @@ def test_names_are_joined_and_resolved_as_rosgraph_does(
     assert len(found["two"]) == 2
     assert found["plain"] == ("/a/b", "/left/")
     assert found["refused"] == ["make_global_ns", "namespace"]
+
+
+def test_rates_of_topics_are_measured_in_virtual_time(start: Start) -> None:
+    ros = start("""
+        import rospy, rostopic
+        from std_msgs.msg import String
+        rospy.init_node("meter")
+        meter = rostopic.ROSTopicHz(-1)
+        odd = rostopic.ROSTopicHz(2, filter_expr=lambda message: message.data == "odd")
+        rospy.Subscriber("word", String, meter.callback_hz)
+        rospy.Subscriber("word", String, odd.callback_hz, callback_args="word")
+        empty = meter.get_hz()
+        rospy.spin()
+    """)
+    for number in range(6):
+        ros.bus.publish("word", message_type("std_msgs/String")("odd" if number % 2 else "even"))
+        ros.step(0.1 if number < 4 else 0.2)
+    rate, shortest, longest, deviation, count = ros.namespace["meter"].get_hz()
+    assert ros.namespace["empty"] is None
+    assert (1 / rate, shortest, longest, count) == pytest.approx((0.12, 0.1, 0.2, 6))
+    assert deviation == pytest.approx(0.04)
+    assert ros.namespace["odd"].get_hz("word")[1:3] == pytest.approx((0.2, 0.3))
+    ros.namespace["meter"].print_hz([None, "silent"])

@@ -1,0 +1,91 @@
+"""rclpy's checks of names and types, such as `validate_topic_name` and `check_is_valid_msg_type`."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Literal
+
+from pytest_tarl.ros import names
+from pytest_tarl.ros.rclpy.exceptions import (
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidParameterException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+    NoTypeSupportImportedException,
+)
+
+TOPIC_SEPARATOR_STRING = "/"
+HIDDEN_TOPIC_PREFIX = "_"
+_PART = r"(?:[A-Za-z_]|\{\w+\})(?:\w|\{\w+\})*"
+_RELATIVE = rf"(?:~(?:/{_PART})*|/?{_PART}(?:/{_PART})*)"
+_FULL = r"(?:/[A-Za-z_]\w*)+"
+_SAID = "{} must not be empty, and must consist of letters, digits and underscores, with no digit first"
+
+
+def _require(pattern: str, name: str, error: type[Any], what: str) -> Literal[True]:
+    if re.fullmatch(pattern, name) and "__" not in name:
+        return True
+    bad = next((at for at in range(len(name)) if not re.fullmatch(r"[\w/~{}]", name[at])), 0)
+    raise error(name, _SAID.format(what), bad)
+
+
+def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Return True for a valid name of a topic. Raises InvalidTopicNameException or InvalidServiceNameException."""
+    error = InvalidServiceNameException if is_service else InvalidTopicNameException
+    return _require(_RELATIVE, name, error, "service name" if is_service else "topic name")
+
+
+def validate_full_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
+    """Return True for a valid absolute name. Raises InvalidTopicNameException or InvalidServiceNameException."""
+    error = InvalidServiceNameException if is_service else InvalidTopicNameException
+    return _require(_FULL, name, error, "service name" if is_service else "topic name")
+
+
+def validate_namespace(namespace: str) -> Literal[True]:
+    """Return True for a valid namespace. Raises InvalidNamespaceException."""
+    return _require(rf"/|{_FULL}", namespace, InvalidNamespaceException, "namespace")
+
+
+def validate_node_name(node_name: str) -> Literal[True]:
+    """Return True for a valid name of a node. Raises InvalidNodeNameException."""
+    return _require(r"[A-Za-z_]\w*", node_name, InvalidNodeNameException, "node name")
+
+
+def validate_parameter_name(name: str) -> Literal[True]:
+    """Return True for a valid name of a parameter. Raises InvalidParameterException."""
+    if not name:
+        raise InvalidParameterException(name)
+    return True
+
+
+def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
+    """Return the absolute name of a topic that a node names."""
+    return names.expand(topic_name, names.absolute(f"{node_namespace}/{node_name}"))
+
+
+def topic_or_service_is_hidden(name: str) -> bool:
+    """Return whether a part of a name begins with an underscore."""
+    return any(part.startswith(HIDDEN_TOPIC_PREFIX) for part in name.split(TOPIC_SEPARATOR_STRING))
+
+
+def check_for_type_support(msg_or_srv_type: Any) -> None:
+    """Do nothing for a class of messages, services or actions. Raises NoTypeSupportImportedException for others."""
+    parts = ("_fields_and_field_types", "Request", "Goal")
+    if not any(hasattr(msg_or_srv_type, part) for part in parts):
+        raise NoTypeSupportImportedException
+
+
+def _check(part: str, kind: str, found: Any) -> None:
+    if not hasattr(found, part):
+        raise RuntimeError(f"The passed {kind} type is invalid: {found!r}")
+
+
+def check_is_valid_msg_type(msg_type: Any) -> None:
+    """Raise RuntimeError unless this is a class of messages."""
+    _check("_fields_and_field_types", "message", msg_type)
+
+
+def check_is_valid_srv_type(srv_type: Any) -> None:
+    """Raise RuntimeError unless this is a class of services."""
+    _check("Request", "service", srv_type)
