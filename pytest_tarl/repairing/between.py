@@ -76,7 +76,7 @@ def stronger(
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
         by = searched_step(mutation)
-        if by is None or by <= 0.0 or by == 1.0:
+        if by is None or by <= 0.0 or by == 1.0 or on_grid(mutation):
             return None
         made = to_step(mutation, by**power, mutate)
         if made is None:
@@ -102,6 +102,14 @@ def searched_step(mutation: Mutation) -> float | None:
     """Return the factor of a structural repair's parameter, or that of a constant; None if there is none."""
     searched = mutation.form is not None and mutation.form.parameter
     return float(mutation.value) if searched else factor(mutation)
+
+
+def on_grid(mutation: Mutation) -> bool:
+    """Return whether only multiples of a number are tried for a structural repair's parameter."""
+    form = mutation.form
+    return form is not None and any(
+        one.name == form.parameter and one.grid for one in form.template.parameters
+    )
 
 
 def factor(mutation: Mutation) -> float | None:

@@ -12,7 +12,7 @@ from statistics import fmean
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import Mutation, to_step
-from pytest_tarl.repairing.between import searched_step
+from pytest_tarl.repairing.between import on_grid, searched_step
 from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 
@@ -71,9 +71,17 @@ def _climbed(
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its value scaled by `ratio`; None for several sites or an operand without a factor."""
+    """Return a candidate with its value scaled by `ratio`, powers and the like unchanged.
+
+    None for several sites, or if nothing has a factor.
+    """
     made: list[Mutation] = []
+    if all(map(on_grid, candidate.mutations)):
+        return None
     for one in candidate.mutations:
+        if on_grid(one):
+            made.append(one)
+            continue
         by = searched_step(one)
         if by is None or one.operand.site != candidate.mutations[0].operand.site:
             return None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import groupby
 
 from pytest_tarl.model import Guard, OperandEffect
@@ -68,6 +69,7 @@ class Structures:
                 self.order.goal,
                 proposed=True,
                 weaker=self.weaker,
+                given=self.given,
             )
             self._sweeps.append(sweep)
             left = whole - self.trials.spent
@@ -115,6 +117,16 @@ class Structures:
         growing = {one.name: one.stronger == "larger" for one in form.template.parameters}
         return 0.0 < factor != 1.0 and (factor < 1.0) == growing.get(form.parameter, factor > 1.0)
 
+    def given(self, operand: Operand) -> list[Operand]:
+        """Return the parameters that a structural change takes as given: they are moved only once it gains much."""
+        form = self._found[operand]
+        bare = replace(form, parameter="")
+        return [
+            other
+            for other, its in self._found.items()
+            if other.span == operand.span and replace(its, parameter="") == bare and _fixed(its)
+        ]
+
     def _told(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
         """Return the operands of templates with a sensor that tells the drift, at all of their expressions."""
         sensors = telling(self.order)
@@ -124,7 +136,7 @@ class Structures:
                 for operand, form in forms:
                     if form.sensor in sensors:
                         self._found[operand] = form
-                        found.append(operand)
+                        found += [] if _fixed(form) else [operand]
         return found
 
     def _groups(self, known: Sequence[Template], among: Sequence[Spot]) -> list[list[Operand]]:
@@ -142,7 +154,8 @@ class Structures:
                 for operand, form in forms:
                     if operand not in self._found:
                         self._found[operand] = form
-                        yield operand
+                        if not _fixed(form):
+                            yield operand
 
 
 def form_words(order: Order, mutation: Mutation) -> str:
@@ -208,21 +221,23 @@ def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
 def _operands(
     template: Template, spot: Spot, bare: Form, scales: Mapping[str, float]
 ) -> Iterator[tuple[Operand, Form]]:
-    """Yield an operand for each parameter to search; nothing if a default cannot be known."""
+    """Yield an operand for each parameter; nothing if a default cannot be known."""
     if any(one.of and one.of not in scales for one in template.parameters):
         return
     defaults = tuple(
         (one.name, float(f"{one.default * scales.get(one.of, 1.0):.4g}")) for one in template.parameters
     )
     code = _folded(spot.source, spot.node)
-    fixed = {one.name for one in template.parameters if one.of == FIXED}
     for name, value in defaults or (("", None),):
-        if name in fixed:
-            continue
         form = Form(template, name, defaults, bare.partner, bare.sensor)
         by = f" by {bare.sensor.name}" if bare.sensor else ""
         text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"
         yield Operand(spot.site, _span(spot.source, spot.node), text, value if name else False), form
+
+
+def _fixed(form: Form) -> bool:
+    """Return whether the parameter of a form is one that the change takes as given."""
+    return any(one.name == form.parameter and one.of == FIXED for one in form.template.parameters)
 
 
 def _span(source: Document, node: ast.expr) -> Span:

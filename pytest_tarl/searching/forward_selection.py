@@ -18,6 +18,8 @@ MOST = 3  # parts of a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
 LEADERS = 5  # units to combine with the first; one of them may gain too little alone to stand out
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
+CLIMBS = (0.9, 1.1)  # factors by which a value that a change takes as given is moved, again and again ...
+CLIMB = 4  # ... but no more often than this
 STRONG = 5.0  # factor for parts that change nothing alone
 
 
@@ -161,6 +163,19 @@ class ForwardSelection:
         if near and candidate not in self.settled.tried:
             yield from self._settling(joint, candidate)
         return self.trials.gain(candidate, self.goal.pairs)
+
+    def climbed(self, base: Joint, unit: Unit) -> Iterator[Candidate]:
+        """Add a unit in small steps to either side, while that increases the gain."""
+        most = yield from self.gain(base)
+        for step in CLIMBS if most is not None else ():
+            before, best = most, most
+            for number in range(1, CLIMB + 1):
+                gained = yield from self.gain(base.with_part(unit, round(step**number, 3)))
+                if gained is None or best is None or gained <= best:
+                    break
+                best = gained
+            if best != before:
+                return
 
     def fewest(self, joint: Joint) -> Iterator[Candidate]:
         """Yield a combination without the parts that it does not need, if it holds and at most `MOST` are left."""

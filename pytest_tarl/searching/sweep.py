@@ -74,12 +74,14 @@ class Sweep:
         weaker: Callable[[Operand, float], bool] = lambda _, __: False,
         structure_follows: bool = False,
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
+        given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
     ) -> None:
         self.structure_follows = structure_follows
         self.units = charted(units(operands), charts)
         self.late = units(late)
         self.aside = units(aside)
         self.weaker = weaker
+        self.given = given
         self.mutate = mutate
         self.guards = guards
         self.trials = trials
@@ -94,6 +96,7 @@ class Sweep:
         self._refused: set[tuple[Unit, Guard]] = set()  # yielded as confirmed, then refused by the caller
         self._compared = False  # whether other constants were compared by the course of missions
         self._replaced: set[Unit] = set()  # units in place of which gentler ones were tried
+        self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -349,6 +352,7 @@ class Sweep:
             before = self._gains.most(best) if best is not None else 0.0
             if best is None or before <= self.slack:
                 return
+            yield from self._adjusting(*best)
             yield from self._between(best, pair)
             gained = self._gains.most(best)
             if gained <= max(before, PROMISING * self.goal.wanted) and gained < ALMOST * self.goal.wanted:
@@ -363,6 +367,18 @@ class Sweep:
         for one in steps:
             self._refined[best] += 1
             yield from self._try(*best, one, pair)
+
+    def _adjusting(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
+        """Move what a proposal takes as given, such as a sensor's usual value, once the proposal gains much."""
+        gains = self._gains.of(unit, guard)
+        factor = max(gains, key=gains.__getitem__)
+        given = self.given(unit.operands[0]) if self.proposed else ()
+        if (unit, guard, factor) in self._adjusted or gains[factor] < PROMISING * self.goal.wanted:
+            return
+        self._adjusted.add((unit, guard, factor))
+        for other in given:
+            base = Joint(((unit, factor),), guard)
+            yield from self._joining({}).climbed(base, Unit((other,)))
 
     def _together(self) -> Iterator[Candidate]:
         """Combine the best operand with others."""

@@ -10,8 +10,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.patching.mutate import Mutation, mutations
-from pytest_tarl.repairing.between import factor
-from pytest_tarl.repairing.centring import SEEDS, THIN, centred
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import SHIPPED, template
+from pytest_tarl.repairing.between import factor, stronger
+from pytest_tarl.repairing.centring import SEEDS, THIN, centred, moved
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -70,3 +72,24 @@ def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
     trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found
     assert trials.spent == SEEDS
+
+
+def powered(power: float, usual: float) -> Candidate:
+    """Return a scale by a power of a sensor, by factors of its two parameters."""
+    made = template(SHIPPED / "power.toml")
+    power_of = operand(6, "gap * gain, power", -1.0)
+    both = power_of, replace(operand(6, "gap * gain, usual", 4.0), site=power_of.site)
+    defaults = (("power", -1.0), ("usual", 4.0))
+    values = zip(("power", "usual"), both, (power, usual), strict=True)
+    return Candidate(
+        tuple(Mutation(one, value, form=Form(made, name, defaults)) for name, one, value in values), ALWAYS
+    )
+
+
+def test_a_power_stays_on_its_grid_while_the_usual_value_moves() -> None:
+    moved_to = moved(powered(-1.0, 0.9), 1.3, mutations)
+    assert moved_to is not None
+    assert [one.value for one in moved_to.mutations] == [-1.0, pytest.approx(1.17)]
+    alone = Candidate(powered(2.0, 1.0).mutations[:1], ALWAYS)
+    assert moved(alone, 1.3, mutations) is None
+    assert stronger(alone, 1.5, mutations) is None

@@ -217,11 +217,20 @@ def test_a_template_is_found_for_any_origin_of_the_value(
     check_found(name, world, monkeypatch)
 
 
-def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("usual", [0.8, 0.9, 1.15, 1.3])
+def test_the_usual_value_of_a_sensor_is_adjusted_where_the_bins_tell_it_wrongly(
+    usual: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = World("power", tmp_path)
+    world.mended = lambda: lambda value, slope: 2 * value * slope
+    check_found("power", world, monkeypatch, usual)
+
+
+def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch, usual: float = 1.0) -> None:
     """Search with a single template and check the result on fresh seeds."""
     monkeypatch.setattr(structural, "templates", lambda _: (template(SHIPPED / f"{name}.toml"),))
     monkeypatch.setattr(structural, "telling", lambda _: [])
-    monkeypatch.setattr(structural, "usual", lambda *_: 1.0)
+    monkeypatch.setattr(structural, "usual", lambda *_: usual)
     pairs = tuple(Pair(seed, world.run(Candidate((), ALWAYS), seed).total) for seed in range(8))
     online = sum(pair.total for pair in pairs) / len(pairs)
     assert online < 8.0, "the node needs no change"
