@@ -3,7 +3,7 @@
 Each episode is a bet against the claim that it is not. If the claim is true, a bet that always stakes a fixed share of
 its wealth ever multiplies it by 1/risk with probability at most `risk`, for any distribution of totals and any number
 of looks (Ville). Two bets share the wealth: a bold one, which wins soon if no episode is bad, and a careful one, which
-survives a few bad ones.
+survives a few bad ones. Any mixture of such bets keeps the risk.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from statistics import fmean, variance
 from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares lost in the worst possible episode
+OF_BOLD = 0.9  # share of the wealth that the bold bet begins with: of 200 repairs that lose 3 % and never fail, 197 are
+# shown to be right, where half of the wealth shows 93; those that fail seldom are shown as often
 DOUBT = 1.5  # factor on the variance estimated from few episodes
 CERTAIN = 0.005  # approximate risk of refusing early although the mean is above the limit
 
@@ -31,11 +33,18 @@ class Bet:
     least: float
     stakes: tuple[float, ...]
 
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Return the share of the wealth that each stake begins with."""
+        return (OF_BOLD, 1.0 - OF_BOLD) if len(self.stakes) > 1 else (1.0,)
+
     def wealth(self, differences: Sequence[float]) -> float:
         """Return the logarithm of the wealth that started as 1; -inf if all was lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
-        return most if most == -inf else most + log(fmean(exp(one - most) for one in each))
+        if most == -inf:
+            return most
+        return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
         """Return whether the bet cannot be won with `left` more episodes, even at an optimistic mean."""

@@ -135,8 +135,8 @@ def test_a_bet_multiplies_its_wealth_by_each_difference() -> None:
     assert one.wealth([]) == 0.0
     assert Bet(1.0, -3.0, (0.5,)).wealth([-3.0, 9.0]) == -inf
     two = Bet(1.0, -2.0, (0.5, 0.25))
-    assert two.wealth([1.0]) == pytest.approx(log((2.0 + 1.5) / 2))
-    assert Bet(1.0, -3.0, (0.5, 0.25)).wealth([-3.0]) == pytest.approx(log(0.5 / 2))
+    assert two.wealth([1.0]) == pytest.approx(log(0.9 * 2.0 + 0.1 * 1.5))
+    assert Bet(1.0, -3.0, (0.5, 0.25)).wealth([-3.0]) == pytest.approx(log(0.1 * 0.5))
 
 
 def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None:

@@ -174,7 +174,11 @@ def test_a_bet_against_a_true_claim_is_rarely_won_for_any_distribution(
     rate = (best + margin) / (best - worst)  # share of the worst value with which the mean is -margin
     stake = bet(margin, least, known)
     runs = np.where(draws.random((400, 200)) < rate, worst, best)
-    money = np.mean([np.cumprod(1.0 + one * (runs + margin), axis=1) for one in stake.stakes], axis=0)
+    money = np.average(
+        [np.cumprod(1.0 + one * (runs + margin), axis=1) for one in stake.stakes],
+        axis=0,
+        weights=stake.shares,
+    )
     assert money.min() >= 0.0
     won = float(np.mean(money.max(axis=1) >= 1 / RISK))
     assert won <= RISK + 4 * np.sqrt(RISK / 400) + 0.01
@@ -214,7 +218,11 @@ def test_a_bet_is_rarely_won_if_the_strata_lose_the_margin_on_average(
     draws = np.random.default_rng(seed)
     runs = -np.tile(losses, 50) + draws.choice([-1.0, 1.0], (300, 200)) * 0.3
     stake = bet(MARGIN, -20.0, known)
-    money = np.mean([np.cumprod(1.0 + one * (runs + MARGIN), axis=1) for one in stake.stakes], axis=0)
+    money = np.average(
+        [np.cumprod(1.0 + one * (runs + MARGIN), axis=1) for one in stake.stakes],
+        axis=0,
+        weights=stake.shares,
+    )
     won = float(np.mean(money[:, np.array(LOOKS) - 1].max(axis=1) >= 1 / RISK))
     assert won <= RISK + 4 * np.sqrt(RISK / 300) + 0.01
 
