@@ -16,7 +16,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import Mutation, to_step
 from pytest_tarl.repairing.between import on_grid, searched_step
 from pytest_tarl.searching.accept import Reference
-from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 
 THIN = 0.35  # share of the margin; candidates that lose less are not improved
 STEPS = (1.3, 1.12, 1.04)  # ratios of neighbouring values
@@ -38,7 +38,7 @@ def centred(
     enough = reference.mean - THIN * reference.margin - harder
     try:
         if all(goal.reached(trials(candidate, pair.seed), pair.seed) for pair in pairs):
-            return _climbed(candidate, trials, mutate, pairs, enough)
+            return _climbed(candidate, trials, mutate, goal, enough)
     except RepairError:
         return candidate
     return candidate
@@ -57,15 +57,13 @@ def in_place(candidate: Candidate) -> Candidate:
     return replace(candidate, mutations=candidate.changes)
 
 
-def _climbed(
-    candidate: Candidate, trials: Trials, mutate: Mutate, pairs: Sequence[Pair], enough: float
-) -> Candidate:
-    best, totals = candidate, [trials(candidate, pair.seed).total for pair in pairs]
+def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, enough: float) -> Candidate:
+    best, totals = candidate, [trials(candidate, pair.seed).total for pair in goal.pairs[:SEEDS]]
     for step in STEPS:
         for ratio in (step, 1 / step):
             for _ in range(MOVES):
                 other = moved(best, ratio, mutate) if fmean(totals) < enough else None
-                earned = _better(other, trials, pairs, totals) if other is not None else None
+                earned = _better(other, trials, goal, totals) if other is not None else None
                 if other is None or earned is None:
                     break
                 best, totals = other, earned
@@ -94,14 +92,18 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
     return replace(candidate, mutations=tuple(made))
 
 
-def _better(
-    candidate: Candidate, trials: Trials, pairs: Sequence[Pair], totals: Sequence[float]
-) -> list[float] | None:
-    """Return a candidate's totals if they are higher in the mean than these; None as soon as it falls behind."""
+def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
+    """Return a candidate's totals if they are higher in the mean than these.
+
+    None as soon as it falls behind or a mission fails, even if that one earns more.
+    """
     earned: list[float] = []
     try:
-        for pair in pairs:
-            earned.append(trials(candidate, pair.seed).total)
+        for pair in goal.pairs[:SEEDS]:
+            outcome = trials(candidate, pair.seed)
+            if goal.lost(outcome):
+                return None
+            earned.append(outcome.total)
             if len(earned) >= BEHIND and fmean(earned) <= fmean(totals[: len(earned)]):
                 return None
     except RepairError:

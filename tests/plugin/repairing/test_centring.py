@@ -58,6 +58,19 @@ def test_a_value_moves_towards_the_middle_until_it_loses_little_of_the_margin(
         assert trials.spent <= SEEDS
 
 
+def test_a_value_does_not_move_to_where_missions_fail_though_they_earn_more() -> None:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        found = factor(candidate.mutations[0]) or 0.0
+        return Outcome(8.0 + found / 2.0, passed=found < 2.9)
+
+    trials = Trials(run, 100)
+    found = Candidate((Mutation(LITERAL, 4.4),), ALWAYS)
+    moved_to = centred(found, trials, mutations, GOAL, REFERENCE)
+    reached = factor(moved_to.mutations[0])
+    assert reached is not None
+    assert 2.2 < reached < 2.9
+
+
 def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)
