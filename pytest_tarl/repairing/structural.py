@@ -36,7 +36,9 @@ FIRST = (
     2  # expressions that get all templates first: the slices' first one and the one next to the publish call
 )
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = 50  # episodes that templates with a sensor get at least if the sensor tells the drift
+LEAST = (
+    50  # episodes that templates with a sensor get at least if the sensor tells the drift; at most a third
+)
 
 
 class Structures:
@@ -75,16 +77,26 @@ class Structures:
             left = whole - self.trials.spent
             share = left * sizes[number] // sum(sizes[number:])
             if operands is told:
-                share = min(max(share, LEAST), left)
+                share = min(max(share, LEAST), left // 3)
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
             try:
-                yield from sweep.candidates()
+                for candidate in sweep.candidates():
+                    yield from self._beyond_its_share(candidate, whole)
             except BudgetSpentError:
                 if number == len(groups) - 1:
                     raise
             finally:
                 self.trials.budget, self.trials.reserve = whole, 0
+
+    def _beyond_its_share(self, candidate: Candidate, whole: int) -> Iterator[Candidate]:
+        """Yield a candidate, whose examination may spend more than the share of its templates."""
+        trials = self.trials
+        budget, reserve, spent = trials.budget, trials.reserve, trials.spent
+        trials.budget, trials.reserve = whole, 0
+        yield candidate
+        trials.budget = min(budget + trials.spent - spent, whole)
+        trials.reserve = min(reserve, whole - trials.budget)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gains of each template's best values."""

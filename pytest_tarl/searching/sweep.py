@@ -57,7 +57,8 @@ class Sweep:
     The first two guards are used throughout (the second is the second opinion), the others only at the end. With
     `proposed` the operands' values are proposals that the program does not contain yet, so they are first tried
     unchanged; where such a change is idle, a factor that makes it `weaker` is left out. Only parameters of one change
-    are then combined. If a search for structural changes follows, the search ends early where nothing gains.
+    are then combined. If a search for structural changes follows, the last steps, which are tried on every operand
+    whatever it has shown so far, are limited to the nearest ones of named constants.
     """
 
     def __init__(
@@ -113,11 +114,15 @@ class Sweep:
         if not gained:
             yield from self._together()
         yield from self._late_ones((*self.aside, *self.late), chief)
-        if self.structure_follows and not self._gains.anything():
+        if self.structure_follows:
+            for factor in BETWEEN:
+                for guard in chief:
+                    yield from self._all(factor, guard, named(self.units))
             return
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
-                yield from self._all(factor, guard, self.units)
+                among = self._gains.moving(self.units) if self.proposed else self.units
+                yield from self._all(factor, guard, among)
 
     def _in_large_steps(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Try every unit in steps that are large enough to show whether it matters."""
@@ -145,7 +150,12 @@ class Sweep:
         """
         moving = self._gains.moving(block)
         yield from self._carried_over(guard)
-        for factor in (1.0, FLIP, *NEAR) if self.proposed else NEAR:
+        if self.proposed:
+            yield from self._all(1.0, guard, moving)
+            for factor in NEAR:  # first where the proposal was too weak to change anything
+                idle = [unit for unit in moving if self._gains.idle(unit)]
+                yield from self._all(factor, guard, idle) if idle else ()
+        for factor in (FLIP, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._narrow(guard, moving)
         for factor, before in () if self._gains.anything() else FURTHER:

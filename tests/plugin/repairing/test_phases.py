@@ -20,7 +20,7 @@ from pytest_tarl.repairing.repair import _ended, _Findings, _notes, _of_the_rang
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.search import Candidate, Goal, Pair
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from tests.plugin.searching.test_search import operand
 
 GOAL = Goal((Pair(0, 0.0),), near=9.0, enough=9.0, online=0.0)
@@ -258,3 +258,15 @@ def test_a_factor_weakens_a_structural_change_against_its_stronger_way(
     form: Any = SimpleNamespace(parameter=parameter, template=SimpleNamespace(parameters=parameters))
     structures._found = {one: form}
     assert structures.weaker(one, factor) is expected
+
+
+def test_a_candidate_may_be_examined_beyond_the_share_of_its_templates() -> None:
+    structures = Structures.__new__(Structures)
+    structures.trials = Trials(lambda *_: Outcome(1.0, True), budget=10, reserve=4)
+    steps = structures._beyond_its_share(ONE, whole=30)
+    assert next(steps) == ONE
+    assert (structures.trials.budget, structures.trials.reserve) == (30, 0)
+    for seed in range(3):
+        structures.trials(ONE, seed)
+    assert next(steps, None) is None
+    assert (structures.trials.budget, structures.trials.reserve) == (13, 4)

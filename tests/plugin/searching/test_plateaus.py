@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.repairing.between import factor
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
+from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
 
 LOST, STEPS = -4.0, 100
@@ -46,3 +47,29 @@ def test_steps_become_smaller_while_nothing_gains() -> None:
     assert found is not None
     assert {one.operand for one in found.mutations} == {RIGHT}
     assert spent <= 2 * (len(INERT) + 1) + 12
+
+
+def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() -> None:
+    """A limit at 1 changes nothing, one at 0.4 holds; the other proposals lose."""
+    tried: list[tuple[object, float]] = []
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (one,) = candidate.mutations
+        tried.append((one.operand, float(one.value)))
+        won = one.operand == RIGHT and one.value < 0.6
+        idle = one.operand == RIGHT and not won
+        return Outcome(10.0 if won else LOST if idle else LOST - 1.0, won, steps=STEPS + (not idle))
+
+    pairs = tuple(Pair(seed, LOST, STEPS) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=LOST, passing=True)
+    proposals = [*INERT[:4], RIGHT]
+
+    def mutate(one: Operand, by: float) -> Mutation:
+        return Mutation(one, by)
+
+    sweep = Sweep(
+        proposals, mutate, (ALWAYS,), Trials(run, 300), goal, proposed=True, weaker=lambda _, by: by > 1.0
+    )
+    found = next(sweep.candidates())
+    assert [(one.operand, one.value) for one in found.mutations] == [(RIGHT, 0.4)]
+    assert tried[: len(proposals) + 1] == [*((one, 1.0) for one in proposals), (RIGHT, 0.4)]
