@@ -59,7 +59,7 @@ def test_shares_and_small_offsets_have_a_scale_and_gains_have_none(
         for step in analysis.sites
         if step.code.split(" ")[0] in sizes
     }
-    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: recorded)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: recorded)
     order: Any = SimpleNamespace(analysis=analysis)
     operands = [one for step in analysis.sites for one in analysis.operands(step.site)]
     found = {one.code: chart for one, chart in charts(order, operands).items()}

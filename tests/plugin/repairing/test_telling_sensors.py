@@ -84,7 +84,7 @@ if __name__ == "__main__":
 
 def test_what_is_published_is_a_place_for_a_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "sprayer.py").write_text(SENDING)
-    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: {})
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: {})
     asked: Any = order(0, 5)
     asked.analysis, asked.comparison.culprits = analyse([tmp_path / "sprayer.py"], root=tmp_path), ()
     found = [(spot.source.source(spot.node), spot.kind) for spot in spots(asked)]
@@ -99,7 +99,7 @@ def test_a_call_that_returns_a_number_is_a_place_for_templates(
     analysis = analyse([tmp_path / "aiming.py", tmp_path / "table.py"], root=tmp_path)
     returned = {str(step.site): 12.0 for step in analysis.sites if step.code.startswith("return")}
     assert len(returned) == 1
-    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: returned)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: returned)
     asked: Any = order(0, 5)
     asked.analysis, asked.comparison.culprits = analysis, ()
     found = {spot.source.source(spot.node): spot for spot in spots(asked)}
