@@ -65,8 +65,8 @@ def form_edits(
         taken.add(states[name])
         fill[name] = keeper.prefix + states[name]
     found = _written(_Place(source, statement, node, form, condition), fill)
-    if keeper is not None:
-        found += _state_edits(keeper, [(states[name], initial) for name, initial in made.state])
+    if keeper is not None:  # first, because `global` has to precede the lines that use the state
+        found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 
 

@@ -23,7 +23,8 @@ KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sens
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (  # what a default is a multiple of
     "",  # 1
-    "typical",  # the usual size of the value
+    "typical",  # the usual size of the value in the designed world
+    "larger",  # its usual size in the world where that is larger
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative

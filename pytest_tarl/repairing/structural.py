@@ -185,11 +185,14 @@ def _forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[
     if template.on == "pair":
         for one, other in pairs(among, MOST["pair"]):
             partner = _span(other.source, other.node)
-            yield list(_operands(template, one, Form(template, partner=partner), {"typical": 1.0}))
+            yield list(
+                _operands(template, one, Form(template, partner=partner), {"typical": 1.0, "larger": 1.0})
+            )
         return
     for spot in _fitting(template, among)[: MOST[template.on]]:
         if template.on not in OF_SENSORS:
-            yield list(_operands(template, spot, Form(template), {"typical": spot.typical}))
+            scales = {"typical": spot.typical, "larger": spot.larger}
+            yield list(_operands(template, spot, Form(template), scales))
             continue
         by_sensor: list[tuple[Operand, Form]] = []
         for sensor in order.comparison.sensors:

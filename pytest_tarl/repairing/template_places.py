@@ -22,8 +22,9 @@ _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"
 class Spot:
     """An expression of a kind at which a template may be written.
 
-    `typical` is the usual size of its value, `away` its distance in statements from a publish call. `hears` tells
-    whether its module subscribes to topics, so that a template can read a sensor there.
+    `typical` is the usual size of its value as designed, `larger` that of the world where it is larger, `away` its
+    distance in statements from a publish call. `hears` tells whether its module subscribes to topics, so that a
+    template can read a sensor there.
     """
 
     site: SiteId
@@ -31,6 +32,7 @@ class Spot:
     node: ast.expr
     kind: str
     typical: float
+    larger: float
     away: int
     hears: bool
 
@@ -38,6 +40,7 @@ class Spot:
 def spots(order: Order) -> Iterator[Spot]:
     """Yield the expressions in the statements of flows, in the order of the statements."""
     sizes = TypicalSizes(order)
+    drifted = TypicalSizes(order, order.online.recorded.sample)
     seen: set[tuple[str, int]] = set()
     away = _away(order)
     hearing = {flow.source.span.path for flow in order.analysis.flows}
@@ -50,9 +53,12 @@ def spots(order: Order) -> Iterator[Spot]:
             key = (source.path, source.start(node))
             if key not in seen and not is_member(source, node, order.analysis.sources.values()):
                 seen.add(key)
-                usual = threshold(node) if kind == "comparison" else sizes.of(step.site, node)
+                usual, larger = threshold(node), threshold(node)
+                if kind != "comparison":
+                    usual = sizes.of(step.site, node)
+                    larger = max(usual, drifted.of(step.site, node))
                 hears = source.path in hearing
-                yield Spot(step.site, source, node, kind, usual, away[step.site], hears)
+                yield Spot(step.site, source, node, kind, usual, larger, away[step.site], hears)
 
 
 def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:

@@ -18,10 +18,10 @@ BOUNDING = ("abs", "float", "int", "max", "min", "round")
 
 
 class TypicalSizes:
-    """Mean absolute values in the recording, by site, by assigned name, and by constant."""
+    """Mean absolute values in a world, the recorded one by default, by site, by assigned name, and by constant."""
 
-    def __init__(self, order: Order) -> None:
-        self.by_site = _recorded(order)
+    def __init__(self, order: Order, world: Sample | None = None) -> None:
+        self.by_site = _recorded(order, world)
         self.returned = dict(_returned(order, self.by_site))
         self._by_name = dict(_assigned(order, self.by_site))
         self._constants = {
@@ -78,9 +78,9 @@ def threshold(node: ast.expr) -> float:
     return sizes[0] if sizes else 1.0
 
 
-def _recorded(order: Order) -> Mapping[str, float]:
-    """Return the mean recorded flow value of each site, by site id."""
-    sample: Sample = order.fixture.sample
+def _recorded(order: Order, world: Sample | None) -> Mapping[str, float]:
+    """Return the mean flow value of each site in a world, the recorded one by default, by site id."""
+    sample = world or order.fixture.sample
     found: dict[str, float] = {}
     for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):
         visits = recorded.visits

@@ -170,6 +170,33 @@ def test_a_value_that_is_not_always_evaluated_gets_no_name_before(statement: str
         form_edits(source, source.find(span(before, at)), form, {"step": 0.1}, "", "")
 
 
+PLACES = {  # where a statement may stand, as the first one or alone
+    "function": "def steer(error):\n    {statement}\n",
+    "function with docstring": 'def steer(error):\n    """Steer."""\n    {statement}\n',
+    "constructor": "class Node:\n    def __init__(self, error):\n        {statement}\n",
+    "method": "class Node:\n    def steer(self, error):\n        {statement}\n",
+    "loop": "def main():\n    while True:\n        error = read()\n        {statement}\n",
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("statement", ["turn = 2.0 * error", "send(2.0 * error)", "return 2.0 * error"])
+@pytest.mark.parametrize("path", [each for each in FILES if template(each).state], ids=lambda path: path.stem)
+def test_state_is_declared_before_the_first_statement_that_uses_it(
+    path: Path, statement: str, place: str
+) -> None:
+    made = template(path)
+    if made.on == "comparison":
+        statement = f"if 2.0 * error > 1.0: {statement}"
+    source = document("node.py", PLACES[place].format(statement=statement))
+    values = {one.name: 1.0 for one in made.parameters}
+    code = "2.0 * error > 1.0" if made.on == "comparison" else "2.0 * error"
+    node = source.find(span(source.text, code))
+    text = apply_edits(source, form_edits(source, node, Form(made), values, "", "error"))  # compiles it
+    globals_ = [each for each in ast.walk(ast.parse(text)) if isinstance(each, ast.Global)]
+    assert bool(globals_) == place.startswith("function")
+
+
 @pytest.mark.parametrize(
     ("expression", "written"),
     [("margin", "margin + (self.length or 0.0)"), ("2.0 * gap", "2.0 * gap + (self.length or 0.0)")],

@@ -213,7 +213,7 @@ def test_a_template_is_found_for_any_origin_of_the_value(
 ) -> None:
     world = World(name, tmp_path, BODIES[body])
     recorded = {str(step.site): 1.0 for step in world.analysis.sites}
-    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: recorded)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: recorded)
     check_found(name, world, monkeypatch)
 
 
@@ -240,6 +240,7 @@ def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch, usual:
         root=Path(),
         comparison=SimpleNamespace(culprits=(), sensors=(slope,)),
         fixture=SimpleNamespace(sample=SimpleNamespace(lists=()), lists=()),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample=SimpleNamespace(lists=()))),
         goal=Goal(pairs, near=8.5, enough=9.0, online=online),
     )
     trials = Trials(world.run, 100)

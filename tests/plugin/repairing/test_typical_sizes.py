@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.repairing import typical_sizes
+from pytest_tarl.repairing.template_places import spots
 from pytest_tarl.repairing.typical_sizes import TypicalSizes
 from tarl_lint.api import analyse
 
@@ -60,7 +61,24 @@ def test_a_size_follows_from_the_parts(
     analysis = analyse([tmp_path / "tap.py"], root=tmp_path)
     recorded = {str(step.site): 140.0 for step in analysis.sites if step.code.startswith("left =")}
     assert recorded
-    monkeypatch.setattr(typical_sizes, "_recorded", lambda _: recorded)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: recorded)
     order: Any = SimpleNamespace(analysis=analysis)
     (site,) = (step.site for step in analysis.sites if "publish" in step.code)
     assert TypicalSizes(order).of(site, ast.parse(text, mode="eval").body) == pytest.approx(size)
+
+
+@pytest.mark.parametrize(("drifted", "larger"), [(700.0, 10.0), (14.0, 2.0)])
+def test_a_place_has_the_size_of_the_world_where_it_is_larger(
+    drifted: float, larger: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tap.py").write_text(NODE)
+    analysis = analyse([tmp_path / "tap.py"], root=tmp_path)
+    (left,) = (str(step.site) for step in analysis.sites if step.code.startswith("left ="))
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda _, world: {left: drifted if world else 140.0})
+    order: Any = SimpleNamespace(
+        analysis=analysis,
+        comparison=SimpleNamespace(culprits=()),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample="drifted")),
+    )
+    (spot,) = (one for one in spots(order) if ast.unparse(one.node) == "left / SOFT")
+    assert (spot.typical, spot.larger) == (2.0, larger)
