@@ -40,6 +40,10 @@ class Compared:
     episodes: Mapping[str, int]
     interrupted: bool = False
 
+    def noted(self, note: str) -> Compared:
+        """Return it with a further note."""
+        return replace(self, comparison=replace(self.comparison, notes=(note, *self.comparison.notes)))
+
     def told(self) -> Account:
         """Write result, sample and page, and return the report."""
         comparison = self.comparison

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from math import ceil
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from pytest_tarl.learning.packing import represented
 from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.sarsa import LEARNERS
 from pytest_tarl.learning.sequential import Look, certain, concluded, planned
+from pytest_tarl.learning.spending import Stage
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
@@ -45,6 +47,8 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
+    looks: tuple[tuple[int, float], ...] = ()  # episodes and uncorrected p-value of the loss at each look
+    decided: bool = False  # whether the verdict is certain at the last look
 
 
 def run_online(
@@ -57,16 +61,20 @@ def run_online(
     progress: Progress,
     changeable: Collection[str] | None = None,
     tell: Tell | None = None,
+    stage: Stage | None = None,
 ) -> Online:
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
-    `changeable` holds the ids of sites with an operand, if known: these rank before other sites.
+    `changeable` holds the ids of sites with an operand, if known: these rank before other sites. With a `stage`, the
+    comparison ends after it, and a later call may continue it.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
-    side = _side(rollout, fixture, designation, options, plan)
+    side = _side(rollout, fixture, designation, options, plan, stage)
     count = len(side.seeds)
-    watch = _Watch(fixture.sample, designation, options, planned(count, side.looks))
+    looks = stage.looks if stage else planned(count, side.looks)
+    rarest = ceil(1 / looks[0].share) if stage else options.comparisons
+    watch = _Watch(fixture.sample, designation, options, looks, permutations_for(options.alpha, rarest))
     footprint = Footprint(count, tell) if tell else None
     recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch, footprint)
     difference = concluded(watch.seen, options.alpha)
@@ -107,7 +115,8 @@ def run_online(
         purpose=designation.purpose,
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
-    return Online(comparison, recorded, learned)
+    pairs = tuple((look.episodes, found.verdict.p_loss) for look, found in watch.seen)
+    return Online(comparison, recorded, learned, pairs, certain(watch.seen[-1][1]))
 
 
 def _formulas(designation: Designation, offline: Sample, online: Sample) -> tuple[FormulaRow, ...]:
@@ -147,7 +156,12 @@ class _Side:
 
 
 def _side(
-    rollout: Rollout, fixture: Fixture, designation: Designation, options: Options, plan: Plan
+    rollout: Rollout,
+    fixture: Fixture,
+    designation: Designation,
+    options: Options,
+    plan: Plan,
+    stage: Stage | None,
 ) -> _Side:
     """Return the source that the options select: the test's own world, a log, or bags."""
     if options.log is not None:
@@ -156,7 +170,7 @@ def _side(
     if options.bags:
         missions = bagged(rollout, fixture, designation, options)
         return _Side(missions, list(missions.bags), 1, missions.notes)
-    count = options.episodes or options.ONLINE_EPISODES
+    count = stage.episodes if stage else options.episodes or options.ONLINE_EPISODES
     return _Side(rollout, episode_seeds(options.seed, "online", count), options.most_looks)
 
 
@@ -183,6 +197,7 @@ class _Watch:
     designation: Designation
     options: Options
     looks: Sequence[Look]
+    permutations: int
     seen: list[tuple[Look, Difference]] = field(default_factory=list)
 
     def __call__(self, samples: Sequence[Sample]) -> bool:
@@ -198,7 +213,7 @@ class _Watch:
             declared=Range(*self.designation.total_range) if self.designation.total_range else None,
             sensors=self.designation.sensors,
             generator=seeds.generator(self.options.seed, "compare"),
-            permutations=permutations_for(self.options.alpha, self.options.comparisons),
+            permutations=self.permutations,
         )
         self.seen.append((look, difference))
         return certain(difference)

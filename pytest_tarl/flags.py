@@ -81,6 +81,12 @@ FLAGS = (
         metavar="N",
         type=int,
     ),
+    Flag(
+        "--tarl-total",
+        "with --tarl-online: number of episodes that all comparisons of the run share; undecided ones get more",
+        metavar="N",
+        type=int,
+    ),
     Flag("--tarl-alpha", "rate of false alarms (default 0.05)", metavar="P", type=float, default=0.05),
     Flag(
         "--tarl-looks",

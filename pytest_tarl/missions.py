@@ -21,6 +21,7 @@ from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.spending import Stage
 from pytest_tarl.model import Repair
 from pytest_tarl.modules_of_tests import Digests, digests, remark
 from pytest_tarl.options import Options
@@ -70,6 +71,7 @@ class Mission:
     progress: Progress
     tell: Tell  # prints a sentence at once if there is a terminal
     others: tuple[Other, ...] = ()
+    stage: Stage | None = None  # the part of the comparison to run, if it shares episodes with others
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
         """Run the mode. A comparison returns its result unreported: call `told` to write and report it.
@@ -208,6 +210,7 @@ class Mission:
             self.progress,
             _changeable(analysis),
             self.tell,
+            self.stage,
         )
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
@@ -238,7 +241,8 @@ class Mission:
             *self._not_run(comparison.repair),
             *self._design_lost(fixture),
         )
-        told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
+        flags = self.options.flags if self.stage is None else self.options.alone(episodes["online"]).flags
+        told = replace(comparison, target=self.target, flags=flags, notes=notes)
         name = f"{slug(self.test)}-{slug(self.drift or 'online')}"
         return Compared(name, self.root, self.width, told, online, episodes, interrupted)
 

@@ -6,7 +6,7 @@ import difflib
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +20,14 @@ RANKINGS = ("repair", "full")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
 MOST_EPISODES = 10**6  # upper limit of --tarl-budget
+FEWEST_SHARED = 10  # lower limit of --tarl-total
+_NOT_SHARED = {
+    "episodes": "the first is for all comparisons of the run, the second for each",
+    "repair": "a repair is searched during its test. Compare first, then repair the degraded tests",
+    "holm": "Holm's method needs smaller p-values than those at which a comparison may end early",
+    "log": "the number of recorded missions is given",
+    "bag": "the number of recorded missions is given",
+}  # flags that contradict --tarl-total, with the reason
 
 
 @dataclass(frozen=True)
@@ -50,6 +58,7 @@ class Options:
     stress_budget: int = 1000  # limit of a stress run, in episodes
     stress_seconds: float | None = None  # or in seconds
     stress_repair: bool = False  # whether a stress run repairs at the boundary
+    total: int | None = None  # episodes that all comparisons of the run share
     resume: bool = False  # whether to take the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
@@ -63,6 +72,10 @@ class Options:
         those at which a run may end early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
+
+    def alone(self, episodes: int) -> Options:
+        """Return the options that run one comparison of a shared total by itself, with as many episodes."""
+        return replace(self, total=None, looks=None, episodes=episodes)
 
     @property
     def learner(self) -> str:
@@ -108,6 +121,8 @@ def options(given: Mapping[str, Any]) -> Options:
         number_within("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
     if given["looks"] is not None:
         number_within("--tarl-looks", "it", given["looks"], int, 1, 5)
+    if given["total"] is not None:
+        _check_total(given)
     budget = _budget(str(given["budget"]))
     stress_budget = _budget(str(given["stress-budget"]), "--tarl-stress-budget", 32)
     modes: tuple[Mode, ...] = ("record", "stress", "repair", "online")
@@ -136,8 +151,24 @@ def options(given: Mapping[str, Any]) -> Options:
         stress_budget=stress_budget[0],
         stress_seconds=stress_budget[1],
         stress_repair=bool(given["stress"] and given["repair"]),
+        total=given["total"],
         resume=given["resume"],
     )
+
+
+def _check_total(given: Mapping[str, Any]) -> None:
+    """Raise SettingsError for a shared total that is out of range, or that other flags contradict."""
+    number_within("--tarl-total", "it", given["total"], int, FEWEST_SHARED, 10**6)
+    if not given["online"]:
+        raise SettingsError("--tarl-total needs --tarl-online: its comparisons share the episodes.")
+    for other, reason in _NOT_SHARED.items():
+        if given[other]:
+            raise SettingsError(f"--tarl-total and --tarl-{other} exclude each other: {reason}.")
+    if given["looks"] == 1:
+        raise SettingsError(
+            "--tarl-total needs at least two looks, since episodes are shared out again after each look: raise "
+            "--tarl-looks, or remove it."
+        )
 
 
 def _check_modes(given: Mapping[str, Any]) -> None:

@@ -36,10 +36,12 @@ if TYPE_CHECKING:
 
     from pytest_tarl.accounts import Account, Compared
     from pytest_tarl.designation import Designation
+    from pytest_tarl.learning.spending import Stage
     from pytest_tarl.missions import Other
     from pytest_tarl.repairing.merge_patches import Joined
     from pytest_tarl.resuming.run import ResumableRun
     from pytest_tarl.rollout import Rollout
+    from pytest_tarl.sharing import SharedEpisodes
 
 PLAIN_WIDTH = 80  # columns if there is no terminal, as under `-p no:terminal`
 
@@ -53,10 +55,13 @@ class TarlSession:
     """The hooks of one run; registered only if a mode is selected."""
 
     def __init__(self, config: pytest.Config, options: Options) -> None:
-        if options.holm and (hasattr(config, "workerinput") or config.getoption("numprocesses", None)):
+        if _of_all_tests(options) and (
+            hasattr(config, "workerinput") or config.getoption("numprocesses", None)
+        ):
+            what = "--tarl-holm corrects" if options.holm else "--tarl-total shares episodes"
             raise pytest.UsageError(
-                "--tarl-holm corrects over all tests of a run, but with -n no process knows them all: remove -n, "
-                "and use --tarl-workers to run episodes in parallel."
+                f"{what} over all tests of a run, but with -n no process knows them all: remove -n, and use "
+                "--tarl-workers to run episodes in parallel."
             )
         self.config = config
         self.options = options
@@ -65,6 +70,7 @@ class TarlSession:
         self._designated: tuple[pytest.Item, ...] = ()
         self._unmarked = False  # whether tests were collected, but none with the marker
         self._resumable: ResumableRun | None = None
+        self._shared: SharedEpisodes | None = None  # with --tarl-total
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Parametrize by drift scenario: `test_delivers[mud]`; `[online]` without one."""
@@ -96,11 +102,26 @@ class TarlSession:
             marked = self._spaced(marked)
         if self.options.holm:
             self.options = replace(self.options, comparisons=max(len(marked), 1))
+        if self.options.total is not None:
+            self._shared = self._sharing(self.options.total, marked)
         kept = set(marked)
         others = [item for item in items if item not in kept]
         if others:
             config.hook.pytest_deselected(items=others)
             items[:] = marked
+
+    def _sharing(self, total: int, marked: Sequence[pytest.Item]) -> SharedEpisodes | None:
+        """Return the episodes that the recorded tests share. Raise UsageError if the total is too small for them."""
+        from pytest_tarl.design import fixture_path
+        from pytest_tarl.sharing import SharedEpisodes, shortage
+
+        root = self.config.rootpath
+        recorded = [item for item in marked if fixture_path(root, without_drift(item)).exists()]
+        if not recorded:
+            return None
+        if sentence := shortage(total, len(recorded)):
+            raise pytest.UsageError(sentence)
+        return SharedEpisodes(total, len(recorded), self.options.most_looks)
 
     def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
         """Return the items with a space. Raise UsageError if there is none, or if the search is not installed."""
@@ -140,18 +161,22 @@ class TarlSession:
         """
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
-        if not self.options.holm:
+        together = _of_all_tests(self.options)
+        if not together:
             _started(item)
-        call = pytest.CallInfo.from_call(lambda: self._run(item), when="call", reraise=INTERRUPTS)
+        stage = self._shared.first if self._shared is not None else None
+        call = pytest.CallInfo.from_call(lambda: self._run(item, stage), when="call", reraise=INTERRUPTS)
         self._ended.append(_Ended(item, call, _phase(item, "setup"), finish(item, nextitem)))
-        if nextitem is None or not self.options.holm:
+        if nextitem is None and self._shared is not None:
+            self._share(self._shared)
+        if nextitem is None or not together:
             self._tell()
         if call.excinfo is None and getattr(call.result, "interrupted", False):
             raise KeyboardInterrupt  # results so far are reported; no further test starts
         return True
 
     def _tell(self) -> None:
-        """Log the tests that have run; with --tarl-holm, only once all of them have."""
+        """Log the tests that have run; with --tarl-holm and --tarl-total, only once all of them have."""
         from pytest_tarl.accounts import Compared, jointly
 
         ended, self._ended = self._ended, []
@@ -161,9 +186,20 @@ class TarlSession:
             for one, outcome in zip(several, found, strict=True):
                 one.conclude(outcome.told)
         for one in ended:
-            if self.options.holm:
+            if _of_all_tests(self.options):
                 _started(one.item)
             one.log()
+
+    def _share(self, shared: SharedEpisodes) -> None:
+        """Continue undecided comparisons with the rest of the shared episodes, and conclude all of them."""
+        from pytest_tarl.accounts import Compared
+
+        while (chosen := shared.following([one.outcome for one in self._ended])) is not None:
+            self._ended[chosen[0]].proceed(self._run, chosen[1])
+        notes = shared.notes([one.outcome for one in self._ended])
+        for one, note in zip(self._ended, notes, strict=True):
+            if isinstance(one.outcome, Compared):
+                one.conclude(one.outcome.noted(note).told)
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: object) -> bool | None:
@@ -203,7 +239,7 @@ class TarlSession:
         patches = tuple(map(Path, self._summary.patches))
         return joined(patches, self.config.invocation_params.dir)
 
-    def _run(self, item: pytest.Function) -> Account | Compared:
+    def _run(self, item: pytest.Function, stage: Stage | None = None) -> Account | Compared:
         from pytest_tarl.accounts import Account
         from pytest_tarl.missions import Mission, NoFixtureError
         from pytest_tarl.resuming.run import ResumableRun
@@ -230,12 +266,14 @@ class TarlSession:
             progress=progress,
             tell=self._say,
             others=self._others(item),
+            stage=stage,
         )
         self._resumable = self._resumable or ResumableRun()
         kept = self._resumable.test(item, marked, self.options, self._say)
         try:
             with ExitStack() as opened:
-                opened.callback(kept.close)
+                if stage is None:  # else it may continue
+                    opened.callback(kept.close)
 
                 def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
                     rollout = self._rollout(item, replace(marked, sensors=sensors), instruments, opened)
@@ -245,7 +283,9 @@ class TarlSession:
                 kept.finished = True
                 if outcome.interrupted:
                     self._say(kept.interrupted())
-                return outcome if isinstance(outcome, Account) or self.options.holm else outcome.told()
+                if isinstance(outcome, Account) or _of_all_tests(self.options):
+                    return outcome
+                return outcome.told()
         except NoFixtureError as missing:
             if self.options.strict:
                 raise
@@ -315,6 +355,14 @@ class _Ended:
         """Return the comparison of the test; None if it ended in an error."""
         return self.call.result if self.call.excinfo is None else None
 
+    def proceed(self, run: Callable[[pytest.Function, Stage], object], stage: Stage) -> None:
+        """Run a further stage of the comparison, whose result replaces the one so far."""
+        call = pytest.CallInfo.from_call(lambda: run(self.item, stage), when="call", reraise=INTERRUPTS)
+        call.start, call.duration = self.call.start, self.call.duration + call.duration
+        self.call = call
+        again = finish(self.item, None)
+        self.teardown = again if self.teardown.passed else self.teardown
+
     def conclude(self, told: Callable[[], Account]) -> None:
         """Replace the comparison by its report."""
         call = pytest.CallInfo.from_call(told, when="call", reraise=INTERRUPTS)
@@ -346,6 +394,11 @@ class _Ended:
                 report, Account((str(error),), unrecorded=True)
             )  # skipped: pytest shows reasons only with -rs
         return report
+
+
+def _of_all_tests(options: Options) -> bool:
+    """Return whether tests are reported only once all of them have run."""
+    return options.holm or options.total is not None
 
 
 def _started(item: pytest.Item) -> None:

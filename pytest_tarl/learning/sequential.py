@@ -25,8 +25,12 @@ class Look:
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
     """Return at most `looks` looks; each has twice the episodes of the previous one, and the last one has all."""
-    ends = [episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)]
-    spent = [(end / episodes) ** 2 for end in ends]
+    return spending([episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)])
+
+
+def spending(ends: Sequence[int]) -> tuple[Look, ...]:
+    """Return looks after these increasing numbers of episodes, which together spend all of α."""
+    spent = [(end / ends[-1]) ** 2 for end in ends]
     shares = [after - before for before, after in zip([0.0, *spent], spent, strict=False)]
     return tuple(Look(end, share) for end, share in zip(ends, shares, strict=True))
 

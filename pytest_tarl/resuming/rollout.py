@@ -25,13 +25,15 @@ from pytest_tarl.workers import protocol
 class KeptRollout:
     """Run episodes of another rollout, except those that the journal has. `shown` is the journal's path in messages."""
 
-    def __init__(self, rollout: Rollout, journal: Journal, scope: bytes, shown: str) -> None:
+    def __init__(
+        self, rollout: Rollout, journal: Journal, scope: bytes, shown: str, *, checked: bool = False
+    ) -> None:
         self._rollout = rollout
         self._journal = journal
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = False
+        self._checked = checked  # whether a kept episode is known to have the same result still
 
     @property
     def workers(self) -> int:

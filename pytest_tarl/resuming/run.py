@@ -43,8 +43,9 @@ class ResumableTest:
         """
         if self.options.log is not None or self.options.bags:
             return rollout
+        scope, checked = scope_of(instruments, sensors), self.journal is not None and self.finished
         self.journal = self.journal or self._opened([*instruments.positions])
-        return KeptRollout(rollout, self.journal, scope_of(instruments, sensors), self._shown)
+        return KeptRollout(rollout, self.journal, scope, self._shown, checked=checked)
 
     def interrupted(self) -> str:
         """Return a sentence on the episodes that an interrupted run has kept; empty if there are none."""
@@ -123,13 +124,17 @@ class ResumableRun:
         options: Options,
         tell: Callable[[str], None],
     ) -> ResumableTest:
-        """Return a further test."""
+        """Return a further test, or one that shares a total of episodes and continues in this run."""
+        known = next((one for one in self.tests if one.item is item), None)
+        if known is not None and options.total is not None:
+            return known
         self.tests.append(ResumableTest(item, designation, options, tell))
         return self.tests[-1]
 
     def ended(self, status: int) -> None:
-        """Remove the episodes of finished tests if the run is complete."""
+        """Remove the episodes of finished tests if the run is complete; make all others durable."""
         for one in self.tests:
+            one.close()
             if one.finished and one.journal is not None and status in COMPLETE:
                 one.journal.remove()
         self.tests.clear()

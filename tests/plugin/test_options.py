@@ -37,6 +37,7 @@ FLAGS: dict[str, Any] = {
     "stress": False,
     "stress-budget": 1000,
     "resume": False,
+    "total": None,
 }
 
 

@@ -1,0 +1,41 @@
+"""Say how many of a run's shared episodes a comparison got, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Share:
+    """What a comparison got of `total` episodes, and what ended it.
+
+    `looks` holds the episodes and the uncorrected p-value of the loss at each look, `missing` how many more episodes
+    its next look needs (None after the last look), `left` how many of the total were not run.
+    """
+
+    total: int
+    comparisons: int
+    looks: Sequence[tuple[int, float]]
+    decided: bool
+    missing: int | None
+    left: int
+
+
+def sentence(share: Share) -> str:
+    """Return the note on a comparison's share."""
+    got, even = share.looks[-1][0], share.total // share.comparisons
+    seen = ", ".join(f"{p_value:.2g} after {episodes}" for episodes, p_value in share.looks)
+    among = f"{share.comparisons} comparisons" if share.comparisons > 1 else "1 comparison"
+    return (
+        f"ran {got} of the {share.total} episodes for {among} (an even share is {even}): {_end(share)}. Uncorrected "
+        f"p-value of the loss: {seen} episodes."
+    )
+
+
+def _end(share: Share) -> str:
+    if share.decided:
+        return "decided" if share.missing is None else "decided, so others can have the rest"
+    if share.missing is None:
+        return "undecided after its last look"
+    return f"undecided, but its next look needs {share.missing} more, and {share.left} are left"
