@@ -239,5 +239,11 @@ def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
 
 
 def _is_given(name: str) -> bool:
-    """Return whether the test put this module into `sys.modules`, for a package without a stand-in."""
-    return name not in STANDINS and getattr(sys.modules[name], "__spec__", None) is None
+    """Return whether the test put this module into `sys.modules`, itself or as a part of a package of its own.
+
+    The stand-in of a whole package, such as rospy, takes precedence over what a test puts there.
+    """
+    root = name.partition(".")[0]
+    of_a_test = root in sys.modules and getattr(sys.modules[root], "__spec__", None) is None
+    whole = root not in STANDINS and of_a_test
+    return (name not in STANDINS or whole) and getattr(sys.modules[name], "__spec__", None) is None

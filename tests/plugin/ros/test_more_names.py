@@ -201,6 +201,18 @@ def test_modules_that_the_test_puts_into_sys_modules_are_imported(
         start("from roslib import names\n", ros=ros)
 
 
+def test_a_package_of_the_test_takes_precedence_over_the_stand_in_of_its_part(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package, part = ModuleType("sound_play"), ModuleType("sound_play.libsoundplay")
+    part.SoundClient = lambda: "own"  # type: ignore[attr-defined]
+    package.libsoundplay = part  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "sound_play", package)
+    monkeypatch.setitem(sys.modules, "sound_play.libsoundplay", part)
+    ros = start("import rospy\nfrom sound_play.libsoundplay import SoundClient\nclient = SoundClient()\n")
+    assert ros.namespace["client"] == "own"
+
+
 def test_parts_of_a_stub_can_be_imported_from_it(start: Start) -> None:
     ros = start("from sensor_msgs_py import point_cloud2\nfrom tf import transformations\nimport rclpy\n")
     assert ros.namespace["point_cloud2"].__name__ == "sensor_msgs_py.point_cloud2"
