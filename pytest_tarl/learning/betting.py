@@ -46,6 +46,10 @@ class Bet:
             return most
         return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
+    def powerless(self, episodes: int, risk: float) -> bool:
+        """Return whether the bet cannot be won even if so many episodes lose nothing."""
+        return self.wealth([0.0] * episodes) < -log(risk)
+
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
         """Return whether the bet cannot be won with `left` more episodes, even at an optimistic mean."""
         counted = [max(one, self.least) for one in differences]

@@ -190,7 +190,8 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        return self.ledger.alike(better) or better
+        # Where centring leads back to a value that was examined before, the value itself is examined.
+        return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
         """Return the result of a similar candidate that was examined before, or that waits for its test."""

@@ -95,7 +95,8 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
 def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
     """Return a candidate's totals if they are higher in the mean than these.
 
-    None as soon as it falls behind or a mission fails, even if that one earns more.
+    None as soon as it falls behind or a mission fails, even if that one earns more, and if it loses missions that
+    rejected candidates lost.
     """
     earned: list[float] = []
     try:
@@ -106,6 +107,7 @@ def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[f
             earned.append(outcome.total)
             if len(earned) >= BEHIND and fmean(earned) <= fmean(totals[: len(earned)]):
                 return None
+        lost = trials.loses(candidate)
     except RepairError:
         return None
-    return earned
+    return None if lost else earned

@@ -111,7 +111,8 @@ class Designed:
 class Acceptance:
     """Result of a test.
 
-    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed.
+    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed. Those of a refused
+      candidate include the first seeds.
     - `tested`: False if the first seeds refused the candidate, which then spends no risk.
     - `episodes`: number of all episodes, including those of the unrepaired program.
     - `bets`: the bets placed in the two worlds.
@@ -166,8 +167,9 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    seen = [tuple(world.seen or world.first) for world in worlds]
-    begin = SCREEN if worlds[0].seen else 0
+    # A refused candidate is told by all of its missions, one that is accepted by those of its test alone.
+    seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
+    begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])
     return Acceptance(
         not reason,
@@ -200,6 +202,9 @@ class _World:
         self.first = self._run(seeds)
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
+        if self.bet.powerless(LOOKS[-1], self.risk):
+            failed = self._failed(self.first) and self.worse == "gain too small"
+            return "fails too often" if failed else "not shown"
         return self._hopeless(self.first, differences, LOOKS[-1])
 
     def tested(self, seeds: Sequence[int]) -> Reason:
