@@ -203,8 +203,7 @@ class _World:
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
         if self.bet.powerless(LOOKS[-1], self.risk):
-            failed = self._failed(self.first) and self.worse == "gain too small"
-            return "fails too often" if failed else "not shown"
+            return self._often if self._failed(self.first) else "not shown"
         return self._hopeless(self.first, differences, LOOKS[-1])
 
     def tested(self, seeds: Sequence[int]) -> Reason:
@@ -230,10 +229,14 @@ class _World:
     def _hopeless(self, outcomes: Sequence[Outcome], differences: Sequence[float], left: int) -> Reason:
         """Return the reason why the test can no longer accept, "" if it can."""
         if self._failed(outcomes) > self._numbers()[-1]:
-            return "fails too often" if self.worse == "gain too small" else self.worse
+            return self._often
         if self.bet is None or not self.bet.hopeless(differences, left, self.risk):
             return ""
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
+
+    @property
+    def _often(self) -> Reason:
+        return "fails too often" if self.worse == "gain too small" else self.worse
 
     def _numbers(self) -> tuple[int, ...]:
         return acceptance_numbers(LOOKS, self.reference.tolerated, self.risk)

@@ -71,6 +71,14 @@ def test_a_value_does_not_move_to_where_missions_fail_though_they_earn_more() ->
     assert 2.2 < reached < 2.9
 
 
+def test_a_value_does_not_move_to_where_missions_are_lost_that_a_rejected_one_lost() -> None:
+    trials = world(4.0, 0.5)
+    found = Candidate((Mutation(LITERAL, 5.0),), ALWAYS)
+    assert centred(found, trials, mutations, GOAL, REFERENCE) != found
+    trials.loses = lambda one: one != found
+    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+
+
 def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)

@@ -85,6 +85,31 @@ def test_failed_missions_count_even_if_the_reward_is_right() -> None:
     assert judged(World(run)).reason == "fails too often"
 
 
+@pytest.mark.parametrize(("drifted", "reason"), [(True, "fails too often"), (False, "nominal gets worse")])
+def test_a_failure_among_the_first_missions_refuses_without_spending_the_risk(
+    drifted: bool, reason: str
+) -> None:
+    """The bet would be sized by that failure, so no test could be won with it."""
+
+    def run(episode: int) -> Outcome:
+        failed = episode == seeds(0)[3]
+        return Outcome(LOWEST if failed else DESIGNED, not failed)
+
+    found = judged(*((World(run),) if drifted else (AS_DESIGNED, World(run))))
+    assert (found.reason, found.tested) == (reason, False)
+    assert [one.passed for one in (found.drifted if drifted else found.nominal)].count(False) == 1
+
+
+def test_a_refused_candidate_is_told_by_all_of_its_missions() -> None:
+    found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
+    assert not found.accepted
+    assert found.seeds == tuple(seeds(0)[: len(found.drifted)])
+    assert len(found.drifted) > SCREEN
+    assert len(found.designed) == len(found.drifted)
+    accepted = judged(world(DESIGNED))
+    assert accepted.seeds == tuple(seeds(0)[SCREEN : SCREEN + len(accepted.drifted)])
+
+
 def test_the_unrepaired_program_runs_once_per_seed() -> None:
     runs: list[int] = []
 
