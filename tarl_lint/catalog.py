@@ -158,6 +158,12 @@ SOURCE_WORDS: Final = (
     "SimpleActionServer",
 )  # a file without these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
+CLIENT_WORDS: Final = (
+    "ServiceProxy",
+    "create_client",
+    "ActionClient",
+    "SimpleActionClient",
+)  # a file without these words has no client of a service or action
 
 WAITS: Final = frozenset(
     [

@@ -100,7 +100,8 @@ def trace(
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:
-        machine = Linker(relevant(modules, config), config, thorough=thorough)
+        launched = parameters is not None
+        machine = Linker(relevant(modules, config, clients=launched), config, thorough=thorough)
         machine.parameter_names, machine.fixed = parameters, fixed
         machine.link()
         return machine, Tracer(machine).flows()

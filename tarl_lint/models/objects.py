@@ -8,8 +8,10 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import heap, recency, userdata
 from tarl_lint.memory.userdata import MACHINE_FIELD
-from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, lineage, pointer
-from tarl_lint.models import command_line, containers
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, lineage, pointer
+from tarl_lint.models import command_line, containers, sizes
+
+MESSAGE_MODULE = ".msg."  # part of the name of every message class
 
 
 def blank_object(ctx: Interpreter, it: Invocation) -> Value:
@@ -35,6 +37,25 @@ def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one si
     classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
     found = frozenset(c for c in classes if isinstance(c, Obj))
     return Value(pts=found) if found else UNKNOWN
+
+
+def is_instance(ctx: Interpreter, it: Invocation) -> Value:
+    """Return whether a received message is of a message type; unknown for other objects and classes."""
+    given = it.arguments[0]
+    if len(given) != 2:
+        return UNKNOWN
+    named = [one for part in sizes.unpacked(ctx, given[1]) or [given[1]] for one in part.objects]
+    if not named or not all(one.kind == "ext" and MESSAGE_MODULE in one.name for one in named):
+        return UNKNOWN  # a base class of messages, or a class of the files
+    ctx.look(given[0].pts)
+    received = {
+        one.defined if one.kind == "message" and one.parent is None else "" for one in given[0].objects
+    }
+    if not received or "" in received:
+        return UNKNOWN
+    types = {one.name.rpartition(".")[2] for one in named}
+    found = {one in types for one in received}
+    return const(found.pop()) if len(found) == 1 else UNKNOWN
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all

@@ -37,21 +37,22 @@ def concerned(modules: Sequence[Named], config: Config) -> bool:
     return any(True for _ in mentioning(modules, config))
 
 
-def relevant(modules: Sequence[M], config: Config) -> list[M]:
+def relevant(modules: Sequence[M], config: Config, *, clients: bool = False) -> list[M]:
     """Return the modules that may take part in a flow, or have an unused subscription or publisher."""
-    return [*{m.path: m for group in groups(modules, config) for m in group}.values()]
+    return [*{m.path: m for group in groups(modules, config, clients=clients) for m in group}.values()]
 
 
-def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
+def groups(modules: Sequence[M], config: Config, *, clients: bool = False) -> list[tuple[M, ...]]:
     """Return the relevant modules in groups between which no data flows.
 
-    A group includes everything that its modules import.
+    A group includes everything that its modules import. With `clients`, clients of services and actions subscribe
+    and publish too.
 
     Relevant modules are those that subscribe or publish, the modules that import them, and everything that these
     import. Within a group, a module comes after its imports, as far as import cycles allow. A module that several
     programs import may be in several groups.
     """
-    start = list(mentioning(modules, config))
+    start = list(mentioning(modules, config, clients=clients))
     if not start:
         return []
     index = Index(modules)
@@ -83,17 +84,18 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
     return [m for m in others if m.path in found]
 
 
-def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
+def mentioning(modules: Iterable[M], config: Config, *, clients: bool = False) -> Iterator[M]:
     """Yield the modules whose words suggest that they subscribe or publish; no other module does."""
-    has_word = endpoint_words(config)
+    has_word = endpoint_words(config, clients=clients)
     return (m for m in modules if has_word(m.text))
 
 
-def endpoint_words(config: Config) -> Callable[[str], bool]:
+def endpoint_words(config: Config, *, clients: bool = False) -> Callable[[str], bool]:
     """Return a test of texts: whether one contains a word that every subscribing or publishing module contains."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
+    words |= set(catalog.CLIENT_WORDS) if clients else set()
     search = re.compile("|".join(whole(word) for word in sorted(words))).search
     # a substring search is faster than the pattern, and rarely succeeds
     first = [word.rstrip("(") for word in words]

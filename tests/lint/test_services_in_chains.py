@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -147,3 +148,39 @@ def test_a_chain_passes_through_an_action(arm, capsys: pytest.CaptureFixture[str
 def test_pictures_and_json_show_services(arm, capsys: pytest.CaptureFixture[str], form: str) -> None:  # noqa: F811
     services(arm, node("pilot", '<param name="planner" value="better"/>') + server("planner"))
     assert "/better (request)" in run(capsys, "--launch", "a.launch", "--format", form)[1]
+
+
+ONLY_CLIENTS = {
+    "service": """
+        client = rospy.ServiceProxy("agent", Step)
+        answer = client(0)
+        while not rospy.is_shutdown():
+            answer = client(answer.state)
+        """,
+    "simple action": """
+        client = actionlib.SimpleActionClient("agent", StepAction)
+        while not rospy.is_shutdown():
+            last = client.get_result()
+            client.send_goal(StepGoal(last.state))
+        """,
+    "service of ROS 2": """
+        rclpy.init()
+        node = rclpy.create_node("only")
+        client = node.create_client(Step, "agent")
+        request = Step.Request()
+        while rclpy.ok():
+            future = client.call_async(request)
+            rclpy.spin_until_future_complete(node, future)
+            request.state = future.result().state
+        """,
+}
+
+
+@pytest.mark.parametrize("kind", ONLY_CLIENTS)
+def test_a_node_with_clients_only_is_analysed(kind, arm, capsys):  # noqa: F811 - the fixture
+    head = "#!/usr/bin/env python3\nimport actionlib, rclpy, rospy\nfrom robot.srv import *\nrospy.init_node('only')\n"
+    write(arm, {"arm/scripts/only.py": head + dedent(ONLY_CLIENTS[kind])})
+    write(arm, {"arm/launch/a.launch": '<launch><node pkg="arm" type="only.py" name="only"/></launch>'})
+    _, out, _ = run(capsys, "--launch", str(arm / "arm/launch/a.launch"))
+    ends = ("result", "goal") if "action" in kind else ("response", "request")
+    assert any(f"/agent ({ends[0]}) → /only → /agent ({ends[1]})" in line for line in flows(out)), out
