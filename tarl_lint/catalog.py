@@ -294,6 +294,10 @@ SHAPED: Final = frozenset(
     ["zeros_like", "ones_like", "empty_like", "full_like"]
 )  # functions that use only the shape of their first argument, not its data
 
+RESERVING: Final = frozenset(
+    f"numpy.{name}{like}" for name in ("zeros", "ones", "empty", "full") for like in ("", "_like")
+) | {"builtins.bytearray"}  # functions that make an array without data, often for a library to fill
+
 CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock: its time is not data of the object
 
 LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])  # of messages

@@ -31,6 +31,11 @@ def changes(method: str, *, dropped: bool) -> bool:
     return CHANGES.match(method) is not None or (dropped and TELLS.match(method) is None)
 
 
+def fills_arrays(name: str) -> bool:
+    """Return whether a function or method whose result is not used may fill an array that is passed to it."""
+    return TELLS.match(name) is None
+
+
 def keeps_callables(name: str) -> bool:
     """Return whether a class or method stores the callables passed to it."""
     return name[:1].isupper() or REGISTERS.match(name) is not None

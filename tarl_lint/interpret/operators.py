@@ -26,7 +26,7 @@ from tarl_lint.memory.values import (
     in_order,
     join,
 )
-from tarl_lint.models import sizes
+from tarl_lint.models import arrays, sizes
 from tarl_lint.models.sizes import COMBINING
 
 FOLDED: Mapping[str, Callable[..., object]] = {
@@ -86,6 +86,8 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     deps, name = NONE, _asked(expr)
     for number, value in enumerate(values):
         deps |= tested(ctx, name, value, frame, (expr.pos, number))
+    if (array := arrays.operate(ctx, expr, values, deps, frame)) is not None:
+        return array
     return Value(deps, consts=fold(ctx, expr.operator, values))
 
 

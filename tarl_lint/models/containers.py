@@ -180,18 +180,6 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
     change(ctx, base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
 
 
-def fill_empty(ctx: Interpreter, arguments: Arguments, deps: Nodes, frame: Frame, call: ir.Call) -> None:
-    """Let a library fill empty lists that are passed to a call whose result is not used.
-
-    Such a list has no other purpose.
-    """
-    if not deps:
-        return
-    for value in (*arguments[0], *arguments[1].values()):
-        if value.pts and sizes.unpacked(ctx, value) == []:
-            insert_elements(ctx, value, [Value(deps)], frame, call)
-
-
 def through_statement(
     ctx: Interpreter, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0
 ) -> Value:

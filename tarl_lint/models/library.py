@@ -31,6 +31,7 @@ from tarl_lint.models import (
     command_line,
     containers,
     drawings,
+    filling,
     fixed_numbers,
     futures,
     iterators,
@@ -128,7 +129,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
             news = containers.through_statement(ctx, Value(deps), frame, call, keyword)
             containers.change(ctx, arguments[1][keyword], news, [expr], frame)
     if written is None and dropped(frame, call):
-        containers.fill_empty(ctx, arguments, deps, frame, call)
+        filling.fill(ctx, name, BOTTOM, arguments, frame, call)
     if catalog.scalar(qualified):
         same = qualified == "builtins.float" and len(arguments[0]) == 1
         return Value(deps, arguments[0][0].pts if same else frozenset())
@@ -136,9 +137,13 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
     callables.hold(ctx, made.pts, held)
     if name[:1].isupper():
         senders.note(ctx, qualified, made, arguments, frame, call)
-    if qualified.startswith(containers.NAMED) or (ctx.config.named and name[:1].isupper()):
+    if (
+        qualified.startswith(containers.NAMED)
+        or qualified in catalog.RESERVING
+        or (ctx.config.named and name[:1].isupper())
+    ):
         for obj in made.objects:
-            # its class, for settings on its methods and for objects that return what was written to them
+            # its class, for settings on its methods, arrays to be filled, and objects that return what was written
             obj.name = qualified
     return made
 
@@ -254,8 +259,7 @@ def _unknown_method(
         containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
     written = catalog.METHODS_WRITING.get(name)
     if written is None and dropped(frame, call):
-        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments)
-        containers.fill_empty(ctx, arguments, deps, frame, call)
+        filling.fill(ctx, name, base, arguments, frame, call)
     if written is not None and written < len(arguments[0]):
         news = containers.through_statement(
             ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
