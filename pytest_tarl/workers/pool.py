@@ -127,12 +127,12 @@ class Worker:
         self.end()
 
     def end(self) -> None:
-        """End the worker immediately."""
+        """End the worker immediately; the thread that it serves and the thread that stops the run may both do so."""
         self._over.set()
         self._process.kill()
         self._process.wait()
         for pipe in (*self._pipes(), self._log):
-            with suppress(OSError):
+            with suppress(OSError, ValueError):  # ValueError: another thread has just closed it
                 pipe.close()
 
     def _pipes(self) -> tuple[BinaryIO, BinaryIO]:

@@ -46,6 +46,24 @@ def worker(process: Any, log: bytes = b"") -> Worker:
     return one
 
 
+class Contested(io.BytesIO):
+    """A pipe that another thread closes at the same time."""
+
+    def close(self) -> None:
+        super().close()
+        raise ValueError("I/O operation on closed file")
+
+
+def test_two_threads_may_end_a_worker_at_once() -> None:
+    process = Process()
+    process.stdin, process.stdout = Contested(), Contested()
+    one = worker(process)
+    one.end()
+    assert process.stdin.closed
+    assert process.stdout.closed
+    assert one._log.closed
+
+
 class Checks(threading.Event):
     """The checks of a listener, one after the other, without waiting."""
 
