@@ -295,8 +295,9 @@ SHAPED: Final = frozenset(
 )  # functions that use only the shape of their first argument, not its data
 
 RESERVING: Final = frozenset(
-    f"numpy.{name}{like}" for name in ("zeros", "ones", "empty", "full") for like in ("", "_like")
-) | {"builtins.bytearray"}  # functions that make an array without data, often for a library to fill
+    ["numpy.zeros", "numpy.ones", "numpy.empty", "numpy.full", "builtins.bytearray"]
+    + [f"numpy.{name}" for name in SHAPED]
+)  # functions that make an array without data, often for a library to fill
 
 CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock: its time is not data of the object
 

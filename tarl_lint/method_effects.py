@@ -13,7 +13,7 @@ TELLS: Final = re.compile(
     r"(?:send|publish|emit|log|print|write|say|speak|show|notify|call|draw|plot|display|imshow|save|dump|export|report"
     r"|get|is|has|check|assert|close|stop|shutdown|wait|sleep|spin|debug|info|warn|warning|error|broadcast|respond"
     r"|reply|render|play|exec|execute|request)(?:_|[A-Z]|$)"
-)  # methods that use their arguments without storing them
+)  # methods that only use their arguments
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"
 )  # methods that store callables to call them later
@@ -28,12 +28,12 @@ def changes(method: str, *, dropped: bool) -> bool:
 
     `dropped` says that the result is not used, so the call must have another purpose.
     """
-    return CHANGES.match(method) is not None or (dropped and TELLS.match(method) is None)
+    return CHANGES.match(method) is not None or (dropped and not only_tells(method))
 
 
-def fills_arrays(name: str) -> bool:
-    """Return whether a function or method whose result is not used may fill an array that is passed to it."""
-    return TELLS.match(name) is None
+def only_tells(name: str) -> bool:
+    """Return whether a function or method uses its arguments without storing them or writing into them."""
+    return TELLS.match(name) is not None
 
 
 def keeps_callables(name: str) -> bool:

@@ -86,7 +86,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     deps, name = NONE, _asked(expr)
     for number, value in enumerate(values):
         deps |= tested(ctx, name, value, frame, (expr.pos, number))
-    if (array := arrays.operate(ctx, expr, values, deps, frame)) is not None:
+    if (array := arrays.computed(ctx, expr, values, deps, frame)) is not None:
         return array
     return Value(deps, consts=fold(ctx, expr.operator, values))
 

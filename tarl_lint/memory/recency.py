@@ -50,7 +50,8 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
     older = ctx.objects.get(("lib", (obj.key, "older")))
     if older is None:
         older = ctx.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
-        older.many, older.name = True, obj.name
+        older.many = True
+        older.name = obj.name
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)
     without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache by set, since many values share one

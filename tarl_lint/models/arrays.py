@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Final
 
 from tarl_lint import catalog
@@ -21,14 +21,20 @@ def is_array(value: Value) -> bool:
     return bool(value.pts) and all(obj.name in catalog.RESERVING for obj in value.pts)
 
 
-def operate(
-    ctx: Interpreter, expr: ir.Operation, values: Iterable[Value], deps: Nodes, frame: Frame
+def computed(
+    ctx: Interpreter, expr: ir.Operation, operands: Sequence[Value], deps: Nodes, frame: Frame
 ) -> Value | None:
-    """Return the new array that an arithmetic operator makes of an array; None if no operand is one."""
-    if expr.operator not in ARITHMETIC or not any(map(is_array, values)):
+    """Return the new array that an arithmetic operator makes of an array; None if no operand is one.
+
+    Data may already be in the operands, but the result is as new as they are: a library may fill it as well.
+    """
+    if expr.operator not in ARITHMETIC:
+        return None
+    array = next(filter(is_array, operands), None)
+    if array is None:
         return None
     obj = recency.allocate(ctx, "lib", frame, ("computed", expr.pos))
-    obj.name = next(obj.name for value in values if is_array(value) for obj in value.objects)
+    obj.name = array.objects[0].name
     if deps:
         ctx.store.put((obj, ANY), Value(deps))
     return pointer(obj)

@@ -6,29 +6,31 @@ from tarl_lint.interpret import call_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Value
-from tarl_lint.method_effects import fills_arrays
+from tarl_lint.method_effects import only_tells
 from tarl_lint.models import arrays, containers, sizes
 
 
 def fill(ctx: Interpreter, name: str, base: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
     """Let a library call fill its arguments; `base` is the object whose method `name` is called.
 
-    Empty lists have no other purpose in such a call. Arrays that the program made without data are filled unless the
-    name says that the call only uses its arguments.
+    Empty lists have no other purpose in such a call: they receive the data of all arguments. Arrays that the program
+    made without data receive the data of the other arguments, unless the name says that the call only uses them.
     """
-    deps = ctx.use(base) | call_contexts.all_used(ctx, arguments)
-    if not deps:
-        return
     plain, named = arguments
-    for value in (*plain, *named.values()):
-        if value.pts and sizes.unpacked(ctx, value) == []:
-            containers.insert_elements(ctx, value, [Value(deps)], frame, call)
-    for number, value in enumerate(plain) if fills_arrays(name) else ():
-        if arrays.is_array(value):
-            others = (plain[:number] + plain[number + 1 :], named)
-            news = Value(ctx.use(base) | call_contexts.all_used(ctx, others))
-            if news.deps:
-                news = containers.through_statement(ctx, news, frame, call, number)
-                containers.change(ctx, value, news, call.arguments[number:], frame)
+    by_place: dict[int | str, Value] = dict(enumerate(plain))
+    by_place.update(named)
+    for place, value in by_place.items():
+        if not value.pts:
+            continue
+        if sizes.unpacked(ctx, value) == []:
+            given = list(by_place.values())
+        elif arrays.is_array(value) and not only_tells(name):
+            given = [other for where, other in by_place.items() if where != place]
+        else:
+            continue
+        news = Value(ctx.use(base) | call_contexts.all_used(ctx, (given, {})))
+        if news.deps:
+            updates.add_element(ctx, value, containers.through_statement(ctx, news, frame, call, place))

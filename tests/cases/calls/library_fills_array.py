@@ -14,6 +14,8 @@ class Filter:
         self.kept = np.zeros(4)
         self.saved = np.full(4, 1.0)
         self.packed = bytearray(8)
+        self.named = np.empty(4)
+        self.told = np.empty(4)
         self.limit = 4.0
         self.model = range_methods.Model(100)
         rospy.Subscriber("scan", Float32MultiArray, self.on_scan)  # source scan
@@ -33,6 +35,10 @@ class Filter:
         result = self.model.distance(observed, self.kept)
         self.pub.publish(self.kept)  # clean
         self.pub.publish(result)  # sink scan
+        self.model.accumulate(observed, into=self.named)
+        self.pub.publish(self.named)  # sink scan
+        self.model.save(observed, into=self.told)
+        self.pub.publish(self.told)  # clean
         self.model.evaluate(observed, self.limit)
         self.pub.publish(self.limit)  # clean
 

@@ -1,0 +1,96 @@
+"""Library calls whose result is not used fill lists and arrays that the program passes to them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tarl_lint import catalog
+from tarl_lint.models.arrays import ARITHMETIC
+from tests.lint.models.marked import differing, in_callback
+
+HEAD = "import lib\nimport numpy as np\nimport numpy\nimport builtins"
+
+
+def fills(made: str) -> str:
+    return f"""
+        array = {made}
+        lib.evaluate(msg.data, array)
+        out.publish(array[0])  # data
+    """
+
+
+@pytest.mark.parametrize("name", sorted(catalog.RESERVING))
+def test_a_library_fills_an_array_that_the_program_reserved(name):
+    assert differing(in_callback(fills(f"{name}(4)"), HEAD)) == {}
+
+
+@pytest.mark.parametrize("operator", sorted(ARITHMETIC))
+def test_an_array_that_was_computed_from_a_reserved_one_is_filled_too(operator):
+    assert differing(in_callback(fills(f"np.ones(4) {operator} 2"), HEAD)) == {}
+
+
+def test_a_comparison_does_not_make_an_array():
+    body = fills("np.ones(4) < 2").replace("# data", "# clean")
+    assert differing(in_callback(body, HEAD)) == {}
+
+
+def test_an_array_computed_from_data_keeps_the_data_and_the_operand_does_not_receive_it():
+    body = """
+        zeros = np.zeros(4)
+        shifted = zeros + msg.data
+        out.publish(shifted[0])  # data
+        out.publish(zeros[0])  # clean
+    """
+    assert differing(in_callback(body, HEAD)) == {}
+
+
+def test_an_array_is_filled_through_a_keyword_and_by_the_object_of_the_method():
+    body = """
+        array, other = np.zeros(4), np.zeros(4)
+        lib.evaluate(msg.data, into=array)
+        out.publish(array[0])  # data
+        lib.Model(msg.data).evaluate(other)
+        out.publish(other[0])  # data
+    """
+    assert differing(in_callback(body, HEAD)) == {}
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "lib.save(msg.data, array)",
+        "lib.Model(msg.data).draw(array)",
+        "kept = lib.evaluate(msg.data, array)",
+        "lib.evaluate(1.0, array)",
+        "lib.evaluate(array)",
+    ],
+)
+def test_an_array_is_not_filled_by_a_call_without_data_or_with_another_purpose(call):
+    body = f"""
+        array = np.zeros(4)
+        {call}
+        out.publish(array[0])  # clean
+    """
+    assert differing(in_callback(body, HEAD)) == {}
+
+
+def test_the_arrays_of_earlier_iterations_are_filled_too():
+    body = """
+        kept = []
+        for index in range(10):
+            array = np.zeros(4)
+            kept.append(array)
+        lib.evaluate(kept[0], msg.data)
+        out.publish(kept[0][0])  # data
+    """
+    assert differing(in_callback(body, HEAD)) == {}
+
+
+def test_an_empty_list_is_filled_even_by_a_call_that_only_reads_arrays():
+    body = """
+        found, full = [], [0.0]
+        lib.report(msg.data, found, full)
+        out.publish(found[0])  # data
+        out.publish(full[0])  # clean
+    """
+    assert differing(in_callback(body, HEAD)) == {}
