@@ -23,7 +23,7 @@ class BaggedMissions:
 
     rollout: Rollout
     bags: Mapping[int, Path]
-    notes: tuple[str, ...] = ()  # one per bag that is left out
+    notes: tuple[str, ...] = ()  # for each bag that is left out, the reason
 
     @property
     def workers(self) -> int:

@@ -37,9 +37,9 @@ from tarl_lint.api import Analysis
 DIRECTIONS, COMBINATIONS = (
     2,
     1,
-)  # failures along single directions and in several to repair at most, nearest first
+)  # maximum number of failures to repair, nearest first: along single directions, and in several
 DRAWS = 60  # fresh draws from the whole space
-CONFIDENCE = 0.95  # that a repair which is said to lose over the space does
+CONFIDENCE = 0.95  # confidence that a repair reported to lose over the space does lose
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ def check_writable(path: Path) -> None:
         Path(name).unlink()
     finally:
         for folder in made:
-            with suppress(OSError):  # another run has written there, or the folder was never made
+            with suppress(OSError):  # another run wrote there, or the folder was not made
                 folder.rmdir()
 
 

@@ -13,7 +13,7 @@ CALLS = (b".observe(", b".require(")
 
 
 def said(test: str, root: Path) -> Said:
-    """Return the signals and formulas that a test, given by node id, names; skip other tests of its file."""
+    """Return the signals and formulas that the test with this node id names; skip other tests of its file."""
     name, *parts = test.partition("[")[0].split("::")
     first = (root / name).resolve()
     try:

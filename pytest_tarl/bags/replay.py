@@ -29,7 +29,13 @@ NO_REWARDS = (
     "A bag holds no rewards: give the marker monitor=, a function of the newest recorded messages, "
     "moment.latest('/odom'), that returns the reward of a step."
 )
-ALWAYS_THERE = {"/clock", "/rosout", "/parameter_events", "/tf", "/tf_static"}  # topics that a bag may lack
+ALWAYS_THERE = {
+    "/clock",
+    "/rosout",
+    "/parameter_events",
+    "/tf",
+    "/tf_static",
+}  # topics that need not be in a bag
 
 
 class MissionReplayed(Skipped):
@@ -64,8 +70,8 @@ class Moment:
 class Replay:
     """The replay of one bag to the nodes of an episode.
 
-    It replays the topics of sensors and those that a node subscribes to, but none that a node of the episode
-    publishes itself. `notes` are sentences for the user.
+    Topics of sensors and topics to which a node subscribes are replayed, except those that a node of the episode
+    publishes. `notes` are sentences for the user.
     """
 
     def __init__(

@@ -80,7 +80,7 @@ def setup(
 
 
 def _generation() -> str:
-    """Return the ROS by which the simulator is reached: the installed one. Raise SettingsError if there is none."""
+    """Return the installed ROS, which connects to the simulator. Raise SettingsError if there is none."""
     for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
         if PathFinder.find_spec(library) is not None:
             return name

@@ -1,4 +1,4 @@
-"""The test's end of a guardian: commands go out, events come in, the simulator's output lies in a file."""
+"""The test's connection to a guardian, which sends events; the simulator writes its output to a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 30.0  # s for the guardian to end, which first ends the simulator; longer than its own limit
+PATIENCE = 30.0  # s for the guardian to end the simulator and itself; longer than the guardian's own limit
 TAIL = 3  # lines of the simulator's output in a message
 
 Event = dict[str, Any]
@@ -33,7 +33,7 @@ class Client:
             stderr=self._log,
             text=True,
             encoding="utf-8",
-            start_new_session=True,  # who kills the test's process group leaves the guardian to end the simulator
+            start_new_session=True,  # after a kill of the test's group, the guardian ends the simulator
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0
@@ -45,7 +45,7 @@ class Client:
         return self._process.poll() is None
 
     def do(self, what: str, **arguments: Any) -> None:
-        """Send a command; nothing happens if the guardian is gone, which an event has told."""
+        """Send a command; if the guardian has ended, which an event reports, nothing happens."""
         assert self._process.stdin is not None  # noqa: S101 - told to the type checker
         with suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
@@ -72,14 +72,12 @@ class Client:
         return new.decode(errors="replace")
 
     def last_words(self) -> str:
-        """Return the last lines of the simulator's output, without taking them."""
+        """Return the last lines of the simulator's output; `output` still returns them later."""
         lines = self._unread().decode(errors="replace").strip().splitlines()
         return " | ".join(line.strip() for line in lines[-TAIL:])
 
     def _unread(self) -> bytes:
-        with suppress(
-            OSError, ValueError
-        ):  # by pread, since the simulator writes at the offset of the same file
+        with suppress(OSError, ValueError):  # pread, because the simulator writes at the file's own offset
             size = os.fstat(self._log.fileno()).st_size
             return os.pread(self._log.fileno(), size - self._shown, self._shown)
         return b""

@@ -1,4 +1,4 @@
-"""Children, orphans and parents of this process on Linux, by prctl(2) and /proc; elsewhere nothing is adopted."""
+"""Children, orphans and parents of this process by prctl(2) and /proc on Linux; other systems adopt no orphans."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def adopt() -> None:
 
 
 def adopted() -> list[int]:
-    """Return the children of this process that run, in order of their ids."""
+    """Return the running children of this process, in the order of their ids."""
     if not _LINUX:
         return []
     found = []
     for path in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):  # it has ended meanwhile
+        with suppress(OSError):  # it has ended in the meantime
             state, parent = path.read_text(errors="replace").rpartition(")")[2].split()[:2]
             if int(parent) == os.getpid() and state not in "ZX":
                 found.append(int(path.parent.name))
@@ -43,16 +43,17 @@ def adopted() -> list[int]:
 
 
 def reap(which: int) -> None:
-    """Take the exit statuses of ended children: -1 for all, -n for those of process group n."""
+    """Collect the exit statuses of ended children: of all for -1, of process group n for -n."""
     with suppress(ChildProcessError):
         while os.waitpid(which, os.WNOHANG)[0]:
             pass
 
 
 def die_with_parent() -> Callable[[], None]:
-    """Return what a new child runs before its program: it gets default signals, and SIGKILL when this process ends.
+    """Return a function for a new child to run before its program: default signals, and SIGKILL when this process ends.
 
-    The library is loaded here, since a lock of the loader that another thread holds is never released after a fork.
+    The library is loaded before the fork, because a loader lock that another thread holds would never be released after
+    it.
     """
     prctl = ctypes.CDLL(None).prctl if _LINUX else None
     parent = os.getpid()
@@ -63,14 +64,14 @@ def die_with_parent() -> Callable[[], None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, [])
         if prctl is not None:
             prctl(_DIE_WITH_PARENT, signal.SIGKILL)
-        if os.getppid() != parent:  # it ended before
+        if os.getppid() != parent:  # the parent ended before the request
             os._exit(1)
 
     return prepare
 
 
 def wait_for_end_of_parent() -> None:
-    """Return when the parent of this process has ended. Raise OSError where this cannot be waited for."""
+    """Return when the parent of this process has ended. Raise OSError if the system cannot wait for this."""
     if sys.platform != "linux":
         raise OSError
     parent = os.pidfd_open(os.getppid())

@@ -11,14 +11,14 @@ DOMAINS = range(1, 101)  # their ports are below the kernel's ephemeral range
 
 
 class Domain:
-    """A ROS domain that no other guardian on this machine uses; the kernel gives it back when the process ends."""
+    """A ROS domain that no other guardian on this machine uses; the kernel releases it when the process ends."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.number = 0
         candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
         if not sys.platform.startswith("linux"):
-            self.number = candidates[0]  # there is no abstract socket to claim it by
+            self.number = candidates[0]  # without abstract sockets it cannot be claimed
             return
         for number in candidates:
             with suppress(OSError):

@@ -11,7 +11,7 @@ from time import monotonic, sleep
 
 from pytest_tarl.external.descendants import adopt, adopted, die_with_parent, reap
 
-PERIOD = 0.01  # s between two looks at the group
+PERIOD = 0.01  # s between two checks of the group
 STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
@@ -22,8 +22,8 @@ STEPS = (
 class Group:
     """A command in a process group of its own, so that everything it starts can be killed; output goes to stderr.
 
-    On Linux, this process adopts the orphans of the group. It reaps them itself, since the init process of a container
-    may never do so, and it kills those that left the group.
+    On Linux, this process adopts the orphans of the group. It reaps them itself, because the init process of a
+    container may not, and it kills processes that left the group.
     """
 
     def __init__(self, command: Sequence[str], folder: str, environment: Mapping[str, str]) -> None:
@@ -45,7 +45,7 @@ class Group:
         return self._process.poll()
 
     def end(self) -> None:
-        """End all processes of the group by SIGINT, SIGTERM, and SIGKILL, and those that left it by SIGKILL."""
+        """End all processes of the group with SIGINT, SIGTERM and SIGKILL, and those that left it with SIGKILL."""
         for number, limit in STEPS:
             self._send(number)
             deadline = monotonic() + limit
@@ -70,7 +70,7 @@ class Group:
             os.killpg(self._process.pid, number)
 
     def _alive(self) -> bool:
-        """Return whether a process of the group runs; one that has ended and was not reaped does not count."""
+        """Return whether a process of the group runs; ended processes that were not reaped do not count."""
         if self._process.poll() is None:
             return True
         reap(-self._process.pid)

@@ -1,6 +1,6 @@
-"""The guardian: a process that keeps a simulator. It reads commands and writes events, one JSON object a line.
+"""The guardian: a process that runs a simulator. It reads commands and writes events, one JSON object per line.
 
-It ends the simulator's processes when the test says so, and when the test's process is gone.
+It ends the simulator's processes when the test says so or the test's process has ended.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # s between two looks at the ROS graph, once a second after CALM
+LOOK = 0.05  # s between two checks of the ROS graph; 1 s after CALM
 CALM = 5.0  # s
 LAST = (
     20.0  # s until the simulator is killed if the middleware holds the main thread after the end of the test
@@ -38,7 +38,7 @@ class Guardian:
         self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
         self._commands: deque[dict[str, Any] | None] = deque()
         self._arrival = threading.Event()
-        self._waking = threading.Lock()  # held while a link is woken or taken away
+        self._waking = threading.Lock()  # held while a link is woken or removed
         self._group: Group | None = None
         self._domain: Domain | None = None
         self._master: Master | None = None
@@ -47,11 +47,11 @@ class Guardian:
         self._ended = False
 
     def read(self) -> None:
-        """Read commands until the test's process is gone; runs in a thread."""
+        """Read commands until the test's process has ended; runs in a thread."""
         try:
             for line in sys.stdin:
                 self._put(json.loads(line))
-        except ValueError:  # the test was killed within a line
+        except ValueError:  # the test was killed while it wrote a line
             pass
         finally:
             self._finish()
@@ -60,7 +60,7 @@ class Guardian:
         """Wait for the end of the test's process, whose forked children may keep stdin open; runs in a thread."""
         try:
             wait_for_end_of_parent()
-        except OSError:  # an old kernel, or the test is already gone
+        except OSError:  # an old kernel, or the test has already ended
             return
         self._finish()
 
@@ -111,7 +111,7 @@ class Guardian:
         """Write an event."""
         try:
             self._events.write(json.dumps(event, separators=(",", ":")) + "\n")
-        except OSError:  # the test's process is gone
+        except OSError:  # the test's process has ended
             self._commands.append(None)
 
     def _do_start(
@@ -142,7 +142,7 @@ class Guardian:
         self._link.subscribe(topics)
 
     def _network(self, ros: str) -> dict[str, str]:
-        """Return the environment variables of a network of the simulator's own: a master, or in ROS 2 a domain."""
+        """Return the environment variables of the simulator's own network: a master in ROS 1, a domain in ROS 2."""
         if ros == "ros1":
             self._master = Master()
             with xmlrpc.client.ServerProxy(self._master.uri) as master:
@@ -185,7 +185,7 @@ class Guardian:
 
 
 def main() -> None:
-    """Reserve stdout for events, and outlive the test, also if Ctrl-C or a signal ends it."""
+    """Reserve stdout for events, and outlive the test even if Ctrl-C or a signal ends it."""
     outlive_the_test()
     events = os.dup(1)
     os.dup2(2, 1)
@@ -197,4 +197,4 @@ def main() -> None:
     except Exception:
         traceback.print_exc()
         os._exit(1)
-    os._exit(0)  # threads of the middleware do not delay the end
+    os._exit(0)  # do not wait for threads of the middleware

@@ -12,7 +12,7 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-IDLE = 3  # tries without a message after which none is left; a try may go to another event
+IDLE = 3  # attempts without a message after which none is left; an attempt may handle another event
 
 Say = Callable[[dict[str, Any]], None]
 
@@ -41,16 +41,16 @@ class Link:
         self._wanted: dict[str, Any] = {clock: None}  # topic → subscription
         self._publishers: dict[str, Any] = {}
         self._clients: dict[str, Any] = {}
-        self._calls: list[dict[str, Any]] = []  # calls of services that are not there yet
+        self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
-        self._answers: list[dict[str, Any]] = []  # of services, to be said
+        self._answers: list[dict[str, Any]] = []  # answers of services, to be passed on
         self._handled = 0  # messages
 
     def spin(self, seconds: float) -> None:
-        """Handle one event, waiting for it at most this time; after an answer, also all messages that came before it.
+        """Wait for one event at most this long and handle it; after an answer, handle also the messages before it.
 
-        In each cycle, rclpy's executor takes one message of each subscription and then the answers, so that an answer
-        overtakes the second message on a topic: the state that a step has led to.
+        In each cycle, rclpy's executor takes one message of each subscription and then the answers. An answer can
+        therefore overtake the second message on a topic, which may be the state after a step.
         """
         self._executor.spin_once(seconds)
         for _ in range(DEPTH if self._answers else 0):
@@ -74,7 +74,7 @@ class Link:
         self._context.try_shutdown()
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of further topics, as soon as the simulator publishes them; report the graph anew."""
+        """Pass on messages of further topics once the simulator publishes them; report the graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -86,10 +86,10 @@ class Link:
             publisher.publish(filled(publisher.msg_type(), data, _message_class))
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or once it is there.
+        """Call a service now, or once it exists.
 
-        What was sent before arrives before: both go by UDP to one port of the simulator's participant. Waiting for
-        acknowledgements in addition costs 0.8 s a call, the period of the middleware's heartbeats.
+        Earlier messages arrive earlier, because both go by UDP to one port of the simulator's participant. Waiting for
+        acknowledgements as well would cost 0.8 s per call, the period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()

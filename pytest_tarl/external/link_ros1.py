@@ -19,14 +19,14 @@ NAME = "/tarl_link"
 OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # how rospy's message begins when the connection breaks
-PATIENCE = 5.0  # s for a service to tell its type
-PAUSE = 0.005  # s between a command and a call: topics and services use connections of their own, in no common order
+PATIENCE = 5.0  # s to wait for a service's answer about its type
+PAUSE = 0.005  # s between a command and a call, which use separate connections and could arrive in the other order
 
 Say = Callable[[dict[str, Any]], None]
 
 
 class LinkROS1:
-    """A node of rospy, one in a process; `say` passes events on. Used in one thread, which rospy's threads wake."""
+    """The process's only node of rospy; `say` passes events on. Used in one thread, which rospy's threads wake."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph
@@ -40,14 +40,14 @@ class LinkROS1:
         self._wanted: dict[str, Any] = {clock: None}  # topic → subscription
         self._publishers: dict[str, Any] = {}
         self._proxies: dict[str, Any] = {}
-        self._calls: list[dict[str, Any]] = []  # calls of services that are not there yet
+        self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
         self._events: deque[dict[str, Any]] = deque()
         self._arrival = threading.Event()
-        self._sent = False  # whether a command went out after the last call
+        self._sent = False  # whether a command was sent after the last call
 
     def spin(self, seconds: float) -> None:
-        """Pass on what has arrived, or arrives within this time."""
+        """Pass on messages that have arrived or arrive within this time."""
         self._arrival.wait(seconds)
         self._arrival.clear()
         while self._events:
@@ -61,11 +61,11 @@ class LinkROS1:
         """Leave the master."""
         import rospy
 
-        with suppress(Exception):  # it may be gone
+        with suppress(Exception):  # it may have ended
             rospy.signal_shutdown("the episode is over")
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of further topics, as soon as the simulator publishes them; report the graph anew."""
+        """Pass on messages of further topics once the simulator publishes them; report the graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -78,7 +78,7 @@ class LinkROS1:
             self._sent = True
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or once it is there; commands that were sent before have a short time to arrive."""
+        """Call a service now, or once it exists; commands that were sent before it have a short time to arrive."""
         if self._sent:
             sleep(PAUSE)
             self._sent = False
@@ -123,7 +123,7 @@ class LinkROS1:
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore", SyntaxWarning
-            )  # no queue, on purpose: a message is sent before a call
+            )  # without a queue, so that a message is sent before a later call
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
     def _on_clock(self, message: Any) -> None:
@@ -155,7 +155,7 @@ class LinkROS1:
             told: dict[str, Any] = {"response": to_plain(proxy(request))}
         except Exception as problem:
             if str(problem).startswith(LOST):
-                return  # the guardian says how the simulator ended, or the test that it does not answer
+                return  # the guardian reports how the simulator ended, or the test reports that it does not answer
             told = {"error": str(problem)}
         self._put({"kind": "answer", "id": asked["id"], "asked": when, **told})
 
@@ -165,14 +165,14 @@ class LinkROS1:
         if service not in self._proxies:
             try:
                 kind = _service_type(service, self._master.lookupService(service))
-            except Exception:  # it is not there yet
+            except Exception:  # it does not exist yet
                 return None
             self._proxies[service] = rospy.ServiceProxy(service, _service_class(kind))
         return self._proxies[service]
 
 
 def _service_type(service: str, uri: str) -> str:
-    """Return the type of a service as its server tells it; only a connection that asks for it learns it."""
+    """Return the type of a service, which its server states only on a connection that asks for it."""
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
     place = urlparse(uri)

@@ -1,4 +1,4 @@
-"""Messages of both generations of ROS as plain data, as they travel between the test and the guardian."""
+"""Messages of ROS 1 and ROS 2 as plain data, the form in which test and guardian exchange them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
 
 
 def _fields(value: Any) -> Mapping[str, str] | None:
-    """Return the fields of a message with their types, in ROS 1 also of a time or duration; None for other values."""
+    """Return the names and types of a message's fields, in ROS 1 also of a time or duration; None for other values."""
     if hasattr(value, "get_fields_and_field_types"):
         return dict(value.get_fields_and_field_types())
     if hasattr(value, "_slot_types"):

@@ -1,4 +1,4 @@
-"""An external simulator in an episode: started or reset, stepped or followed, with the nodes held to its clock."""
+"""An external simulator in an episode: started or reset, stepped or followed; the nodes' clocks show its time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # s of wall time without a change of the ROS graph, after which a simulator has started
+SETTLED = 0.3  # s of real time without a change of the ROS graph after which a simulator counts as started
 
 
 class Kept:
@@ -79,7 +79,7 @@ class Simulator:
     def latest(self, topic: str) -> Any | None:
         """Return the simulator's newest message on a topic, None before the first.
 
-        Topics that no node, sensor or argument names are heard from the first call on.
+        Topics that no node, sensor or argument names are received from the first call on.
         """
         if topic not in self._topics:
             self._want([topic])
@@ -103,7 +103,7 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            if self._target <= self._time:  # the simulator ran on while the test did something else
+            if self._target <= self._time:  # the simulator continued while the test did something else
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())
             self._wait(lambda: self._time >= self._target, self.setup.patience, self._hung)
@@ -124,7 +124,7 @@ class Simulator:
     def _start(self) -> None:
         one = self.setup
         KEPT.running = None
-        if one.ros == "ros1":  # rospy serves one master in a process
+        if one.ros == "ros1":  # rospy can use only one master per process
             KEPT.close()
             self._client = KEPT.opened()
         environment = {**os.environ, **one.environment}
@@ -166,14 +166,14 @@ class Simulator:
                 calm = monotonic()
 
     def _connect(self) -> None:
-        """Hear what nodes subscribe to, and forward to the simulator what it subscribes to."""
+        """Receive topics that nodes subscribe to, and forward topics that the simulator subscribes to."""
         for topic in sorted(self._graph["subscribed"] - self._forwarded - {self.setup.clock}):
             self._forwarded.add(topic)
             self._ros.bus.subscribe(topic, self._forward(topic))
         self._want(sorted(self._ros.bus.subscribed - {*self._topics, self.setup.clock}))
 
     def _want(self, topics: Sequence[str]) -> None:
-        """Hear further topics; wait until those that the simulator publishes are connected."""
+        """Receive further topics; wait until those that the simulator publishes are connected."""
         if not topics:
             return
         self._topics.update(dict.fromkeys(topics))
@@ -185,14 +185,14 @@ class Simulator:
         return lambda message: self._client.do("send", topic=topic, data=to_plain(self._theirs(message)))
 
     def _class(self, package: str, name: str) -> Any:
-        """Return a message class of the simulator's generation of ROS. Raise UnsupportedApiError for an unknown one."""
+        """Return a message class of the simulator's ROS. Raise UnsupportedApiError for an unknown one."""
         found = find_class("ros1" if self.setup.ros == "ros1" else "ros2", package, name)
         if found is None:
             raise unknown_type(package, name)
         return found
 
     def _theirs(self, message: Any) -> Any:
-        """Return a node's message in its class of the simulator's generation of ROS."""
+        """Return a node's message as the class of the simulator's ROS."""
         package, _, name = type_name(type(message)).partition("/")
         wanted = self._class(package, name)
         return message if type(message) is wanted else snapshot(message, wanted)
@@ -212,16 +212,16 @@ class Simulator:
             self._waiting = []
 
     def _over(self, before: int, asked: int) -> bool:
-        """Return whether a step has ended: the clock moved, and each of its topics brought a message.
+        """Return whether a step has ended: the clock moved, and a message came on each of its topics.
 
-        What was sent before the step was asked for is still under way, and is not of the step.
+        Messages that were sent before the step was requested may still arrive; they do not count.
         """
         return self._time > before and all(
             self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
         )
 
     def _released(self) -> list[Event]:
-        """Return the messages that wait, in an order that does not depend on the network."""
+        """Return the waiting messages, in an order that does not depend on the network."""
         waiting, self._waiting = self._waiting or [], None
         return sorted(waiting, key=lambda event: str(event["topic"]))
 
@@ -234,7 +234,7 @@ class Simulator:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
     def _call(self, call: Call) -> int:
-        """Call a service and wait for the answer; return when the request was sent, in ns of this machine's clock."""
+        """Call a service and wait for the answer; return the time of the request, in ns of this machine's clock."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))

@@ -36,9 +36,9 @@ def is_bag(path: Path) -> bool:
 def identified(path: Path, fixture: Fixture) -> Bagged:
     """Return the mission of a bag, without replaying it.
 
-    The identity is a digest of times, topics and contents of the messages: a bag keeps it whatever container or
-    compression it is converted to, and whatever nodes it is replayed through. Raise LogError if the bag cannot be
-    read to its end, or does not fit the recording.
+    The identity is a digest of times, topics and contents of the messages: it does not depend on the container, the
+    compression or the nodes through which the bag is replayed. Raise LogError if the bag cannot be read to its end, or
+    does not fit the recording.
     """
     bag = opened(path)
     if why := misfit(bag, fixture):
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    if bag.notes:  # cut off: when it is whole, it would be another mission
+    if bag.notes:  # truncated: the complete bag would be another mission
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
             "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."

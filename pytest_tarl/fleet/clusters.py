@@ -1,4 +1,4 @@
-"""Robots whose drifts are alike: clusters of the residual maps of the robots that are named.
+"""Robots with similar drifts: clusters of the residual maps of the robots that were named as drifted.
 
 The distance of two robots is the largest difference of their maps in any common cell, in standard errors of that
 difference, so that noise does not keep robots apart. Complete linkage (Sørensen 1948) joins clusters while no two of
@@ -22,12 +22,12 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-MOST = 300  # robots that are compared, those with most evidence
+MOST = 300  # maximum number of robots compared: those with the most evidence
 
 
 @dataclass(frozen=True)
 class Cluster:
-    """Robots with like maps, by name; their common cells, and the mean residual of a visit to each of them."""
+    """The names of robots with similar maps; their common cells, and the mean residual of a visit to each cell."""
 
     robots: tuple[str, ...]
     cells: tuple[Cell, ...]
@@ -36,7 +36,7 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Clusters:
-    """The clusters, largest first, robots whose maps show no cell clearly, and the number of robots left out."""
+    """The clusters, largest first; robots whose maps have no significant cell; and the number of robots left out."""
 
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
@@ -47,7 +47,7 @@ class Clusters:
 def clustered(
     database: Database, where: Store, engine: Engine, fixture: Fixture, robots: Robots, alpha: float
 ) -> Clusters:
-    """Return the clusters of the robots that are named."""
+    """Return the clusters of the robots that were named as drifted."""
     named = {one.name: one for one in (*robots.below, *robots.drifted)}
     some = sorted(named.values(), key=lambda one: (-max(one.world, one.bound), one.name))
     if not some:
@@ -60,8 +60,8 @@ def clustered(
 def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
-    """Return the clusters of some maps; `recorded` is the variance of the recording's own mean residual, by cell."""
-    ordered = sorted(maps, key=lambda one: one.robot)  # sums depend on the order in their last bits
+    """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual, by cell."""
+    ordered = sorted(maps, key=lambda one: one.robot)  # the last bits of sums depend on the order
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
     groups = _linked(distances(clear), len(cells), alpha) if clear else []
@@ -121,7 +121,7 @@ def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell
 
 
 def _standing_out(mean: Floats, variance: Floats, alpha: float) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Return the cells whose mean residual is not 0, corrected for their number."""
+    """Return the cells whose mean residual differs significantly from 0, corrected for the number of cells."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(mean == 0.0, 0.0, np.abs(mean) / np.sqrt(variance))
     known = ~np.isnan(size)

@@ -1,7 +1,7 @@
 """Variance components: how much of the variance of missions lies between versions, sites, seasons and robots.
 
 The model of a mission's reward is y = Σ effect of its version, site and season + effect of its robot + rest. The
-effects of factors belong to the levels that are there; those of robots are drawn at random, with variance σ_r².
+effects of factors are fixed numbers, one for each level; those of robots are random, with variance σ_r².
 
 - σ_e² (rest) and σ_r² by fitting constants (Henderson 1953, "Estimation of variance and covariance components",
   Biometrics 9:226-252, method 3): the residual sum of squares within robots, then the one without robots, each equated
@@ -50,7 +50,7 @@ class Totals:
 
 @dataclass(frozen=True)
 class Component:
-    """A variance with its two-sided interval; NaN if the missions cannot tell it."""
+    """A variance with its two-sided interval; NaN if the missions do not determine it."""
 
     name: str
     variance: float
@@ -63,7 +63,7 @@ class Component:
 @dataclass(frozen=True)
 class _Fit:
     variances: Floats  # of each factor, robots, rest
-    noise: Floats  # what errors add to each of them
+    noise: Floats  # what estimation errors add to each of them
     effects: Floats  # of all levels of all factors
 
 
@@ -94,10 +94,11 @@ def components(
 def _interval(found: _Fit, replicates: Floats, confidence: float) -> tuple[Floats, Floats]:
     """Return the ends of the intervals from replicates, shape (replicates, components).
 
-    The effects of a replicate have the errors of the sample in addition to its own; they are subtracted. A sample with
-    repetitions has fewer distinct robots at a site, which lowers the variance between them: the replicates of robots
-    and rest are scaled to have the estimate as their mean, and their interval is a basic one of the logarithm; if not
-    all of them are positive, the interval covers the percentiles of the replicates, as they are, shifted and scaled.
+    The effects of a replicate contain the errors of the sample as well as its own; both are subtracted. A sample with
+    repetitions has fewer distinct robots at a site, which lowers the variance between them. The replicates of robots
+    and rest are therefore scaled so that their mean is the estimate, and their interval is a basic bootstrap interval
+    of the logarithm. If some replicates are not positive, the interval covers the percentiles of the original, the
+    shifted and the scaled replicates.
     """
     value, mean = found.variances, np.mean(replicates, axis=0)
     random = np.arange(value.size) >= value.size - RANDOM
@@ -122,7 +123,7 @@ def _resampled(robots: int, rng: np.random.Generator) -> list[Floats]:
 
 
 class _Design:
-    """The sums of squares and products of a data set, for any weights of the robots."""
+    """The sums of squares and products of a data set, for given weights of the robots."""
 
     def __init__(self, totals: Totals) -> None:
         self.totals = totals

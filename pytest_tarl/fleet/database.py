@@ -1,8 +1,8 @@
-"""The missions that a question is about, in an embedded DuckDB: each once, in the order of robot, time and identity.
+"""The missions of a question in an embedded DuckDB: each once, in the order of robot, time and identity.
 
-It holds one row for each mission; the rows of cells stay where they lie (partitions.py). Only integers are counted and
-rows sorted here. Sums of floats are computed from rows in that order, so results do not depend on files, partitions or
-threads, to the last bit.
+The database has one row for each mission; the rows of cells stay in their files (partitions.py). Only integers are
+counted and rows sorted here. Sums of floats are computed from rows in that order, so results do not depend on files,
+partitions or threads, to the last bit.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BY = {
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
     "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
-# Columns that files of schema 1 lack, and no row.
+# The columns that files of schema 1 lack, without rows.
 EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 
@@ -51,7 +51,7 @@ class Filter:
 
 
 class Database:
-    """Missions numbered from 0 by robot, time and identity; `wanted` says which of them lie in which files."""
+    """Missions numbered from 0 by robot, time and identity; `wanted` says which missions are in which files."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -110,7 +110,7 @@ def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter
 
 @contextmanager
 def _spilled() -> Iterator[str]:
-    """Make a folder for rows that do not fit into memory, one for each run; remove it, and what was made for it."""
+    """Make a folder for rows that do not fit into memory, one for each run; remove it and the folders made for it."""
     made = [one for one in (SPILLED, *SPILLED.parents) if not one.exists()]
     try:
         SPILLED.mkdir(parents=True, exist_ok=True)

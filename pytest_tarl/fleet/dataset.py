@@ -39,7 +39,9 @@ def parts(where: Store) -> list[Part]:
             for key, value in (about.schema.to_arrow_schema().metadata or {}).items()
         }
         part = Part(path, _origin(where, path, told), about.num_rows)
-        if part.beside("cells") not in cells and not where.holds(part.beside("cells")):  # a listing may lag
+        if part.beside("cells") not in cells and not where.holds(
+            part.beside("cells")
+        ):  # a listing may be out of date
             raise FleetError(
                 f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: restore it, "
                 "or delete the latter and ingest its logs again."
@@ -90,5 +92,5 @@ def _readable(where: Store, path: str) -> Iterator[None]:
             f"{where.shown(path)} is damaged or cannot be read ({first_line(problem)}): delete it and ingest "
             "its logs again."
         ) from problem
-    except Exception as problem:  # each store has exceptions of its own, such as those of an HTTP client
+    except Exception as problem:  # each store raises its own exceptions, such as those of an HTTP client
         raise FleetError(f"{where.shown(path)} cannot be read ({first_line(problem)}): {ADVICE}") from problem

@@ -1,10 +1,10 @@
-"""Where the missions are judged: by Dask, on threads of this process, or on a cluster.
+"""Judge missions with Dask, on threads of this process or on a cluster.
 
-Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so the number of
-workers, and workers that die, do not change a bit. A task names the files that it reads, and the workers read them: if
-one dies, the scheduler runs its tasks again elsewhere. Locally, nothing is started but threads, and none with one
-worker. Each task uses one thread for linear algebra: more threads would compete with the other tasks, and their number
-would change the order of sums, and so the last bits of a result.
+Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so neither the number
+of workers nor the death of a worker changes the result. Workers read the files that a task names; if a worker dies, the
+scheduler runs its tasks again elsewhere. Locally, only threads are started, and none with one worker. Each task uses
+one thread for linear algebra: more threads would compete with the other tasks, and their number would change the order
+of sums, and so the last bits of a result.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from pytest_tarl.extras import install_command
 
 REACHED = 10  # s to wait for the scheduler
 RETRIES = 3  # of a task whose worker dies
-AHEAD = 2  # tasks for each thread of a cluster that wait or run, which bounds the memory
-WINDOW = 8  # tasks for each thread of this process that are handed to Dask together
+AHEAD = 2  # waiting and running tasks for each thread of a cluster, a limit on the memory
+WINDOW = 8  # tasks passed to Dask together for each thread of this process
 
 Result = TypeVar("Result")
 
@@ -53,7 +53,7 @@ class Local:
         """Yield the results in order."""
         rest = iter(tasks)
         while window := [partial(function, *one) for one in islice(rest, WINDOW * self.workers)]:
-            # Dask looks for names of tasks in arguments, so these are bound.
+            # Dask would search the arguments for names of tasks, so they are bound to the function.
             yield from self._got({f"tarl-{number}": (one,) for number, one in enumerate(window)})
 
     def _got(self, graph: dict[str, tuple[Callable[[], Any]]]) -> list[Any]:
@@ -73,7 +73,7 @@ class Cluster:
     workers: int
 
     def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
-        """Yield the results in order; AHEAD tasks for each thread are on their way."""
+        """Yield the results in order, with AHEAD tasks for each thread submitted."""
         waiting: deque[Future[Result]] = deque()
         try:
             for one in tasks:

@@ -1,7 +1,7 @@
 """Which groups live in another world than recorded, and since when: the evidence of `tarl watch`, group by group.
 
 All missions of a group, of all its robots, go through one monitor in the order of their times. A change that is too
-small or too short to be seen in one robot, such as a season at a site, is seen in all of them together.
+small or too short to be detected in one robot, such as a season at a site, can be detected in all of them together.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ IN_TIME = "SELECT number FROM missions ORDER BY group_number, time, mission"
 def judged(
     database: Database, first: Monitor, scores: Scores, engine: Engine, groups: Sequence[Group], q: float
 ) -> Robots:
-    """Return the evidence on each group, in their order, and those that e-BH names at the false discovery rate `q`."""
+    """Return the evidence on each group, in order, and the groups that e-BH names at the false discovery rate `q`."""
     order = np.asarray(database.columns(IN_TIME)["number"]).astype(np.int64)
     ends = np.cumsum([group.missions for group in groups])
     names = [" ".join(group.values) for group in groups]

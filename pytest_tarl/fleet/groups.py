@@ -27,7 +27,7 @@ FEWEST = 2  # missions needed for a verdict
 
 @dataclass(frozen=True)
 class Judged:
-    """A formula in a group: missions that judged it, those that violate it, and the least robustness."""
+    """A formula in a group: missions in which it was judged, missions that violate it, and the least robustness."""
 
     formula: str
     missions: int

@@ -34,17 +34,17 @@ class Order:
     logs: tuple[Path, ...]
     to: str
     fixture: Path
-    robot: str  # {folder} and {file} stand for those of each log
+    robot: str  # {folder} and {file} are replaced by those of each log
     version: str = "unknown"
     site: str = "unknown"
-    salt: str = ""  # replace names of robots by digests if given
-    repair: str = ""  # in the robots' software: a name, or a patch file of .tarl/patches
+    salt: str = ""  # if given, names of robots are replaced by digests
+    repair: str = ""  # the repair in the robots' software: a name, or a patch file of .tarl/patches
     replay: Replay | None = None  # replays bags
 
 
 @dataclass(frozen=True)
 class Ingested:
-    """What a log added: missions that are new and that the data set held before, and why it was not read."""
+    """What a log added: new missions, missions that the data set already had, and why the log was not read."""
 
     log: Path
     robot: str
@@ -52,7 +52,7 @@ class Ingested:
     known: int = 0
     problem: str = ""
     unjudged: int = 0  # missions without a verdict on each formula of the recording
-    notes: tuple[str, ...] = ()  # on the replay of a bag
+    notes: tuple[str, ...] = ()  # notes on the replay of a bag
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
@@ -101,7 +101,7 @@ def _unjudged(rows: Sequence[Row], fixture: Fixture) -> int:
 
 
 def repair_of(name: str) -> str:
-    """Return the name of a repair: of a patch file, its name without the suffix.
+    """Return the name of a repair; for a patch file, its name without the suffix.
 
     Raise SettingsError if there is no such file.
     """
@@ -115,7 +115,7 @@ def repair_of(name: str) -> str:
 
 
 def named(order: Order, log: Path) -> str:
-    """Return the robot of a log, as it is stored."""
+    """Return the name of a log's robot as it is stored."""
     name = order.robot.replace(FOLDER, log.resolve().parent.name).replace(FILE, log.stem)
     if not order.salt:
         return name
@@ -123,20 +123,20 @@ def named(order: Order, log: Path) -> str:
 
 
 def keep_origin(to: Store, given: str, repair: str) -> None:
-    """Write the drift for which a patch of TARL was accepted, and the test of it; the change itself is not stored."""
+    """Store the test and the drift for which a patch of TARL was accepted; the change itself is not stored."""
     if not given.endswith(PATCH):
         return
     try:
         facts = dict(read(Path(given)).facts)
     except RepairError:
-        return  # another program's patch, of which only the name is known
+        return  # a patch of another program; only its name is known
     known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
     to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 
 
 @dataclass
 class _Writer:
-    """New missions on their way into the data set."""
+    """New missions that are not in the data set yet."""
 
     store: Store
     version: str
@@ -148,7 +148,7 @@ class _Writer:
     waiting: int = 0
 
     def add(self, rows: Sequence[Row]) -> int:
-        """Take the missions that are not in the data set yet; return their number.
+        """Keep the missions that are not in the data set yet; return their number.
 
         Raise LogError if the data set has one of them as a mission of another robot.
         """
@@ -167,7 +167,7 @@ class _Writer:
         return added
 
     def holds(self, day: str, mission: int, robot: str) -> bool:
-        """Return whether a robot's mission is in the data set or waits. Raise LogError if it is another robot's."""
+        """Return whether a robot's mission is stored or waits to be. Raise LogError if it is another robot's."""
         other = self._held(day).get(mission)
         if other is not None and other != robot:
             raise LogError(
@@ -177,14 +177,14 @@ class _Writer:
         return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
-        """Return the robot of each mission of a day that is in the data set or waits."""
+        """Return the robot of each mission of a day that is in the data set or waits to be written."""
         if day not in self.known:
             found = dataset.known(self.store, self.origin.folder, day)
             self.known[day] = dict(found)
         return self.known[day]
 
     def write(self) -> None:
-        """Write the missions that wait, those of each day into files of their own, and before them the recording."""
+        """Write the recording, then the waiting missions, those of each day into separate files."""
         if self.rows and not self.store.holds(kept := f"recordings/{self.origin.recording}.npz"):
             self.store.write(kept, self.recording)
         for day, rows in sorted(self.rows.items()):

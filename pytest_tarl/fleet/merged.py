@@ -1,4 +1,4 @@
-"""`tarl merge`: one recording from several ones and from logs of robots.
+"""`tarl merge`: make one recording of several recordings and logs of robots.
 
 Every row of a recording belongs to one episode, so the union of the rows is the recording of all episodes together.
 """
@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A file, its episodes or missions, and how many of them an earlier file had already."""
+    """A file, its episodes or missions, and how many of them an earlier file already had."""
 
     path: Path
     episodes: int
@@ -34,8 +34,8 @@ def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture,
     """Return the recording of all episodes and missions, and what each file added.
 
     A log is read with the sensors and statements of the first recording, or of `fixture`, whose own episodes do not
-    count. An episode that occurs twice counts once. Raise FixtureError or LogError if a file cannot be read or does not
-    fit the others.
+    count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot be read or does
+    not fit the others.
     """
     recordings = {path: load(path) for path in files if not _is_log(path)}
     first = fixture or next(iter(recordings), None)

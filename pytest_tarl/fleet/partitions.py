@@ -1,7 +1,7 @@
-"""What a worker computes where the rows lie: scores of missions, or the transitions of a few of them.
+"""What a worker computes next to the data: scores of missions, or the transitions of a few of them.
 
-A worker reads the files of its parts itself. Of each mission, only a number for each score travels (a bin, one byte),
-and of the missions that are compared with the recording, their transitions.
+A worker reads the files of its parts itself. It returns one byte for each score of a mission (a bin), and the
+transitions of the missions that are compared with the recording.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
 from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.sensors import Cell
 
-ENTRIES = 1_000_000  # entries of a table of missions and cells
+ENTRIES = 1_000_000  # maximum number of entries in a table of missions and cells
 CELLS = ("mission", "cell", "next_cell", "count", "reward")
 RESULTS = ("mission", "passed", "total", "steps")
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """The missions of a part that are in question: their identities, sorted, and their numbers in the question."""
+    """The missions of a part that belong to the question: sorted identities, and numbers in the question."""
 
     cells: str  # file of the transitions
     missions: str  # file of the results
@@ -51,14 +51,14 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return them as a chain in which each mission has its place in the sorted `numbers`."""
+        """Return them as a chain in which a mission's index is its place in the sorted `numbers`."""
         episode: Ints = np.asarray(np.searchsorted(numbers, self.number), np.int64)
         return Chain(
             episode, self.cell, self.next_cell, self.count, self.reward, np.zeros((self.cell.size, 0))
         )
 
     def of(self, numbers: Ints) -> Transitions:
-        """Return those of some missions, given by their sorted numbers."""
+        """Return those of the missions with the given sorted numbers."""
         low, high = np.searchsorted(self.number, numbers), np.searchsorted(self.number, numbers, side="right")
         sizes = high - low
         rows = np.repeat(low - np.cumsum(sizes) + sizes, sizes) + np.arange(int(sizes.sum()))
@@ -155,7 +155,7 @@ def _results(where: Store, wanted: Wanted) -> dict[str, Any]:
 
 
 def sorted_rows(some: Sequence[Transitions]) -> Transitions:
-    """Return the rows of all, sorted by all columns."""
+    """Return all rows in one table, sorted by all columns."""
     columns = {
         name: np.concatenate([np.empty(0, kind), *(getattr(one, name) for one in some)])
         for name, kind in (
@@ -186,7 +186,7 @@ def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> S
 
 
 def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Give all cells that the recording lacks one number, and join the transitions that become equal."""
+    """Give all cells that the recording lacks the same number, and join transitions that become equal."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
     if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
@@ -225,7 +225,7 @@ def _values(column: Any, kind: Any) -> Any:
 
 
 def portions(wanted: Sequence[Wanted], most: int) -> Iterator[list[Wanted]]:
-    """Divide parts into tasks of about `most` missions; parts without missions in question are left out."""
+    """Divide parts into tasks of about `most` missions; leave out parts without missions of the question."""
     together: list[Wanted] = []
     for one in wanted:
         if not one.numbers.size:

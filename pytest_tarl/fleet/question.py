@@ -36,8 +36,8 @@ class Question:
     robot: str = ""
     alpha: float = 0.05
     tolerance: float | None = None
-    cluster: str = ""  # address of a Dask scheduler; threads of this process without
-    workers: int = 1  # such threads
+    cluster: str = ""  # address of a Dask scheduler; without it, threads of this process are used
+    workers: int = 1  # number of such threads
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class Mission:
 
 @dataclass(frozen=True)
 class Answer:
-    """What the data set says; `left_out` counts missions by the reason why they cannot be compared."""
+    """What the data set shows; `left_out` counts missions by the reason why they cannot be compared."""
 
     question: Question
     fixture: Fixture
     missions: int
-    copies: int  # rows of missions that occur more than once, beyond the first
+    copies: int  # repeated rows of missions, beyond the first of each
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
     onsets: robots.Robots  # the evidence on each group
@@ -107,12 +107,12 @@ def answer(question: Question) -> Answer:
 
 
 def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
-    """Return the drift for which each repair was accepted, where its patch said it at ingest."""
+    """Return the drift for which each repair was accepted, if its patch named one at ingest."""
     found = {}
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)
         if where.holds(path):
-            with suppress(ValueError, AttributeError):  # a file that another program wrote
+            with suppress(ValueError, AttributeError):  # another program wrote the file
                 found[repair] = str(json.loads(where.read(path)).get("drift", ""))
     return {repair: drift for repair, drift in found.items() if drift}
 
@@ -173,7 +173,7 @@ def _lowest(database: Database) -> tuple[Mission, ...]:
 
 
 def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple[Fixture, Origin]:
-    """Return the recording named, or the one that the data set keeps."""
+    """Return the named recording, or the one in the data set."""
     if question.fixture is not None:
         fixture = load(question.fixture)
         return fixture, origin(fixture, question.fixture.read_bytes())

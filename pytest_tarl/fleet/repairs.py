@@ -1,9 +1,10 @@
 """The effect of each repair on the missions of each group, against missions without a repair.
 
-A roll-out in stages has both at once. Missions are compared only within a stratum, one group, site and week, so that
-neither seasons nor sites count as an effect (stratification; Cochran 1968, Biometrics 24:295-313). The
-effect is the mean of the strata's differences with weights n₁n₀/(n₁ + n₀), those of the least variance. Missions of one
-robot are alike, so the interval is of Tukey's jackknife over robots (Miller 1974, Biometrika 61:1-15) with Student's t.
+A roll-out in stages has missions of both kinds at the same time. Missions are compared only within a stratum (one
+group, site and week), so that differences between seasons or sites do not count as an effect (stratification; Cochran
+1968, Biometrics 24:295-313). The effect is the mean of the strata's differences with weights n₁n₀/(n₁ + n₀), those of
+the least variance. Missions of one robot are alike, so the interval is of Tukey's jackknife over robots (Miller 1974,
+Biometrika 61:1-15) with Student's t.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.model import Bound
 
-FEWEST = 4  # robots with, and as many without the repair, below which there is no interval
-ALPHA = 0.05  # risk of all intervals of repairs together
+FEWEST = 4  # minimum number of robots with and without the repair for an interval
+ALPHA = 0.05  # error probability of all intervals of repairs together
 OUTCOMES = ("total", "passed")
 
 
@@ -43,7 +44,7 @@ class Effect:
 
     @property
     def verdict(self) -> str:
-        """Return whether the repair helps, by the interval of the reward."""
+        """Return whether the repair helps, judged by the interval of the reward."""
         if not self.strata:
             return "not comparable"
         if isinf(self.reward_bound.low):
@@ -55,7 +56,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class Strata:
-    """Missions and sums by row, a robot in a stratum; columns are without and with the repair, shape (rows, 2)."""
+    """Missions and sums of robots in strata (rows), without and with the repair (columns), shape (rows, 2)."""
 
     robot: Ints
     stratum: Ints
@@ -101,7 +102,7 @@ def _strata(database: Database, repair: str, columns: Sequence[str], values: Seq
 
 
 def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Ints) -> Strata:
-    """Return the rows of the strata that have missions both with and without the repair, from one row a mission."""
+    """Return the rows of strata that have missions both with and without the repair, given one row per mission."""
     stratum, treated = stratum.astype(np.int64), treated.astype(np.int64)
     both = np.bincount(stratum * 2 + treated, minlength=2 * (int(stratum.max(initial=0)) + 1)).reshape(-1, 2)
     there = both.min(axis=1)[stratum] > 0
@@ -116,7 +117,7 @@ def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Int
 
 
 def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float) -> Effect:
-    """Return the effect from the rows of the strata; each bound is one-sided, at the confidence."""
+    """Return the effect computed from the rows of strata; each bound is one-sided and has the given confidence."""
     counts = rows.count.sum(axis=0).astype(int).tolist() if len(rows.robot) else [0, 0]
     robots = [len(set(rows.robot[rows.count[:, arm] > 0].tolist())) for arm in (0, 1)]
     (reward, reward_bound), (success, success_bound) = (
@@ -161,7 +162,7 @@ def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tu
 
 
 def _difference(count: Floats, total: Floats) -> tuple[Floats, Floats]:
-    """Return the weight of each row and its weighted difference; both 0 where an arm has no missions."""
+    """Return the weight of each row and its weighted difference; both 0 if one of the groups has no missions."""
     both = count.min(axis=1) > 0.5
     safe = np.where(both[:, None], count, 1.0)
     weight = np.where(both, safe[:, 0] * safe[:, 1] / safe.sum(axis=1), 0.0)

@@ -1,7 +1,7 @@
-"""The residual map of a robot: by how much each visit to a cell earns more or less than recorded, and how sure that is.
+"""The residual map of a robot: how much more or less than recorded a visit to each cell earns, and how certain that is.
 
-The residual of a visit is that of Bellman's equation for the recorded utility (learning/residuals.py), so it is where
-the world changed, not upstream of it.
+The residual of a visit is that of Bellman's equation for the recorded utility (learning/residuals.py), so it shows the
+cells in which the world changed, not the cells before them.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 
-FEWEST = 5  # missions in a cell, below which its residual is not known
+FEWEST = 5  # minimum number of missions in a cell for a residual
 
 
 @dataclass(frozen=True)
 class ResidualMap:
-    """Mean residual of a visit and its variance, by cell of the recording; NaN if too few missions went there."""
+    """Mean residual of a visit and its variance, by cell of the recording; NaN if too few missions visited it."""
 
     robot: str
     mean: Floats
@@ -34,7 +34,7 @@ class ResidualMap:
 
 @dataclass(frozen=True)
 class Designed:
-    """The recorded world: its model, the variance of a cell's mean residual, and of a single visit's."""
+    """The recorded world: its model, and the variances of a cell's mean residual and of a single visit's residual."""
 
     model: Model
     variance: Floats
@@ -81,7 +81,7 @@ def _map(name: str, sample: Sample, world: Designed) -> ResidualMap:
 
 
 def since(robot: Robot) -> int:
-    """Return the number of missions before the onset, by the question with more evidence; 0 if it is not known."""
+    """Return the number of missions before the onset, from the process with more evidence; 0 if it is unknown."""
     if robot.status is None:
         return 0
     below = lower(robot.status)

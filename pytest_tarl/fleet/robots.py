@@ -1,11 +1,11 @@
 """Which robots live in another world than recorded, and since when: the evidence of `tarl watch`, robot by robot.
 
 Each robot has a monitor of its own. The value of each of its processes after the last mission is an e-value, if the
-number of missions does not depend on how they went; it is large if the robot still differs. The running maximum,
-adjusted (monitoring/e_bh.py), is an e-value at any time; it is large if the robot differed once. Half of each, averaged
-over the processes with their shares of α, is an e-value as well, and e-BH over the robots keeps the expected share of
-wrongly named robots at q or less, under any dependence, so that all monitors may start from the same recording.
-Against the bounds, the share may be larger by the probability that a stated bound is wrong.
+number of missions does not depend on their results; it is large if the robot still differs. The running maximum,
+adjusted (monitoring/e_bh.py), is an e-value at any time; it is large if the robot differed at some time. The mean of
+both, averaged over the processes with their shares of α, is an e-value as well. e-BH over the robots keeps the expected
+share of wrongly named robots at or below q, even if they are dependent, so all monitors may start from the same
+recording. For the bounds, the share may be larger by the probability that a stated bound is wrong.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Robots:
-    """All robots, by name, and those that e-BH names at the false discovery rate `q`, most evidence first."""
+    """All robots by name, and the robots that e-BH names at the false discovery rate `q`, most evidence first."""
 
     q: float
     every: tuple[Robot, ...]
@@ -98,7 +98,7 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
     """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
 
-    Those with enough evidence for a status are judged a second time, which finds their onsets.
+    Robots with enough evidence for a status are judged a second time to find their onsets.
     """
     found: dict[int, Robot] = {}
     for some in side_by_side.watched(first, scores, ends, onsets=False):
@@ -156,6 +156,6 @@ def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: ob
 
 
 def lower(found: Status) -> Evidence | None:
-    """Return the evidence against the bound that has most of it; None if no bound can be tested."""
+    """Return the evidence against the bound with the most evidence; None if no bound can be tested."""
     told = [evidence for _, evidence in found.bounds if evidence is not None]
     return max(told, key=lambda evidence: evidence.highest, default=None)

@@ -20,7 +20,7 @@ from pytest_tarl.model import TaintList
 
 @dataclass(frozen=True)
 class Row:
-    """A mission: who ran it where, when it began, with which repair, and its statistics.
+    """A mission: its robot, site, start and repair, and its statistics.
 
     The sample has one episode.
     """
@@ -29,7 +29,7 @@ class Row:
     site: str
     time: float
     sample: Sample
-    repair: str = ""  # in the robot's software
+    repair: str = ""  # the repair in the robot's software
 
     @property
     def mission(self) -> int:
@@ -115,7 +115,7 @@ def _cells(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _statements(rows: Sequence[Row], lists: Sequence[TaintList]) -> dict[str, Any]:
-    """Return the visits to statements; the start of a mission is none."""
+    """Return the visits to statements; the start of a mission is not a visit."""
     names = _Names()
     size: list[int] = []
     owner, place, cells = [], [], []

@@ -48,7 +48,7 @@ SCHEMAS = {
         [
             ("mission", pa.uint64()),
             ("cell", _NAME),  # bins of the sensors, such as 3,0
-            ("next_cell", _NAME),  # null after the last step
+            ("next_cell", _NAME),  # null: after the last step
             ("count", pa.int64()),
             ("reward", pa.float64()),  # sum over the steps
         ]

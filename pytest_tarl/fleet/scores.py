@@ -1,4 +1,4 @@
-"""The scores of all missions in question: a byte each, computed where their rows lie."""
+"""The scores of all missions of the question: a byte each, computed by the workers that read the rows."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Scores:
         )
 
     def ordered(self, order: Ints) -> Scores:
-        """Return the missions in another order; `order` has each of them once."""
+        """Return the missions in another order; `order` is a permutation."""
         place = np.empty_like(order)
         place[order] = np.arange(order.size)
         moved = place[self.new_mission]
@@ -68,7 +68,7 @@ class Scores:
         )
 
     def new(self) -> list[Cell]:
-        """Return the cells that the recording lacks, once for each mission that visited them."""
+        """Return the cells that the recording lacks, each once per mission that visited it."""
         return [self.others[number] for number in self.new_cell.tolist()]
 
 

@@ -1,6 +1,6 @@
-"""Watch many robots side by side: the state of each is that of its own monitor, to the last bit.
+"""Watch many robots side by side; the state of each is bit by bit that of a monitor of its own.
 
-All robots begin with the same pool, and the numbers that break ties depend on a mission's number only, so the n-th
+All robots begin with the same pool, and the numbers that break ties depend only on a mission's number, so the n-th
 missions of many robots are judged in one step.
 """
 
@@ -17,14 +17,14 @@ from pytest_tarl.monitoring import conformal, judging
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
-COLUMNS = 512  # processes judged together, so that their stakes stay in the processor's cache
+COLUMNS = 512  # processes judged together: so many that their stakes fit into the processor's cache
 
 
 @dataclass(frozen=True)
 class Watched:
     """Robots after all of their missions; columns are those of judging.py."""
 
-    robots: Ints  # which of the robots these are
+    robots: Ints  # indices of these robots
     processes: Processes
     pool: Ints
     bounds: int

@@ -15,7 +15,7 @@ from pytest_tarl.files import advice_on, write_atomically
 
 @dataclass(frozen=True)
 class Store:
-    """A folder; `root` is its path in the file system `fs`, `protocol` is "file" for a local one."""
+    """A folder; `root` is its path in the file system `fs`; `protocol` is "file" for a local folder."""
 
     fs: Any
     root: str
@@ -31,7 +31,7 @@ class Store:
             found = self.fs.find(f"{self.root}/{folder}")
         except FileNotFoundError:
             return []
-        except Exception as problem:  # each store has exceptions of its own
+        except Exception as problem:  # each store raises its own exceptions
             raise FleetError(f"{self.shown(folder)} cannot be listed ({problem}): {ADVICE}") from problem
         start = len(self.root) + 1
         return sorted(one[start:] for one in found if one.endswith(".parquet"))
@@ -64,7 +64,7 @@ class Store:
             raise FleetError(f"{self.shown(path)} cannot be read ({problem}): {ADVICE}") from problem
 
     def opened(self, path: str) -> Any:
-        """Return a file opened for reading at any place."""
+        """Return a file opened for reading at any position."""
         return self.fs.open(f"{self.root}/{path}", "rb")
 
     def address(self, path: str) -> str:
@@ -91,7 +91,7 @@ def store(address: str) -> Store:
     except ImportError as problem:
         command = install_command("s3") if address.startswith("s3:") else "install the package that it names"
         raise FleetError(f"{address} cannot be opened ({problem}): {command}.") from problem
-    except Exception as problem:  # each store has exceptions of its own
+    except Exception as problem:  # each store raises its own exceptions
         raise FleetError(f"{address} cannot be opened ({problem}): {ADVICE}") from problem
     protocol = fs.protocol if isinstance(fs.protocol, str) else fs.protocol[0]
     return Store(fs, str(root).rstrip("/"), protocol)

@@ -55,7 +55,7 @@ def lines(answer: Answer) -> Iterator[str]:
 
 
 def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
-    """Yield the groups whose missions, in the order of their times, changed, and when."""
+    """Yield the groups whose missions changed in the course of time, and when."""
     found = answer.onsets
     if not answer.question.by:
         return

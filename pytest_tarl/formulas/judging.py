@@ -21,7 +21,8 @@ NEGLIGIBLE = 1e-12  # margins below this are shown as 0
 class Judged(NamedTuple):
     """The verdict on one formula: its robustness, above 0 if it holds, and the time in s when it was lost.
 
-    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if it never was.
+    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if the formula was not
+    violated.
     """
 
     formula: str
@@ -74,10 +75,10 @@ class Judge:
         return ""
 
     def rewards(self, end: int, cap: float) -> list[float]:
-        """Return the reward of each step, shape (steps,): the increments of the least robustness so far.
+        """Return the reward of each step, shape (steps,): the change of the least robustness so far.
 
-        The robustness is clipped to ±cap. The rewards add up to its value at the end of the episode; an
-        episode that ended before its signals were known gets -cap in total.
+        The robustness is clipped to ±cap. The rewards add up to its value at the end of the episode; an episode that
+        ended before its signals were known earns -cap in total.
         """
         ends = [*self.steps[:-1], end] if self.steps else []
         if not ends:
