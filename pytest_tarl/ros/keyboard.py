@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from types import BuiltinFunctionType
 from typing import Any
 
 from pytest_tarl.ros.process import Process, running_process
@@ -187,18 +188,33 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 
 @contextmanager
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
-    """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end."""
-    mine, real_input, real_read = _StandardInput(sys.stdin), builtins.input, os.read
-    sys.stdin, builtins.input, os.read = mine, _input(real_input, mine), _read(real_read)
+    """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
+
+    What the test has replaced stays: its own `input`, or its own stream as `sys.stdin`, from which `input` reads too.
+    """
+    mine = _StandardInput(sys.stdin)
+    replaced: list[tuple[Any, str, Any, Any]] = [(os, "read", os.read, _read(os.read))]
+    if not _from_test(sys.stdin):
+        replaced.append((sys, "stdin", sys.stdin, mine))
+        if isinstance(input, BuiltinFunctionType):
+            replaced.append((builtins, "input", input, _input(input, mine)))
+    for owner, name, _, ours in replaced:
+        setattr(owner, name, ours)
     try:
         yield
     finally:
-        if sys.stdin is mine:
-            sys.stdin = mine.real
-        builtins.input, os.read = real_input, real_read
+        for owner, name, real, ours in replaced:
+            if getattr(owner, name) is ours:
+                setattr(owner, name, real)
         with ExitStack() as all_of_them:
             for process in processes:
                 all_of_them.callback(process.part(Terminal).release)
+
+
+def _from_test(stream: Any) -> bool:
+    """Return whether a test has put a stream of its own, such as a StringIO, in the place of `sys.stdin`."""
+    of_pytest = type(stream).__module__.startswith("_pytest.")
+    return not (stream is None or of_pytest or isinstance(stream, io.TextIOWrapper | _StandardInput))
 
 
 def _input(real: Callable[..., str], replaced: _StandardInput) -> Callable[..., str]:

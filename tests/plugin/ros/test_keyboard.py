@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import sys
 
 import pytest
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros import Ros
 from tests.plugin.ros.conftest import Start, heard
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="termios")
@@ -120,3 +122,28 @@ def test_code_of_the_test_keeps_the_real_stream(start: Start) -> None:
     with pytest.raises(OSError, match="captured"):
         input()
     ros.close()
+
+
+def test_the_input_function_of_a_test_stays(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    answers = iter(["0.5", "1.5"])
+    monkeypatch.setattr("builtins.input", lambda prompt="": next(answers))
+    ros = start(
+        NODE.format(body="for _ in range(2):\n    out.publish(input('speed: '))\n    rospy.sleep(0.1)")
+    )
+    keys = heard(ros, "/keys")
+    ros.step(1.0)
+    assert [one.data for one in keys] == ["1.5"]  # the first one was published before the test listened
+    assert not ros.notes
+
+
+@pytest.mark.parametrize("read", ["input()", "sys.stdin.readline().strip()", "next(sys.stdin).strip()"])
+def test_the_stream_of_a_test_stays(read: str, start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.StringIO("0.5\n1.5\n")
+    monkeypatch.setattr(sys, "stdin", stream)
+    ros = Ros()
+    keys = heard(ros, "/keys")
+    with ros.installed():
+        start(NODE.format(body=f"for _ in range(2):\n    out.publish({read})"), ros=ros)
+        assert sys.stdin is stream
+    ros.close()
+    assert [one.data for one in keys] == ["0.5", "1.5"]
