@@ -1,4 +1,4 @@
-"""The marker's `must_hold`: within which part of each direction the guarantee must hold."""
+"""The marker's `must_hold`: the part of each direction in which the guarantee must hold."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ Members = Sequence[Sequence[int]]
 
 PILOTS = 20  # episodes for learning bins
 
-FEW = 30  # episodes below which a recording says what they can show
+FEW = 30  # with fewer episodes, a recording says which loss they can show
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or comparisons will report spurious differences."
@@ -138,7 +138,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; return a note if the result differs, for a simulator with the spread."""
+    """Run the first episode again; return a note if the result differs, with the spread if there is a simulator."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []
@@ -155,7 +155,7 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
 
 
 def detectable(totals: Floats) -> list[str]:
-    """Return a note that says which loss as many episodes again can show, if they are few; shape (episodes,)."""
+    """Return a note on the loss that the same number of episodes can show, if they are few; shape (episodes,)."""
     if not 1 < totals.size < FEW or not totals.std():
         return []
     loss = detectable_loss(totals, totals, SIGNIFICANT)

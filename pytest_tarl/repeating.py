@@ -242,7 +242,7 @@ class ItemRollout:
         return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode, anew if its simulator is lost, at most SIMULATORS times.
+        """Run one episode; run it again if its simulator is lost, at most SIMULATORS times.
 
         Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C.
         """

@@ -24,7 +24,7 @@ CERTAIN = 0.005  # approximate risk of refusing early although the mean is above
 
 @dataclass(frozen=True, slots=True)
 class Bet:
-    """Bets that the mean difference is above `-margin`; differences below `least` are clipped to it.
+    """Bets that the mean difference is above `-margin`; smaller differences than `least` are raised to it.
 
     `stakes` are per unit of reward.
     """

@@ -1,6 +1,6 @@
 """Find more seeds whose missions fail, where few do, and what each of them earns in the designed world.
 
-Missions that fail rarely do so for a reason, such as a person on the road, and are harder in the designed world, too.
+If few missions fail, they fail for a reason, such as a person on the road, and are harder in the designed world, too.
 They are a selection, so a repair cannot be expected to reach the recorded mean on them. Each is therefore compared with
 the designed mission of its own seed. Acceptance draws fresh seeds, so this selection does not bias its test.
 """

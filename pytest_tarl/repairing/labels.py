@@ -1,4 +1,4 @@
-"""Constants that are not quantities: members of enumerations, values of which only the truth is asked, and notation.
+"""Constants that are not quantities: members of enumerations, values tested only for truth, and notation.
 
 A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
 nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, the `1e-9` in `stamp.nanosec * 1e-9` is a unit, and the

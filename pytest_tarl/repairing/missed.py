@@ -28,7 +28,7 @@ class Lost:
 
 @dataclass
 class Missed:
-    """Seeds on which tested candidates lost, each with the total that counts as near its designed mission.
+    """Seeds on which tested candidates lost, each with the total that counts as close to its designed mission.
 
     `few` contains the lost seeds of candidates that lost at most `FEW` of their missions, `poor` the candidates that
     failed hardly any mission and earned too little. `spread` contains, for each of the latter, missions of its test

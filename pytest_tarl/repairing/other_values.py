@@ -105,7 +105,7 @@ class Others:
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose the best value near one whose missions succeed and that loses too much, or nearly so, in its test.
 
-        Values are compared on missions that stand for the test, where a better one is seen however close it is.
+        Values are compared on missions that represent the test, so that a better value is found even if it is close.
         Raises BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
@@ -130,9 +130,9 @@ class Others:
     def _earned(
         self, candidate: Candidate, missions: Sequence[Lost], most: float, trials: Trials
     ) -> float | None:
-        """Return what a candidate earns more than designed on missions; None if at most `most`, as soon as known.
+        """Return how much more than designed a candidate earns on missions; None once it can earn at most `most`.
 
-        A mission is taken to earn at most what it does as designed.
+        A mission counts as earning at most its designed reward.
         """
         earned = 0.0
         trials.expect((candidate, one.seed) for one in missions)

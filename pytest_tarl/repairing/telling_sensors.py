@@ -1,4 +1,4 @@
-"""Which sensors tell a drift: those whose values differ so much between the worlds that one value shows the world."""
+"""Find the sensors that tell a drift: their values differ so much between the worlds that one value shows the world."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ def spots(order: Order) -> Iterator[Spot]:
 def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
     """Return the flows' statements, alternately from the slices' ranking and from the publish calls backwards.
 
-    Limits, filters and offsets of a command act where the command is sent, wherever the loss comes from.
+    Limits, filters and offsets of a command belong where the command is sent, whatever causes the loss.
     """
     rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
     ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))

@@ -5,9 +5,9 @@ In both the drifted and the designed world the test must show that
 - the mean total reward is at most the margin δ below that of the unrepaired program in the designed world, and
 - the failure rate is at most five percentage points higher.
 
-A mission counts as losing at most what a designed one earns, because failures are judged apart. Each mission is paired
-with the unrepaired program's mission of the same seed in the designed world. Only the size of the bets is fitted to the
-candidate; this uses separate seeds at the beginning, which can refuse the candidate but not accept it.
+A mission counts as losing at most what a designed mission earns, because failures are judged separately. Each mission
+is paired with the unrepaired program's mission of the same seed in the designed world. Only the size of the bets is
+fitted to the candidate; this uses separate seeds at the beginning, which can refuse the candidate but not accept it.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # A refused candidate is told by all of its missions, one that is accepted by those of its test alone.
+    # A refused candidate is described by all of its missions, an accepted one only by those of its test.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])

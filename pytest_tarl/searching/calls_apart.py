@@ -1,4 +1,4 @@
-"""Where a change of a returned value holds, find out which calls of the function need it.
+"""If a change of a returned value holds, find out which calls of the function need it.
 
 A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on what it
 returns changes all of them, and a maintainer changes the ones that are wrong.
@@ -26,7 +26,7 @@ def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
 
 
 def _called(operand: Operand) -> str:
-    """Return the name of the function or method that an operand calls, "" if it is no call."""
+    """Return the name of the function or method that an operand calls, "" if it is not a call."""
     try:
         node = ast.parse(operand.code, mode="eval").body
     except SyntaxError:

@@ -1,7 +1,8 @@
-"""Tell which of several repairs is at the cause: with it, missions go as designed from start to end.
+"""Decide which of several repairs is at the cause: with it, missions go as designed from start to end.
 
-Too weak heating elements are compensated by a larger loss of the walls once the kiln is hot, but only the right power
-lets it heat up as designed. Both earn the same total, at other times.
+For example, if the heating elements of a kiln are weak, a controller with a larger constant for the loss of the walls
+keeps the hot kiln at its temperature. But only the right constant for the power also lets the kiln heat up as designed.
+Both repairs earn the same total, at different times.
 """
 
 from __future__ import annotations
@@ -14,17 +15,17 @@ from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
 EXACT = 0.01  # deviation up to which a mission goes as designed
-CLOSER = 0.6  # share of a candidate's deviation that another may have at most to be preferred
+CLOSER = 0.6  # a candidate is preferred if it deviates at most by this share of the other's deviation
 COMPARED = 3  # missions on which two candidates that hold are compared
 POWERS = (1.0, 0.7)  # of the factor found; a first factor that holds is often larger than needed
-RIVALS = 8  # runs after which no further constant is tried beside a candidate that deviates
+RIVALS = 8  # maximum number of runs of other constants for a candidate that deviates
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
     """Yield other named constants of the same function, with the factor found and its reciprocal, then weaker ones.
 
-    A constant that divides needs the reciprocal. Constants that never changed a mission are left out, and scales other
-    than that of the constant found, on which its factor means nothing.
+    A constant that divides needs the reciprocal. Left out are constants that never changed a mission, and constants on
+    other scales, for which the factor has no meaning.
     """
     at = found.operands[0].site
     tried = gains.under(guard)

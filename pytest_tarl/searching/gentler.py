@@ -1,7 +1,7 @@
-"""Decide when a repair that holds calls for gentler ones first, and which constants these may change.
+"""Decide whether to try gentler repairs before one that holds, and which constants these may change.
 
-A camera that creeps along its rope stops at the mark on wet pads, too, and so does one with another gravity. A
-maintainer corrects the pads: the mission then goes as it was designed to go.
+For example, if a rope camera with wet brake pads passes its mark, a very low speed helps, and so does another value of
+gravity. A maintainer corrects the friction of the pads: the mission then goes as designed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tarl_lint.model import SiteId
 
 COARSE = (1.5, 0.65)
 FINE = (*COARSE, 1.22, 0.82, 1.35, 0.73)
-LONGER = 1.3  # ratio of the lengths of missions from which they go in another way than designed
+LONGER = 1.3  # missions whose length differs by this ratio go in another way than designed
 
 
 def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:

@@ -32,19 +32,19 @@ LEAST = 2  # ... and fewest
 EPISODES = 50  # most trials ...
 PATIENCE = 25  # ... and trials without a better one after which the search ends
 FARTHEST = 3.0  # largest |log step|, a factor of 20
-CHANGED = 3  # most constants that one trial changes beside the point it starts from
+CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
-PROPOSALS = 400  # among which the expected improvement chooses
+PROPOSALS = 400  # number of proposals among which the expected improvement chooses
 STARTS = 4  # best points to start from ...
-ASUNDER = 0.2  # ... that differ by this much in a log step at least
-HIDDEN = 2  # most constants that never changed the reward much alone ...
+ASUNDER = 0.2  # ... that differ by at least this much in some log step
+HIDDEN = 2  # maximum number of constants that alone never changed the reward much ...
 SELDOM = 0.25  # ... and how often they move, as a share of the others
 LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
-REFITTED = 4  # trials after which the length scales are chosen anew
+REFITTED = 4  # trials after which the length scales are chosen again
 NOISES = (0.05, 0.2)  # standard deviations of a trial, as shares of that of all trials
 WORST = 2.0  # largest deviation from the designed mission that counts
-REFUSED = 0.5  # taken off where a point that is good on this seed was refused on others
-SMALL = 0.02  # change of a log step that is none
+REFUSED = 0.5  # subtracted if a point that is good on this seed was refused on others
+SMALL = 0.02  # smaller changes of a log step count as none
 
 
 @dataclass
@@ -167,7 +167,8 @@ class Jointly:
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
         """Run a combination; return the share of the wanted gain that it earns, less its missions' deviation.
 
-        One that would be the best so far runs on a second seed, too, and has the mean: a peak may be that of one seed.
+        A combination that would be the best so far also runs on a second seed, and gets the mean, since one seed may be
+        luck.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:
@@ -197,7 +198,7 @@ class Jointly:
         return tuple(float(one) for one in proposals[int(np.argmax(gains))])
 
     def _proposals(self, starts: Floats) -> Floats:
-        """Return starts with one to `CHANGED` coordinates moved, shape (m, k); small steps are taken back to none."""
+        """Return starts with one to `CHANGED` coordinates moved, shape (m, k); too small steps are set to none."""
         draw, size = self.generator, (PROPOSALS, starts.shape[1])
         many = draw.integers(1, CHANGED + 1, PROPOSALS)
         ranks = (draw.random(size) ** (1.0 / self._often)).argsort(axis=1)[:, ::-1].argsort(axis=1)
@@ -218,9 +219,9 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 
 
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
-    """Return the units to move jointly, and how many at the end may be hidden by others.
+    """Return the units to move jointly, and how many of the last ones may be hidden by others.
 
-    Of each constant, the scale that gained most is moved. Named constants come first, then those that changed the
+    Each constant moves on the scale on which it gained most. Named constants come first, then those that changed the
     reward most; those that changed it little come last. Booleans, zeros and constants of nature are left out.
     """
     best: dict[tuple[Operand, ...], tuple[float, Unit]] = {}

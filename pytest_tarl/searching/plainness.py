@@ -71,7 +71,7 @@ def writing(operand: Operand) -> Oddness:
 
 
 def edges(guard: Guard) -> tuple[str, ...]:
-    """Return the sensors at whose thresholds a repair under this guard sets in abruptly."""
+    """Return the sensors at whose thresholds a repair under this guard begins abruptly."""
     return tuple(
         one.sensor.name
         for one in guard.conjuncts
@@ -80,7 +80,7 @@ def edges(guard: Guard) -> tuple[str, ...]:
 
 
 def of_nature(operand: Operand) -> bool:
-    """Return whether an operand is the acceleration of gravity, π or 2 π: the world, and no choice of its author."""
+    """Return whether an operand is the acceleration of gravity, π or 2 π, which its author did not choose."""
     if operand.value is None or isinstance(operand.value, bool):
         return False
     value = abs(operand.value)

@@ -284,7 +284,7 @@ class Sweep:
             yield from self._joining({}).fewest(joint)
 
     def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """Where missions go in another way than designed, try named constants in small steps first."""
+        """If missions go in another way than designed, try named constants in small steps first."""
         if unit in self._replaced or not another_way(found, self.trials, self.goal):
             return
         self._replaced.add(unit)
@@ -379,7 +379,7 @@ class Sweep:
             yield from self._try(*best, one, pair)
 
     def _adjusting(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
-        """Move what a proposal takes as given, such as a sensor's usual value, once the proposal gains much."""
+        """Move the fixed parameters of a proposal, such as a sensor's usual value, once the proposal gains much."""
         gains = self._gains.of(unit, guard)
         factor = max(gains, key=gains.__getitem__)
         given = self.given(unit.operands[0]) if self.proposed else ()

@@ -9,7 +9,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
 RESOLUTION = 0.02  # share of the declared range at which a bisection ends
-NOISY = 0.04  # the same if the failing end is undecided: noise then hides any finer boundary
+NOISY = 0.04  # the same if the failing end is undecided, because noise then hides a finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:

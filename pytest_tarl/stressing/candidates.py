@@ -1,7 +1,7 @@
 """Choose values of a ray at which fresh episodes can show that the guarantee holds or fails.
 
-The choice rests on the episodes of a search and is approximate: it decides how narrow an interval gets, not whether it
-holds.
+The choice is approximate and uses the episodes of a search. It decides how narrow an interval gets, not whether the
+interval is correct.
 """
 
 from __future__ import annotations
@@ -21,13 +21,15 @@ HOPE = 0.8  # expected probability that a test at a chosen value succeeds
 HOLDING = 3.0  # standard errors between the loss and the tolerated one for a bound at 4 % to be met four times in five
 FAILING = 4.0  # the same at 0.4 %
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
-CENTRES = np.linspace(0.0, 1.25, 251)  # of the drifts at which an episode begins to fail, as shares of a ray
-SCALES = np.geomspace(0.002, 0.3, 16)  # of their logistic distribution
+CENTRES = np.linspace(
+    0.0, 1.25, 251
+)  # centres of the drifts at which an episode begins to fail, as shares of a ray
+SCALES = np.geomspace(0.002, 0.3, 16)  # scales of their logistic distribution
 
 
 @dataclass(frozen=True)
 class Model:
-    """What a search's episodes tell of the ray: each fails beyond a drift of its own, and loses reward on the way.
+    """A model of a ray from a search's episodes: each fails beyond a drift of its own, and loses reward before it.
 
     The drifts at which episodes begin to fail have a logistic distribution, with a uniform prior over CENTRES and
     SCALES. The loss is linear between the measured values, and its spread is that of the next measured value.

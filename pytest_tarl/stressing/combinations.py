@@ -1,4 +1,4 @@
-"""Find directions that break the guarantee together although each alone does not, and confirm them on fresh seeds."""
+"""Find directions that together break the guarantee, although none of them does alone; confirm them on fresh seeds."""
 
 from __future__ import annotations
 
@@ -16,10 +16,8 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 
 INSIDE = 0.9  # share of each boundary at which directions are combined; each direction alone passes there
 FIRST = 0.5  # share of the budget that the approach to the nearest failing drift may use
-VETTED = (
-    0.55  # share of the budget after which more episodes at the drift found leave the rest to confirmation
-)
-LAST = 0.85  # share of the budget after which pairs and evolution leave the rest to confirmation
+VETTED = 0.55  # share of the budget after which the found drift gets no more episodes, so that the rest can confirm it
+LAST = 0.85  # share of the budget after which pairs and evolution end, so that the rest can confirm
 QUICK = SIZES[0]  # episodes at a point of a ray before the approach
 
 
@@ -35,13 +33,13 @@ class Together:
     tests: int = 0
     expected: list[Failure] = field(
         default_factory=list
-    )  # drifts that fail by the model of the search, not confirmed
+    )  # drifts that fail according to the model of the search, not confirmed
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
         """Test drifts on fresh seeds, in order, until one is confirmed; the k-th test of all has risk / k(k + 1).
 
-        All tests share the seeds of the rays, because no drift is chosen with them. A drift is left out if a confirmed
-        one changes nothing more. Raise BudgetSpentError.
+        All tests share the seeds of the rays, because no drift is chosen with them. A drift is left out if it changes
+        at least all that a confirmed one changes. Raise BudgetSpentError.
         """
         for point in chain:
             one = failure(evaluator.space, point)
@@ -82,7 +80,7 @@ class Combined:
         self.nearest = Nearest(evaluator, together.curves, risk=together.risk)
 
     def begin(self) -> None:
-        """Look at the rays quickly, approach the nearest failing drift, and confirm it. Raise BudgetSpentError."""
+        """Run few episodes on each ray, approach the nearest failing drift, and confirm it. Raise BudgetSpentError."""
         with self.evaluator.limited(FIRST):
             for curve in self.together.curves:
                 for t in curve.ray.places:
@@ -104,7 +102,7 @@ class Combined:
             self.together.confirm([point], self.evaluator)
 
     def draw(self) -> None:
-        """Predict the map and the nearest failures from all episodes, if the budget sufficed to look at the rays."""
+        """Predict the map and the nearest failures from all episodes, if the budget sufficed for the rays."""
         if all(curve.evidence for curve in self.together.curves):
             found = self.nearest.expected(EXPECTED)
             self.together.expected = [failure(self.evaluator.space, point) for point in found]

@@ -1,6 +1,6 @@
 """Drifts as vectors: the distances of the ranges from nominal, in units of the declared ranges.
 
-Options are no coordinates; they stay as they are in a base point.
+Options are not coordinates; a base point fixes them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 from pytest_tarl.stressing.rays import distance
 
 Vector = NDArray[np.float64]
-ROUNDING = 1e-12  # nearer to nominal than this is nominal
+ROUNDING = 1e-12  # a number this close to nominal counts as nominal
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ class Delivered:
     lines: tuple[str, ...]
     problem: str
     interrupted: bool
-    found: Stress | None = None  # None if Ctrl-C came before the first result
+    found: Stress | None = None  # None if Ctrl-C was pressed before the first result
 
 
 def deliver(request: Request, root: Path) -> Delivered:
@@ -108,7 +108,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         jobs[memory] = lambda path: kept.write(found.failures, path)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
     lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
-    if report in failed:  # the page that is there, if any, is of an earlier run
+    if report in failed:  # an existing page is that of an earlier run
         return lines
     return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"]
 

@@ -27,7 +27,7 @@ NEAREST = (
     16,
     32,
     64,
-)  # the same of a combination: the more episodes, the nearer to the boundary it can be shown
+)  # the same for a combination; more episodes can confirm failures nearer to the boundary
 RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
@@ -49,15 +49,15 @@ class Evaluator:
     budget: int
     progress: Progress
     spent: int = 0
-    short: bool = False  # whether a result was left out for want of budget
-    seconds: float | None = None  # a limit of the time besides that of the episodes
+    short: bool = False  # whether a result was left out because the budget did not suffice
+    seconds: float | None = None  # a time limit in addition to that of the episodes
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
-        """End the block quietly once this share of the budget is spent in all; `short` remembers it."""
+        """End the block without an error once this share of the whole budget is spent; set `short` in that case."""
         whole, self.budget = self.budget, min(self.budget, round(share * self.budget))
         time, self.seconds = self.seconds, None if self.seconds is None else share * self.seconds
         try:
@@ -104,11 +104,11 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        nominal = self.common(self.space.nominal, count)  # first: no point may have more outcomes than it
+        nominal = self.common(self.space.nominal, count)  # first, as no point may have more outcomes
         return examined(self.guarantee, self.common(point, count), nominal)
 
     def measured(self, point: Point) -> tuple[float, float]:
-        """Return the margin by all episodes that the search ran at a point, and its approximate standard deviation."""
+        """Return the margin of all episodes that the search ran at a point, and its approximate standard deviation."""
         outcomes = self._known[("search", *point.values())]
         key = (len(outcomes), *point.values())
         if key not in self._measured:
@@ -120,7 +120,7 @@ class Evaluator:
     def losses(self, point: Point) -> tuple[list[float], int]:
         """Return the losses of all episodes that the search ran at a point, and how many of the episodes failed.
 
-        A loss is against the nominal episode on its seed, as a share of the tolerated one.
+        A loss is relative to the nominal episode of the same seed, as a share of the tolerated loss.
         """
         outcomes = self._known[("search", *point.values())]
         unit = self.guarantee.tolerance
@@ -174,7 +174,7 @@ class Evaluator:
         ]
 
     def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:
-        """Return the outcome of each point on one seed: that with its row's number. Raise BudgetSpentError."""
+        """Return the outcome of each point on one seed: the seed with the number of its row. Raise BudgetSpentError."""
         seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows) + 1)
         return self._run(points, [seeds[row] for row in rows])
 

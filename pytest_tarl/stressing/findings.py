@@ -11,10 +11,10 @@ from pytest_tarl.spaces import Point, Space, Span
 from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
-CONFIDENCE = 0.9  # that a boundary lies in its interval
+CONFIDENCE = 0.9  # confidence that a boundary lies in its interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6  # largest risk that the guarantee holds at the far end of the interval
 NEARER = 0.98  # share of a distance below which another one is nearer
-NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # largest risk that it fails at the near end
+NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # largest risk that it does not hold at the near end
 
 
 @dataclass
@@ -142,9 +142,9 @@ class Statements:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """How a repair moves a boundary, in words, and by the values that were shown to hold and to fail, None for none.
+    """How a repair moves a boundary: in words, and by the values that were shown to hold and to fail, if any.
 
-    Values are numbers of the direction; of a combination, they are distances from nominal.
+    Values are numbers of the direction; for a combination, they are distances from nominal.
     """
 
     name: str
@@ -176,7 +176,7 @@ class Attempt:
     region: str
     told: str  # the repair, or why there is none
     accepted: bool = False
-    patch: str | None = None  # None also if it is withheld
+    patch: str | None = None  # None, too, if it is withheld
     withheld: str = ""  # why
     moved: tuple[Moved, ...] = ()
     draws: Draws | None = None
@@ -207,7 +207,7 @@ class Stress:
 
     @property
     def nearer(self) -> Failure | None:
-        """Return the nearest drift that fails by the model, if it is nearer than every confirmed failure."""
+        """Return the nearest drift that fails according to the model, if it is nearer than every confirmed failure."""
         limit = min((one.distance for one in self.failures), default=inf)
         return next((one for one in self.expected if one.distance < NEARER * limit), None)
 

@@ -36,7 +36,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
         nonlocal ended, raised
         try:
             found = None if ended else margin(_point(space, drawn))
-        except Exception as problem:  # kept from Hypothesis, which would run the drift again
+        except Exception as problem:  # hidden from Hypothesis, which would run the drift again
             found, raised = None, problem
         if found is None:
             ended = True

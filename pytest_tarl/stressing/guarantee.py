@@ -16,7 +16,7 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
-LOWEST = -1.5  # margin below which a drift says little about the boundary, since it fails clearly
+LOWEST = -1.5  # margins below this are cut off: a drift that fails clearly says little about the boundary
 LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
 HOPEFUL = 0.84  # confidence of a bound one standard error above the mean
 SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it gives no guarantee
@@ -155,9 +155,10 @@ def _most_passed(least: float, count: int, risk: float) -> int:
 def hopeless(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], most: int, risk: float
 ) -> bool:
-    """Return whether `most` episodes would hardly refute the guarantee, if these are the first of them.
+    """Return whether `most` episodes are unlikely to refute the guarantee, given that these are the first of them.
 
-    That is so if about one standard error more of loss would be tolerated, and the same of failures would be too few.
+    That is so if a loss about one standard error larger would still be tolerated, and as many more failures would be
+    too few.
     """
     count, failed = len(outcomes), sum(not one.passed for one in outcomes)
     if (failed + sqrt(failed + 1.0)) / count * most >= most - most_passed(given, most, risk):

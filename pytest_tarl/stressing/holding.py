@@ -1,7 +1,7 @@
-"""Show on fresh seeds up to where the guarantee holds: the end of a boundary's interval that is nearer to nominal.
+"""Show on fresh seeds how far the guarantee holds: the end of a boundary's interval that is nearer to nominal.
 
-A search sees few episodes at a drift, and rare failures hide in them: a drift that fails 1 in 20 passes 8 episodes
-two times in three. So the values at which a search saw no failure lie too far from nominal. Here, two values are chosen
+A search sees few episodes at a drift, and rare failures hide in them: a drift that fails 1 in 20 passes 8 episodes two
+times in three. So some values at which a search saw no failure lie too far from nominal. Here, two values are chosen
 from the episodes of the search, and tested on seeds that it did not use; the risk is divided among all tests. If the
 margin does not rise with the drift, the boundary lies beyond each value at which the guarantee holds.
 """
@@ -19,7 +19,7 @@ from pytest_tarl.stressing.rays import Ray
 
 SHARES = (0.85, 0.15)  # of the risk: of the first and second value, and of the tests at each, see `holds`
 SECOND = 0.5  # the second value, as a share of the first
-BATCH = 8  # episodes after which a test that cannot succeed any more ends
+BATCH = 8  # episodes after which a test that can no longer succeed ends
 PAIRED = (16, 32)  # numbers of episodes that bound the loss, unless the marker declares total_range
 
 

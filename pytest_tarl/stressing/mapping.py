@@ -16,7 +16,7 @@ CELLS = 25  # of the map, in each direction
 
 
 def importance(curves: Sequence[Curve]) -> dict[str, float]:
-    """Return by range the largest margin that it alone loses, the most important first."""
+    """Return for each range the largest loss of margin that it causes alone, the most important first."""
     found: dict[str, float] = {}
     for curve in curves:
         (name,) = curve.ray.names
@@ -26,7 +26,7 @@ def importance(curves: Sequence[Curve]) -> dict[str, float]:
 
 
 def lost(curve: Curve) -> float:
-    """Return the largest margin that was lost along a ray."""
+    """Return the largest loss of margin along a ray."""
     return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
 
 

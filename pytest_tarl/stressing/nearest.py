@@ -30,21 +30,21 @@ from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import spread
 
-NEARER = 0.98  # a drift is looked for up to this share of the best distance
-LARGEST = 2.0  # distance beyond which no failing drift is looked for
-PREDICTED = 3  # drifts tried by predictions before others are
+NEARER = 0.98  # a nearer drift is searched up to this share of the best distance
+LARGEST = 2.0  # distance beyond which no failing drift is searched
+PREDICTED = 3  # number of predicted drifts to try before others
 GAIN = 0.01  # expected gain, in units of the best distance, below which a drift is not tried
-BOLD = (0.0, 1.0, 0.0, 0.5)  # standard deviations by which the model may err for the benefit of a drift
-SURE = 0.5  # a tried drift fails for the search if its excess over the tolerated loss is this share of what shows
+BOLD = (0.0, 1.0, 0.0, 0.5)  # standard deviations by which the model may be wrong in favour of a drift
+SURE = 0.5  # a tried drift fails if its excess over the tolerated loss is this share of what can be shown
 CLEAR = 4.0  # or if its margin is this many standard deviations below 0
-GENERATED = 24  # drifts of Hypothesis
+GENERATED = 24  # number of drifts from Hypothesis
 ROUNDS, EXPLORED = 8, 8  # rounds of drifts nearer than the best one, and drifts of a round
 AGAIN = 4  # the same rounds after the single directions
 VETTED = 4  # drifts that run SIZES[2] episodes before confirmation, at most
 SAME = 0.02  # drifts nearer to each other than this are the same for the search
 TRIES = 24  # consecutive drifts of CMA-ES without a nearer failure after which it ends
 SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the best distance
-# The drifts to confirm first and later, and those that are only expected to fail: errors of the model, in standard
+# For drifts to confirm first and later, and for those only expected to fail: assumed errors of the model, in standard
 # deviations, and excess over the guarantee, in units of what fresh episodes can show.
 FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
 NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
@@ -52,7 +52,7 @@ EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
 STANDARD = 4.1  # standard errors beyond the tolerated loss that fresh episodes show four times in five
 POWER, IMPOSSIBLE = 0.6, 0.99  # the same for failing episodes, and the largest share of them
 SHALLOW, DEEP = 0.03, 1.2  # limits of the excess that they can show, in units of the tolerated loss
-PRIOR = 4  # episodes that the common variance of losses counts for at a drift
+PRIOR = 4  # weight in episodes of the common variance of losses at a drift
 TRIFLE = 0.15  # a component below this share of the distance is left out of a drift to confirm: noise may explain it
 
 Steps = Sequence[tuple[float, float]]  # errors of the model and excess, as above
@@ -65,7 +65,7 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
-    risk: float = 0.05  # at which a drift is confirmed
+    risk: float = 0.05  # rates at which a drift is confirmed
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # the episodes that it has seen, and the model
 
@@ -87,7 +87,7 @@ class Nearest:
 
     @property
     def best(self) -> Point | None:
-        """Return the nearest drift, tried or on a ray, that fails by the model of all of them; None without one."""
+        """Return the nearest drift, tried or on a ray, that fails according to the model of all; None without one."""
         coordinates = self._nominal()
         own = [point for point in self._known() if coordinates.covers(point) and self._distance(point) > 0.0]
         other = [
@@ -164,7 +164,7 @@ class Nearest:
         return [found[place] for place in places if place < len(found)]
 
     def _clearly_fails(self, point: Point) -> bool:
-        """Return whether the episodes at a point show a failure, whatever the model makes of its neighbours."""
+        """Return whether the episodes at a point show a failure, regardless of the model."""
         margin, spread = self.evaluator.measured(point)
         return margin + CLEAR * spread < 0.0
 
@@ -241,7 +241,7 @@ class Nearest:
             self._probe(coordinates.point(vector))
 
     def vet(self) -> None:
-        """Run more episodes at the nearest drift that fails by the model, until it stays where it is.
+        """Run more episodes at the nearest drift that fails according to the model, until it no longer moves.
 
         Raise BudgetSpentError.
         """
@@ -289,7 +289,7 @@ class Nearest:
         generate(evaluator.space, seeds.episode_seed(evaluator.seed, "hypothesis", 0), GENERATED, margin)
 
     def _evolve(self) -> None:
-        """Look for nearer failing drifts with CMA-ES, which starts again around each that it finds."""
+        """Search for nearer failing drifts with CMA-ES, which starts again around each one that it finds."""
         draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} evolution")
         missed = 0
         while missed < TRIES:
@@ -332,6 +332,6 @@ def _spread(losses: Sequence[float], typical: float) -> float:
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
-    """Return a vector without its smallest components, if it fails without them by the model."""
+    """Return a vector without its smallest components, if it still fails according to the model."""
     kept: Vector = np.where(np.abs(vector) < TRIFLE * float(np.linalg.norm(vector)), 0.0, vector)
     return kept if model.excess(kept[None, :], errors)[0] >= 0.0 else vector

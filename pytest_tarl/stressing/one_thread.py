@@ -1,6 +1,6 @@
 """Run linear algebra in one thread.
 
-Sums keep their order then, so that a result does not depend on the number of processors. Small matrices are also
+Sums then keep their order, so a result does not depend on the number of processors. Small matrices are also
 faster: beside other processes, threads of BLAS spend most of their time waiting for each other.
 """
 

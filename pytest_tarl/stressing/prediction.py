@@ -1,7 +1,7 @@
 """Predict the nearest failing drift from the drifts tried so far.
 
-A model of the loss and one of the rate of failing episodes tell how probably a drift fails. The drift that promises
-most is tried next, as in Bayesian optimisation.
+A model of the loss and one of the rate of failing episodes estimate the probability that a drift fails. The drift that
+promises most is tried next, as in Bayesian optimisation.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 from pytest_tarl.stressing.one_thread import one_thread
 from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, variance
 
-DRAWN = 400  # drifts that the model compares
+DRAWN = 400  # number of drifts that the model compares
 PART = 0.75  # probability that a direction takes part in one of them
 ROUNDS, SPREAD = (
     5,
     0.15,
 )  # refinements around the best one, each twice finer, and the first standard deviation
-STRETCHED = (0.9, 1.1)  # drifts tried are also compared at these multiples
-RAREST = 0.007  # share of failing episodes in the nominal world, at least
+STRETCHED = (0.9, 1.1)  # drifts that were tried are also compared at these multiples
+RAREST = 0.007  # minimum share of failing episodes in the nominal world
 SCALES = (9.0, 36.0, 144.0)  # variances of the logit, in units of those of the loss; the evidence chooses
 IRRELEVANT = 0.3  # factor on a direction that matters little
 LOGIT = 4.0  # a difference of logits that counts as much as the whole tolerated loss
@@ -105,7 +105,7 @@ class Prediction:
             )
 
     def deeper(self, times: float) -> Prediction:
-        """Return the same model for failures that exceed the guarantee by a multiple of what can be shown."""
+        """Return the same model for failures whose excess over the guarantee is a multiple of what can be shown."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other
@@ -114,8 +114,8 @@ class Prediction:
     def promising(self, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
         """Return the vector with the largest expected gain over a failing drift at the distance `limit`, and the gain.
 
-        The gain is the probability that the drift fails, times by how much it is nearer, in units of the ranges
-        (constrained expected improvement, Gelbart et al. 2014, whose objective is known here).
+        The gain is the probability that the drift fails, times the distance by which it is nearer, in units of the
+        ranges (constrained expected improvement, Gelbart et al. 2014, whose objective is known here).
         """
         room = float(np.sqrt(max(limit**2 - self.coordinates.options, 0.0)))
 
@@ -128,7 +128,7 @@ class Prediction:
 
     @one_thread
     def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
-        """Return the shortest vector up to `limit` that fails even if the model errs by so many standard deviations.
+        """Return the shortest vector up to `limit` that fails even if the model is wrong by some standard deviations.
 
         None if no vector was found.
         """
@@ -144,7 +144,7 @@ class Prediction:
 
     @one_thread
     def failing(self, vectors: Vector) -> Vector:
-        """Return how probably fresh episodes show a failure at each vector."""
+        """Return the probability that fresh episodes show a failure at each vector."""
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         holds = 1.0 - _normal((mean - 1.0 - self.shown.depth) / deviation)
         if self._rates is not None:

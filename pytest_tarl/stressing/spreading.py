@@ -17,7 +17,7 @@ PART = 0.8  # share of the drifts in which a direction takes part
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
     """Yield vectors without end: evenly over all directions, as far as the ends of the ranges, in random signs.
 
-    Lengths are shares of 1 between CLOSEST and 1; a caller multiplies them by the distance that it looks up to.
+    Lengths are between CLOSEST and 1; a caller multiplies them by the largest distance of its search.
     """
     size = len(coordinates.spans)
     bases, shift = _primes(2 * size + 1), draws.random(2 * size + 1)
@@ -33,7 +33,7 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
 
 
 def _inverse(number: int, base: int) -> float:
-    """Return the radical inverse: the digits of a number, mirrored at the point."""
+    """Return the radical inverse: the digits of a number, mirrored at the decimal point."""
     found, unit = 0.0, 1.0 / base
     while number:
         number, digit = divmod(number, base)

@@ -1,6 +1,6 @@
 """Which statements run in failures and in no other episode: episodes of the search are repeated, and record statements.
 
-The repetitions have the same drifts and seeds, so they take the same course. They do not count towards the budget.
+The repetitions have the same drifts and seeds, so they are identical. They do not count towards the budget.
 """
 
 from __future__ import annotations

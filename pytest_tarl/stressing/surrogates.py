@@ -16,10 +16,10 @@ from pytest_tarl.stressing.coordinates import Vector
 Matrix = NDArray[np.float64]
 
 LINEAR, PAIRS = 1.0, 4.0  # prior variances, per unit: of slopes, and of products of two directions
-SINGLE, SINGLE_LENGTH = 0.3, 0.3  # of a smooth function of each single direction, and its length
-LOCAL, LENGTH = 0.15, 0.3  # of local deviations, and their length
-STEPS = 50  # of Newton's method
-CLOSE = 0.05  # change of the logits after which it ends
+SINGLE, SINGLE_LENGTH = 0.3, 0.3  # prior variance and length of a smooth function of each single direction
+LOCAL, LENGTH = 0.15, 0.3  # prior variance and length of local deviations
+STEPS = 50  # maximum number of steps of Newton's method
+CLOSE = 0.05  # smallest change of the logits for which it continues
 LEAP = 4.0  # largest change of a logit in one step
 JITTER = 1e-8
 
