@@ -30,8 +30,11 @@ class Subscription(Protocol):
     def process(self) -> Program:
         """The process that subscribes."""
 
-    def deliver(self, message: Any) -> None:
-        """Take a message; the caller keeps no reference to it. Called outside of all tasks."""
+    def deliver(self, message: Any, origin: Publication | None = None) -> None:
+        """Take a message of a node's publication, or of the world without one. Called outside of all tasks.
+
+        The caller keeps no reference to the message.
+        """
 
 
 class Publication(Protocol):
@@ -221,13 +224,16 @@ class Bus:
             if changed is not None:
                 self._scheduler.later(partial(changed, subscription, joined=True))
         if wants_kept:
-            for message in place.kept.values():
-                self._scheduler.later(partial(self._hand, place, subscription, message))
+            for publication, message in place.kept.items():
+                origin = publication if publication in place.publications else None
+                self._scheduler.later(partial(self._hand, place, subscription, message, origin))
 
-    def hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
+    def hand(
+        self, place: Topic, subscription: Subscription, message: Any, origin: Publication | None = None
+    ) -> None:
         """Deliver a copy of a message to one subscription when the running node waits."""
         message = snapshot(message)
-        self._scheduler.later(lambda: self._hand(place, subscription, message))
+        self._scheduler.later(lambda: self._hand(place, subscription, message, origin))
 
     def disconnect(self, process: Program) -> None:
         """Forget the publications and subscriptions of a process that has ended."""
@@ -244,11 +250,13 @@ class Bus:
             if origin is not None and not _compatible(origin, subscription):
                 continue
             if subscription is last and subscription.message_type in (None, type(message)):
-                subscription.deliver(message)
+                subscription.deliver(message, origin)
             else:
-                self._hand(place, subscription, message)
+                self._hand(place, subscription, message, origin)
 
-    def _hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
+    def _hand(
+        self, place: Topic, subscription: Subscription, message: Any, origin: Publication | None
+    ) -> None:
         try:
             own = snapshot(message, subscription.message_type)
         except FieldError as error:
@@ -256,7 +264,7 @@ class Bus:
                 f"{place.name} carries {type_name(type(message))}, but node {subscription.process.label!r} "
                 f"subscribes to it as {type_name(subscription.message_type)}: {error}."
             ) from error
-        subscription.deliver(own)
+        subscription.deliver(own, origin)
 
 
 def _compatible(publication: Publication, subscription: Subscription) -> bool:

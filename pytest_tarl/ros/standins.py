@@ -57,6 +57,7 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "rclpy.publisher": "rclpy.topics",
     "rclpy.qos": "rclpy.qos",
     "rclpy.service": "rclpy.services",
+    "rclpy.service_introspection": "rclpy.service_introspection",
     "rclpy.subscription": "rclpy.topics",
     "rclpy.task": "rclpy.task",
     "rclpy.time": "rclpy.time",

@@ -56,6 +56,11 @@ class Message:
         self.__setstate__(ros1_wire.deserialize(type(self), data, field_class).__getstate__())
         return self
 
+    @property
+    def _buff(self) -> bytes:
+        """The serialised message, which a subscriber to any type receives on a robot."""
+        return ros1_wire.serialize(self)
+
     def __getstate__(self) -> list[Any]:
         return [getattr(self, name) for name in self.__slots__]
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.rclpy.service_introspection import Introspected
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
 from pytest_tarl.ros.services import Answer, adapted
@@ -21,7 +22,7 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Service:
+class Service(Introspected):
     """Answers requests with `callback(request, response)`."""
 
     def __init__(
@@ -69,7 +70,7 @@ class Service:
         self._directory.remove(self.srv_name, self)
 
 
-class Client:
+class Client(Introspected):
     """Calls a service."""
 
     def __init__(self, node: Node, srv_type: Any, srv_name: str, group: Any) -> None:

@@ -110,7 +110,7 @@ class Subscription:
 
     topic = topic_name
 
-    def deliver(self, message: Any) -> None:
+    def deliver(self, message: Any, _origin: Any = None) -> None:
         """Queue a message, drop the oldest if full, and wake the node's executor."""
         self.queue.append(message)
         self.node.notify()

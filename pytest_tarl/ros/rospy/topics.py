@@ -30,18 +30,21 @@ class AnyMsg:
 class Inbox:
     """All subscriptions of one process to one topic; handles one message at a time, as rospy's thread does."""
 
-    def __init__(self, process: Process, message_type: type | None) -> None:
+    def __init__(self, process: Process, topic: str, message_type: type | None) -> None:
         self.process = process
+        self.topic = topic
         self.message_type = message_type
         self.callbacks: list[Callback] = []
         self.capacity: int | None = None
         self._waiting: deque[Any] = deque()
         self._busy = False
 
-    def deliver(self, message: Any) -> None:
+    def deliver(self, message: Any, origin: Any = None) -> None:
         """Run the callbacks, or queue the message if they are still handling an earlier one."""
         if self.process.ending:
             return
+        if hasattr(type(message), "_connection_header"):
+            message._connection_header = _connection_header(self.topic, type(message), origin)
         if not self._busy:
             self.process.scheduler.spawn(self.process, self._work, message)
             return
@@ -66,6 +69,12 @@ class Inbox:
                 callback(message, arguments)
 
 
+def _connection_header(topic: str, message_type: Any, origin: Any) -> dict[str, str]:
+    """Return what a publisher tells a subscriber about itself and the topic; the world is the node `/world`."""
+    own = getattr(origin, "connection_header", {"callerid": "/world", "latching": "0"})
+    return {**own, "topic": topic, "type": message_type._type, "md5sum": message_type._md5sum}
+
+
 class Inboxes:
     """The inboxes of a process, by topic."""
 
@@ -80,7 +89,7 @@ class Inboxes:
         inbox = self._by_topic.get(topic)
         new = inbox is None
         if inbox is None:
-            inbox = self._by_topic[topic] = Inbox(self._process, message_type)
+            inbox = self._by_topic[topic] = Inbox(self._process, topic, message_type)
         if callback is not None:
             inbox.callbacks.append(callback)
         inbox.capacity = capacity or inbox.capacity
@@ -143,7 +152,13 @@ class Publisher(Topic):
         self.process = self._process
         self._latch = int(latch)
         self._listener = subscriber_listener
+        self._headers = dict(headers or {})
         self._process.bus.advertise(self, self._place)
+
+    @property
+    def connection_header(self) -> dict[str, str]:
+        """Return what subscribers learn about this publisher; its node may get its name after it."""
+        return {**self._headers, "callerid": self._node.name, "latching": str(self._latch)}
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Publish a message, or create one from fields given by position or keyword.
@@ -178,7 +193,7 @@ class Publisher(Topic):
             )
 
     def _publish_to(self, subscription: Any, message: Any) -> None:
-        self._process.bus.hand(self._place, subscription, message)
+        self._process.bus.hand(self._place, subscription, message, self)
 
     def unregister(self) -> None:
         """Stop publishing."""

@@ -474,3 +474,25 @@ def test_logging_uses_python_and_respects_once_and_throttle(
     assert [record.message for record in caplog.records].count("once") == 1
     assert [record.message for record in caplog.records].count("throttled") == 2
     assert {record.name for record in caplog.records} == {"rclpy.talker"}
+
+
+def test_introspection_and_overrides_of_services_and_topics_have_rclpys_names(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from rclpy.qos_overriding_options import QosCallbackResult, QoSOverridingOptions
+        from rclpy.service_introspection import ServiceIntrospectionState
+        from std_srvs.srv import Empty
+        rclpy.init()
+        node = rclpy.create_node("node")
+        client = node.create_client(Empty, "empty")
+        client.configure_introspection(node.get_clock(), 10, ServiceIntrospectionState.METADATA)
+        accepted = QosCallbackResult(successful=True)
+        try:
+            client.configure_introspection(node.get_clock(), 10, "metadata")
+        except TypeError as error:
+            refused = str(error)
+        rclpy.spin(node)
+    """)
+    namespace = ros.namespace  # type: ignore[attr-defined]
+    assert namespace["accepted"].successful
+    assert "not a ServiceIntrospectionState" in namespace["refused"]

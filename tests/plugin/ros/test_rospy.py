@@ -674,3 +674,54 @@ def test_transformations_convert_quaternions_to_angles_and_back(start: Start) ->
         angles = euler_from_quaternion(quaternion_from_euler(0.1, -0.7, 2.5))
     """)
     assert ros.namespace["angles"] == pytest.approx((0.1, -0.7, 2.5))
+
+
+def test_messages_name_their_publisher_in_the_connection_header(start: Start) -> None:
+    talker = """
+        import rospy
+        from std_msgs.msg import String
+        out = rospy.Publisher("/chatter", String, queue_size=1, latch=True, headers={"cookies": "oreo"})
+        rospy.init_node("talker")
+        out.publish("a")
+        rospy.spin()
+    """
+    listener = """
+        import rospy
+        from std_msgs.msg import String
+        heard = []
+        out = rospy.Publisher("/chatter", String, queue_size=1)
+        def hear(message):
+            header = message._connection_header
+            heard.append((message.data, header["callerid"], header.get("cookies"), header["topic"], header["latching"]))
+        rospy.Subscriber("/chatter", String, hear)
+        rospy.init_node("listener")
+        out.publish("b")
+        rospy.spin()
+    """
+    ros = start(talker)
+    start(listener, ros=ros)
+    namespace = ros.namespace  # type: ignore[attr-defined]
+    ros.step(0.1)
+    ros.bus.publish("/chatter", message_type("std_msgs/String")("c"))
+    ros.step(0.1)
+    assert namespace["heard"] == [
+        ("a", "/talker", "oreo", "/chatter", "1"),
+        ("b", "/listener", None, "/chatter", "0"),
+        ("c", "/world", None, "/chatter", "0"),
+    ]
+
+
+def test_a_subscriber_to_any_type_learns_the_type_and_reads_the_bytes(start: Start) -> None:
+    ros = start("""
+        import roslib.message, rospy
+        heard = []
+        def hear(message):
+            kind = roslib.message.get_message_class(message._connection_header["type"])
+            heard.append(kind().deserialize(message._buff).data)
+        rospy.init_node("listener")
+        rospy.Subscriber("/any", rospy.AnyMsg, hear)
+        rospy.spin()
+    """)
+    ros.bus.publish("/any", message_type("std_msgs/Float64")(1.5))
+    ros.bus.publish("/any", message_type("std_msgs/String")("a"))
+    assert ros.namespace["heard"] == [1.5, "a"]  # type: ignore[attr-defined]
