@@ -12,6 +12,7 @@ from typing import Any
 
 from pytest_tarl.ros import keyboard
 from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
 REAL_MONOTONIC = time.monotonic
@@ -39,7 +40,10 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
     for owner, name, real in saved:
         virtual = (lambda: scheduler.time) if name.endswith("_ns") else (lambda: seconds(scheduler.time))
         waiting = {"sleep": _sleep, "select": _select}.get(name)
-        setattr(owner, name, _clock(real, virtual) if waiting is None else waiting(real, scheduler))
+        if waiting is not None:
+            setattr(owner, name, waiting(real, scheduler))
+        else:
+            setattr(owner, name, _clock(real, virtual, question=owner is time))
     try:
         yield
     finally:
@@ -47,9 +51,15 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
             setattr(owner, name, real)
 
 
-def _clock(real: Callable[[], Any], virtual: Callable[[], Any]) -> Callable[[], Any]:
+def _clock(real: Callable[[], Any], virtual: Callable[[], Any], *, question: bool) -> Callable[[], Any]:
+    """Return a clock that nodes read; it is no `question` if the standard library reads it in order to wait."""
+
     def read() -> Any:
-        return virtual() if running_task() is not None else real()
+        if running_task() is None:
+            return real()
+        if question:
+            asked()
+        return virtual()
 
     return read
 
@@ -62,6 +72,8 @@ def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any
         if task is None:
             return real(rlist, wlist, xlist, timeout)
         until = None if timeout is None else scheduler.time + nanoseconds(timeout)
+        if until is not None and scheduler.time >= until:
+            asked()
         typed, others, terminal = keyboard.split(rlist)
         while True:
             ready = real(others, wlist, xlist, 0) if others or wlist or xlist else ([], [], [])
@@ -86,6 +98,8 @@ def _sleep(real: Callable[[float], None], scheduler: Scheduler) -> Callable[[flo
             return
         if duration < 0:
             raise ValueError("sleep length must be non-negative")
+        if duration == 0:
+            asked()
         until = scheduler.time + nanoseconds(duration)
         while scheduler.time < until and not task.process.ending:
             scheduler.wait(until)

@@ -18,6 +18,8 @@ from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
+PATIENCE = 500  # questions at one instant before a task counts as polling, see polling.py
+
 
 class Program(Protocol):
     """The interface of a task's process that the scheduler needs; see `Process`."""
@@ -46,7 +48,7 @@ class Program(Protocol):
 class Task:
     """One thread of control of a process: its main program, a running callback, or a timer."""
 
-    __slots__ = ("args", "done", "function", "parked", "process", "ticket", "worker")
+    __slots__ = ("args", "done", "function", "parked", "patience", "process", "ticket", "worker")
 
     def __init__(self, process: Program, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
         self.process = process
@@ -54,6 +56,7 @@ class Task:
         self.args = args
         self.ticket = 0  # grows at every resumption; heap entries with an older ticket are stale
         self.parked = False
+        self.patience = PATIENCE  # questions left until it has to wait
         self.done = False
         self.worker: Worker | None = None
 
@@ -136,6 +139,8 @@ class Scheduler:
         if task is None or worker.parent is None:
             raise RuntimeError("only a task can wait")
         task.parked = True
+        if until is None or until > self.time:
+            task.patience = PATIENCE
         if until is not None:
             self._sequence += 1
             heappush(self._sleeping, (until, self._sequence, task, task.ticket))

@@ -14,6 +14,7 @@ from typing import Any
 
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
 _OWN = str(Path(__file__).parents[1])  # threads of this package stay threads
@@ -193,6 +194,9 @@ def _join(real: Callable[..., None]) -> Callable[..., None]:
 def _is_alive(real: Callable[[threading.Thread], bool]) -> Callable[[threading.Thread], bool]:
     def is_alive(thread: threading.Thread) -> bool:
         task: Task | None = vars(thread).get("_tarl_task")
-        return real(thread) if task is None else not task.done
+        if task is None:
+            return real(thread)
+        asked()
+        return not task.done
 
     return is_alive

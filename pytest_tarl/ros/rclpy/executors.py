@@ -9,6 +9,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import Context
@@ -127,6 +128,8 @@ class Executor:
         work = self._next_work(_until(self._clock.time, timeout_sec), None)
         if work is not None:
             self._run(work)
+        elif timeout_sec is not None and timeout_sec <= 0:
+            asked()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, or the timeout has passed."""

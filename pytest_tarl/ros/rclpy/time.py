@@ -9,6 +9,7 @@ from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.scheduler import Scheduler
 
@@ -226,6 +227,7 @@ class Clock:
 
     def now(self) -> Time:
         """Return the current time."""
+        asked()
         return Time(nanoseconds=self._scheduler.time, clock_type=self.clock_type)
 
     def create_jump_callback(

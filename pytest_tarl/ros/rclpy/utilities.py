@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from pytest_tarl.ros import names
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.rclpy.context import Context, this_context
 
@@ -24,7 +25,9 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 def ok(*, context: Any = None) -> bool:
     """Return whether ROS is up."""
-    return this_context("ok").ok()
+    own = this_context("ok")
+    asked()
+    return own.ok()
 
 
 def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:

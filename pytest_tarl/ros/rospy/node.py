@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pytest_tarl.ros import names
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInitException
 from pytest_tarl.ros.scheduler import Task, running_task
@@ -115,7 +116,9 @@ def init_node(
 
 def is_shutdown() -> bool:
     """Return whether the node is being shut down."""
-    return current_process("rospy.is_shutdown").ending
+    process = current_process("rospy.is_shutdown")
+    asked()
+    return process.ending
 
 
 def signal_shutdown(reason: str) -> None:

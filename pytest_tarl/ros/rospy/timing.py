@@ -12,6 +12,7 @@ from typing import Any
 from pytest_tarl.ros.clock import NANOSECONDS, seconds
 from pytest_tarl.ros.clock import nanoseconds as to_nanoseconds
 from pytest_tarl.ros.messages import times
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rospy.exceptions import ROSInterruptException
 from pytest_tarl.ros.rospy.node import RospyNode, this_node
 
@@ -48,6 +49,7 @@ def get_rostime() -> Time:
     """Return the current time. Raises ROSInitException before init_node."""
     node = this_node("get_rostime")
     node.require()
+    asked()
     return Time(*divmod(node.process.scheduler.time, NANOSECONDS))
 
 
@@ -55,6 +57,7 @@ def get_time() -> float:
     """Return the current time in float seconds."""
     node = this_node("get_time")
     node.require()
+    asked()
     return seconds(node.process.scheduler.time)
 
 
@@ -72,6 +75,8 @@ def _sleep_until(node: RospyNode, until: int) -> None:
         process.refuse_to_wait()
     if process.ending and node.in_hooks:
         return  # virtual time no longer moves then
+    if until <= process.scheduler.time:
+        asked()
     if until >= process.scheduler.time and not process.ending:
         process.scheduler.wait(until)
     if process.ending:

@@ -460,9 +460,9 @@ def test_node_that_never_waits_is_stopped_with_the_line(start: Start) -> None:
             import rospy
             rospy.init_node("busy")
             def look():
-                while not rospy.is_shutdown():
+                while rospy.get_name() == "/busy":
                     try:
-                        rospy.get_time()
+                        rospy.resolve_name("a")
                     except Exception:
                         pass
             look()
@@ -470,21 +470,6 @@ def test_node_that_never_waits_is_stopped_with_the_line(start: Start) -> None:
             watchdog_limit=0.2,
         )
     assert "Rate.sleep()" in str(caught.value)
-
-
-def test_loop_that_sleeps_for_zero_seconds_is_stopped_too(start: Start) -> None:
-    ros = start(
-        """
-        import rospy
-        rospy.init_node("busy")
-        rospy.sleep(1)
-        while True:
-            rospy.sleep(0)
-    """,
-        watchdog_limit=0.2,
-    )
-    with pytest.raises(NodeError, match=r"'/busy' never waits.*node\.py, line [56]"):
-        ros.step(2.0)
 
 
 def test_errors_name_missing_apis(start: Start) -> None:
