@@ -10,6 +10,7 @@ from pytest_tarl.ros.actionlib.protocol import TERMINAL, ActionServers, ActionTy
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages import message_type
 from pytest_tarl.ros.missing import unsupported
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Time, get_rostime
 from pytest_tarl.ros.scheduler import Task, current_task
@@ -101,6 +102,7 @@ class SimpleActionClient:
 
     def get_state(self) -> int:
         """Return the goal's state as a number of actionlib_msgs/GoalStatus; LOST without a goal."""
+        asked()
         if self._goal_id is None:
             return protocol.LOST
         simple = {protocol.PREEMPTING: protocol.ACTIVE, protocol.RECALLING: protocol.PENDING}

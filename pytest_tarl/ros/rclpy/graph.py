@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages.snapshot import type_name
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import current_task
 
 if TYPE_CHECKING:
@@ -49,10 +50,12 @@ class NodeGraph:
 
     def count_publishers(self, topic_name: str) -> int:
         """Return the number of publishers on a topic. The simulated world counts as one."""
+        asked()
         return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).publications)
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return the number of subscriptions to a topic. The simulated world counts as one."""
+        asked()
         return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).subscriptions)
 
     def count_services(self, service_name: str) -> int:

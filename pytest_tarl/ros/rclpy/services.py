@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rclpy.service_introspection import Introspected
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
@@ -85,6 +86,7 @@ class Client(Introspected):
 
     def service_is_ready(self) -> bool:
         """Return whether the service is available."""
+        asked()
         return self.srv_name in self._directory
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:

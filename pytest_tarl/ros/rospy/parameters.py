@@ -6,6 +6,7 @@ from typing import Any
 
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.parameter_server import ParameterServer, keys_of
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.rospy.node import RospyNode
 
@@ -19,6 +20,7 @@ def _server(api: str) -> tuple[RospyNode, ParameterServer]:
 
 def get_param(param_name: str, default: Any = _NOTHING) -> Any:
     """Return a parameter. Raises KeyError if it is not set and there is no default."""
+    asked()
     node, server = _server("get_param")
     value = server.get(node.resolve(param_name), _NOTHING)
     if value is not _NOTHING:
@@ -39,6 +41,7 @@ def set_param(param_name: str, param_value: Any) -> None:
 
 def has_param(param_name: str) -> bool:
     """Return whether a parameter is set."""
+    asked()
     node, server = _server("has_param")
     return server.get(node.resolve(param_name), _NOTHING) is not _NOTHING
 
@@ -52,6 +55,7 @@ def delete_param(param_name: str) -> None:
 
 def search_param(param_name: str) -> str | None:
     """Return the full name of the nearest parameter of that name, from the node's own namespace upwards."""
+    asked()
     node, server = _server("search_param")
     path = keys_of(node.name)
     for length in range(len(path), -1, -1):

@@ -33,7 +33,7 @@ ended = None
 """
 THREAD = """
 done = []
-thread = threading.Thread(target=lambda: (rospy.sleep(2), done.append(1)))
+thread = threading.Thread(target=lambda: (rospy.sleep(2), done.append(1), rospy.set_param('/done', True)))
 thread.start()
 """
 SPIN_ONCE = """
@@ -48,6 +48,8 @@ WAITS = {  # a loop that ends after two seconds
     "time.perf_counter": "end = time.perf_counter() + 2\nwhile time.perf_counter() < end: out.publish(1.0)",
     "rospy.sleep(0)": f"{THREAD}while not done: rospy.sleep(0)",
     "time.sleep(0)": f"{THREAD}while not done: time.sleep(0)",
+    "has_param": f"{THREAD}while not rospy.has_param('/done'): pass",
+    "get_param": f"{THREAD}while not rospy.get_param('/done', False): pass",
     "is_alive": f"{THREAD}while thread.is_alive(): pass",
     "select": f"{THREAD}while not done: select.select([], [], [], 0)",
 }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages.snapshot import snapshot
+from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rclpy.action.handles import ActionDirectory, ClientGoalHandle, goal_key
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import current_task
@@ -33,6 +34,7 @@ class ActionClient:
 
     def server_is_ready(self) -> bool:
         """Return whether the action has a server."""
+        asked()
         return self._name in self._directory.servers
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
