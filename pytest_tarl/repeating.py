@@ -357,7 +357,9 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     broken = [report for report in failed if report.when != "call" or not mission]
     if episode.trace is None:
         lost = "\n".join(report.longreprtext for report in broken)
-        raise TarlError(lost or "The test does not use the fixture `tarl`: take it as an argument.")
+        raise TarlError(
+            lost or "The test ended without its fixture `tarl`: do not give the argument a default."
+        )
     return EpisodeRun(
         plan=episode.plan,
         trace=episode.trace,

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
+from unittest import TestCase
 
 import pytest
 
@@ -141,7 +142,7 @@ class TarlSession:
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":
             return declared or self.options.drift == AS_WRITTEN
-        return scenario(item) == self.options.drift or (declared and not _takes_drift(item))
+        return scenario(item) == self.options.drift or (declared and not _takes(item, "tarl_drift"))
 
     def _check_drift(self, marked: Sequence[pytest.Item]) -> None:
         known = sorted({name for item in marked for name in _drift_names(item)})
@@ -247,8 +248,10 @@ class TarlSession:
         marked = designated(item)
         if marked is None:
             raise SettingsError(f"{item.nodeid} has no tarl marker.")
+        if not _takes(item, "tarl"):
+            raise SettingsError(f"The test does not use the fixture `tarl`: {_how_to_take(item)}.")
         drifted = self.options.mode != "record" or self.options.drift is not None
-        if marked.drifts and drifted and not _takes_drift(item):
+        if marked.drifts and drifted and not _takes(item, "tarl_drift"):
             raise SettingsError(
                 "the marker declares drifts, but the test does not use the fixture `tarl_drift`, so they have no "
                 "effect: add the argument `tarl_drift` and build the world with it."
@@ -423,13 +426,23 @@ def _has_space(item: pytest.Item) -> bool:
     drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
     if not isinstance(drifts, Mapping):
         return True  # an invalid marker is reported when the test runs
-    if _takes_drift(item):
+    if _takes(item, "tarl_drift"):
         return _is_space(drifts.get(scenario(item)))
     return any(map(_is_space, drifts.values()))
 
 
-def _takes_drift(item: pytest.Item) -> bool:
-    return "tarl_drift" in getattr(item, "fixturenames", ())
+def _takes(item: pytest.Item, fixture: str) -> bool:
+    return fixture in getattr(item, "fixturenames", ())
+
+
+def _how_to_take(item: pytest.Function) -> str:
+    """Say how a test takes the fixture; methods of unittest.TestCase have no arguments."""
+    if item.cls is None or not issubclass(item.cls, TestCase):
+        return "take it as an argument"
+    return (
+        f"a method of unittest.TestCase cannot take it as an argument, so give {item.cls.__name__} a method with "
+        "@pytest.fixture(autouse=True) that takes it and stores it in self"
+    )
 
 
 def _phase(item: pytest.Item, when: Literal["setup"]) -> pytest.TestReport:

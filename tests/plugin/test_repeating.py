@@ -69,6 +69,31 @@ def test_an_error_in_teardown_is_not_a_failed_mission(tank: pytest.Pytester) -> 
     told.stdout.fnmatch_lines(["*failed outside the mission*", "*left open*"])
 
 
+def test_a_test_without_the_fixture_tarl_is_refused_before_it_runs(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "(tarl, tarl_drift):", "():\n    print('ran')")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["The test does not use the fixture `tarl`: take it as an argument."])
+    told.stdout.no_fnmatch_line("*ran*")
+
+
+def test_a_method_of_unittest_is_told_how_to_take_the_fixture(tank: pytest.Pytester) -> None:
+    tank.path.joinpath("test_case.py").write_text(
+        """
+import unittest
+import pytest
+from pytest_tarl import Sensor
+
+class TestTank(unittest.TestCase):
+    @pytest.mark.tarl(nodes=["keeper.py"], sensors=[Sensor("level", topic="/level", field="data", bins=4)])
+    def test_fills(self, tarl=None):
+        pass
+"""
+    )
+    told = tank.runpytest("--tarl-record", "test_case.py")
+    told.stdout.fnmatch_lines(["*unittest.TestCase cannot take it as an argument*TestTank*autouse=True*"])
+
+
 @pytest.mark.parametrize("flags", [(), ("--tarl-drift=clogged",)])
 def test_drifts_without_the_fixture_tarl_drift_are_refused(
     tank: pytest.Pytester, flags: tuple[str, ...]
