@@ -65,6 +65,9 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "rclpy.utilities": "rclpy.utilities",
     "image_geometry": "image_geometry",
     "image_geometry.cameramodels": "image_geometry",
+    "interactive_markers": "interactive_markers",
+    "interactive_markers.interactive_marker_server": "interactive_markers.server",
+    "interactive_markers.menu_handler": "interactive_markers.menu",
     "message_filters": "message_filters",
     "actionlib": "actionlib",
     "actionlib.simple_action_client": "actionlib.client",
@@ -128,7 +131,8 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
 }
 TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
-            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play")  # fmt: skip
+            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
+            "interactive_markers")  # fmt: skip
 MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 STANDALONE = (

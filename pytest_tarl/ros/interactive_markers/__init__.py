@@ -1,0 +1,8 @@
+"""interactive_markers for both ROS generations: markers that a user drags or whose menu a user opens."""
+
+from __future__ import annotations
+
+from pytest_tarl.ros.interactive_markers.menu import MenuHandler
+from pytest_tarl.ros.interactive_markers.server import InteractiveMarkerServer
+
+__all__ = ["InteractiveMarkerServer", "MenuHandler"]
