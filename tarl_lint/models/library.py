@@ -231,12 +231,20 @@ def _call_method(
     if name in catalog.WAITING_METHODS and not base.consts:
         ctx.ops.wait(ctx, frame)
     if name in catalog.MUTATORS and not base.consts:
-        containers.mutate(ctx, base, name, arguments, frame, call)
-        given_back = name == "setdefault" or (name == "send" and kind == "sequence")
-        return heap.read_any(ctx, target) if given_back and target is not None else UNKNOWN
+        return _store(ctx, target, Invocation(name, base, arguments, frame, call))
     if name in READERS and base.pts:
         return READERS[name](ctx, Invocation(name, base, arguments, frame, call))
     return _unknown_method(ctx, base, name, arguments, frame, call)
+
+
+def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
+    """Store arguments in an object; an object of a library may also call them, such as callbacks for a marker."""
+    kind = target.kind if target is not None else ""
+    if kind == "lib":
+        callables.call_back(ctx, it.arguments, it.frame, it.call)
+    containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
+    given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
+    return heap.read_any(ctx, target) if given_back and target is not None else UNKNOWN
 
 
 def _unknown_method(
