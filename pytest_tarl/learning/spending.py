@@ -34,8 +34,8 @@ class Standing:
 def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
     """Return the looks of every comparison, whose first looks together need at most the total.
 
-    They are those of a comparison with the even share, and one more after MOST times as many episodes, if the others
-    can still have their first look.
+    These are the looks of a comparison that gets an even share. One more look follows after MOST times as many
+    episodes, provided that every other comparison can still have its first look.
     """
     even = total // comparisons
     ends = [look.episodes for look in planned(even, looks)]

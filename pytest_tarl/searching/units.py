@@ -43,7 +43,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add a unit on its chart after each unit whose constant has one; a zero moves on its chart only."""
+    """After each unit whose constant has a chart, add one that moves on the chart; for a zero, it is the only unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])

@@ -70,7 +70,7 @@ def test_paths_of_tests_and_examples_are_recognised(path, aside):
     assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
 
 
-def test_the_map_names_carried_and_deciding_topics_of_each_published_one():
+def test_the_map_lists_for_each_published_topic_the_topics_that_it_carries_and_that_decide_it():
     flows = [
         flow("/scan", "/cmd", 1),
         flow("/odom", "/cmd", 2),

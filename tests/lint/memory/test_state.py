@@ -287,7 +287,7 @@ def test_reads_are_unchanged_until_a_value_a_flag_or_an_answer_changes(store, ob
     assert not unchanged(reads, found, stored, store, Graph())
 
 
-def test_reads_change_when_a_source_reaches_a_node_or_a_carrier_passes_on_more(store):
+def test_reads_change_if_a_new_source_reaches_a_node_or_a_carrier_gets_more_data(store):
     graph = Graph()
     assert same(store, Reads(unreached={3}), graph)
     graph.live.add(3)

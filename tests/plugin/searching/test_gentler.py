@@ -79,7 +79,7 @@ def test_other_numbers_are_choices_of_an_author(value: float) -> None:
     assert not of_nature(replace(operand(4, "True", 1.0), value=True))
 
 
-def test_in_place_of_gravity_the_constant_beside_it_is_corrected_in_small_steps() -> None:
+def test_another_constant_of_the_function_is_corrected_before_gravity() -> None:
     search = searched((PADS, GRAVITY, CRUISE), {GRAVITY: (1.8, 2.5), PADS: (0.69, 0.78)})
     assert order(search, 2) == [PADS, GRAVITY]
 
