@@ -47,7 +47,10 @@ def interrupted(folder: Path, after: float, how: signal.Signals, *arguments: str
     one.send_signal(how)
     _, err = one.communicate()
     assert one.returncode in (0, CTRL_C, -signal.SIGINT, -signal.SIGKILL)
-    assert one.returncode == -signal.SIGINT or b"Traceback" not in err  # it was still importing
+    importing = (
+        one.returncode == -signal.SIGINT or b"_get_module_lock" in err
+    )  # Python may drop the signal there
+    assert importing or b"Traceback" not in err
 
 
 def missions(data: Path) -> list[tuple[object, ...]]:
