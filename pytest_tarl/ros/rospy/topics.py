@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from io import BytesIO
 from typing import Any
 
 from pytest_tarl.ros.clock import nanoseconds
@@ -43,6 +44,8 @@ class Inbox:
         """Run the callbacks, or queue the message if they are still handling an earlier one."""
         if self.process.ending:
             return
+        if self.message_type is None and (kind := _with_bytes(type(message))) is not type(message):
+            message.__class__ = kind
         if hasattr(type(message), "_connection_header"):
             message._connection_header = _connection_header(self.topic, type(message), origin)
         if not self._busy:
@@ -67,6 +70,28 @@ class Inbox:
                 callback(message)
             else:
                 callback(message, arguments)
+
+
+_WITH_BYTES: dict[Any, Any] = {}  # class of an installed ROS → class of `_with_bytes`
+
+
+def _with_bytes(message_type: Any) -> Any:
+    """Return a class that also has the serialised message, which a subscriber to any type reads.
+
+    Classes of an installed ROS 1 lack it; others are returned as they are.
+    """
+    if hasattr(message_type, "_buff") or not hasattr(message_type, "serialize"):
+        return message_type
+
+    def serialised(message: Any) -> bytes:
+        written = BytesIO()
+        message.serialize(written)
+        return written.getvalue()
+
+    if message_type not in _WITH_BYTES:
+        namespace = {"__slots__": (), "_buff": property(serialised), "__module__": message_type.__module__}
+        _WITH_BYTES[message_type] = type(message_type.__name__, (message_type,), namespace)
+    return _WITH_BYTES[message_type]
 
 
 def _connection_header(topic: str, message_type: Any, origin: Any) -> dict[str, str]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.ros import message_type
 from tests.plugin.ros.conftest import Start, heard
 
@@ -106,3 +107,9 @@ spin()
     assert (list(update.erases), list(update.markers)) == (["goal"], [])
     full: Any = ros.bus.latest("/arm/update_full")
     assert not full.markers
+
+
+@pytest.mark.parametrize("module", ["interactive_markers", "interactive_markers.interactive_marker_server"])
+def test_a_name_that_the_stand_in_lacks_is_refused_with_a_sentence(module: str, start: Start) -> None:
+    with pytest.raises(UnsupportedApiError, match=rf"{module}\.InteractiveMarkerClient"):
+        start(f"import rospy, {module}\n{module}.InteractiveMarkerClient")
