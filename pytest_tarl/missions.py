@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -72,6 +73,7 @@ class Mission:
     tell: Tell  # prints a sentence at once if there is a terminal
     others: tuple[Other, ...] = ()
     stage: Stage | None = None  # the part of the comparison to run, if it shares episodes with others
+    node: str = ""  # pytest's node id, with the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
         """Run the mode. A comparison returns its result unreported: call `told` to write and report it.
@@ -99,9 +101,12 @@ class Mission:
 
     @property
     def target(self) -> str:
-        """Return the test as a pytest argument for the folder where pytest was started, without parameters."""
+        """Return the test as the argument of pytest that records it, for the folder where pytest was started."""
+        return self._from_start(self.test)
+
+    def _from_start(self, node: str) -> str:
         folder = os.path.relpath(self.root, self.started).replace(os.sep, "/")
-        return f"{'' if folder == '.' else f'{folder}/'}{self.test.partition('[')[0]}"
+        return node if folder == "." else f"{folder}/{node}"
 
     @property
     def tarl(self) -> Path:
@@ -242,7 +247,8 @@ class Mission:
             *self._design_lost(fixture),
         )
         flags = self.options.flags if self.stage is None else self.options.alone(episodes["online"]).flags
-        told = replace(comparison, target=self.target, flags=flags, notes=notes)
+        node = self._from_start(self.node) if "[" in self.test else ""
+        told = replace(comparison, target=self.target, node=node, flags=flags, notes=notes)
         name = f"{slug(self.test)}-{slug(self.drift or 'online')}"
         return Compared(name, self.root, self.width, told, online, episodes, interrupted)
 
@@ -320,13 +326,13 @@ class Mission:
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():
-            command = f"pytest {self.target} --tarl-record"
+            command = f"pytest {shlex.quote(self.target)} --tarl-record"
             raise NoFixtureError(f"{self.test} has no recorded utility yet: run `{command}` first.")
         fixture = fixtures.load(self.fixture_path)
         if [*map(declared, fixture.sensors)] != [*map(declared, self.designation.sensors)]:
             raise FixtureError(
                 f"The sensors of {self.test} differ from those of its recording: record it again with "
-                f"`pytest {self.test} --tarl-record`."
+                f"`pytest {shlex.quote(self.test)} --tarl-record`."
             )
         return fixture
 

@@ -350,7 +350,8 @@ class Comparison:
     lost: Mapping[str, tuple[Cell, ...]] = field(
         default_factory=dict
     )  # part → cells where deployed earns less
-    target: str = ""  # the test as a pytest argument
+    target: str = ""  # the test as the argument of pytest that records it
+    node: str = ""  # the same for a comparison, if the test has parameters besides its scenario
     flags: tuple[str, ...] = ()  # non-default options of the run
     changes: Mapping[Cell, float] = field(default_factory=dict)  # difference between the worlds, by cell
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`

@@ -270,6 +270,7 @@ class TarlSession:
             tell=self._say,
             others=self._others(item),
             stage=stage,
+            node=item.nodeid,
         )
         self._resumable = self._resumable or ResumableRun()
         kept = self._resumable.test(item, marked, self.options, self._say)

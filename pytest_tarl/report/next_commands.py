@@ -13,7 +13,8 @@ def command(comparison: Comparison, *flags: str) -> str:
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     seed = ["--tarl-seed", str(comparison.seed)] if comparison.seed else []
     options = [*drift, *seed, *comparison.flags, *flags]
-    return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-online", *options])
+    test = comparison.node or comparison.target or comparison.test
+    return shlex.join(["pytest", test, "--tarl-online", *options])
 
 
 def recording(comparison: Comparison) -> str:

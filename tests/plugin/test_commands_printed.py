@@ -43,6 +43,25 @@ def test_the_command_for_a_missing_recording_can_be_pasted(nested: pytest.Pytest
     assert "run `pytest tank/test_tank.py::test_fills --tarl-record` first" in result.stdout.str()
 
 
+@pytest.mark.parametrize("position", ["before", "after"])
+def test_printed_commands_keep_the_parameters_of_the_test(nested: pytest.Pytester, position: str) -> None:
+    arguments = "(tarl, tarl_drift, size)" if position == "after" else "(size, tarl, tarl_drift)"
+    two = TEST.replace(
+        "@pytest.mark.tarl(", '@pytest.mark.parametrize("size", ["a b", 2])\n@pytest.mark.tarl('
+    )
+    nested.path.joinpath("tank", "test_tank.py").write_text(two.replace("(tarl, tarl_drift)", arguments))
+    one = "tank/test_tank.py::test_fills[a b]"
+    missing = nested.runpytest("tank", "--tarl-online", "--tarl-strict")
+    assert f"run `pytest '{one}' --tarl-record` first" in missing.stdout.str()
+    nested.runpytest(one, "--tarl-record", "--tarl-episodes=16").assert_outcomes(passed=1)
+    result = nested.runpytest("tank", "--tarl-online", "--tarl-episodes=12", "-k", "not 2")
+    again = printed(result, "again")
+    assert "a b" in again[1]
+    repeated = nested.runpytest(*again[1:])
+    repeated.assert_outcomes(failed=1)
+    assert printed(repeated, "again")[1] == again[1]
+
+
 @pytest.mark.parametrize("flag", ["--tarl-drift=clogged", "--tarl-strict", "--tarl-search=sweep"])
 def test_a_flag_without_a_mode_is_refused(nested: pytest.Pytester, flag: str) -> None:
     result = nested.runpytest("tank", flag)
