@@ -18,6 +18,8 @@ does not report
 - flags that are set to constants,
 - checks before the lock is taken (whether a value exists, its length, whether to return),
 - methods of objects that may do their own locking,
+- locks that are only taken if they are free (`acquire(blocking=False)`): they keep an activity from running twice,
+- coroutines that an event loop runs later,
 - code that runs before the threads start,
 - callbacks of which only one is registered, in opposite branches of an `if`.
 
@@ -169,7 +171,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
             continue
         told: set[tuple[str, str]] = set()
         for use, spot in sorted(unguarded(uses), key=lambda found: (found[1].path, found[1].pos)):
-            others = [u for u in uses if u.locks and not never_both(evidence, use.thread, u.thread)]
+            others = [u for u in uses if u.guards and not never_both(evidence, use.thread, u.thread)]
             other = _conflict(use, [u for u in others if harm.between(state, use, u)])
             if other is None or (spot.path, spot.function) in told:
                 continue
@@ -180,12 +182,12 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
     """Return an access in another thread that holds a lock, if at least one of the two accesses writes."""
-    others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
+    others = (u for u in uses if u.thread != use.thread and (u.writes or use.writes))
     return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 
 
 def _message(use: Use, other: Use) -> str:
-    lock, does = min(other.locks), "writes" if other.writes else "reads"
+    lock, does = min(other.guards), "writes" if other.writes else "reads"
     there = f"{other.spots[0].function} holds in another thread when it {does} it"
     return f"{use.name} is {_done(use)} without {lock}, which {there}"
 

@@ -264,3 +264,127 @@ def test_callbacks_registered_in_opposite_branches_do_not_race(tmp_path, other, 
     )
     result = run(Options(paths=(tmp_path,), cache=False), Config(select=("TARL201",)))
     assert len(result.findings) == count
+
+
+ACTIVITY = """
+    import threading
+    import rospy
+    from std_msgs.msg import Float64
+    class Node:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.seen = {{}}
+            self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+            rospy.Subscriber("/in", Float64, self.on_value)
+            rospy.Timer(rospy.Duration(0.1), self.on_timer)
+        def on_value(self, msg):
+            if not self.lock.acquire({asked}):
+                return
+            try:
+                self.update(msg)
+            finally:
+                self.lock.release()
+        def update(self, msg):
+            self.seen.pop(msg.data, None)
+        def on_timer(self, event):
+            self.pub.publish(sum(self.seen.values()))
+    Node()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [("blocking=False", 0), ("False", 0), ("blocking=True", 1), ("", 1), ("timeout=1.0", 1)],
+)
+def test_a_lock_that_is_taken_only_if_it_is_free_guards_no_state(asked, found):
+    assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
+
+
+def test_a_lock_that_one_function_tries_and_another_waits_for_guards_state():
+    waits = "with self.lock:\n                self.pub.publish(sum(self.seen.values()))"
+    both = ACTIVITY.format(asked="False").replace("self.pub.publish(sum(self.seen.values()))", waits)
+    assert lines("TARL201", both) == []
+    reset = 'rospy.Subscriber("/reset", Float64, self.on_reset)\n            rospy.Timer('
+    cleared = both.replace("rospy.Timer(", reset).replace("def update(self, msg)", "def on_reset(self, msg)")
+    assert len(lines("TARL201", cleared.replace("self.seen.pop(msg.data, None)", "self.seen.clear()"))) == 1
+
+
+COROUTINE = """
+    import asyncio
+    import threading
+    import rospy
+    from std_msgs.msg import Float64
+    class Node:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.loop = asyncio.new_event_loop()
+            self.values = []
+            self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+            rospy.Subscriber("/in", Float64, self.on_value)
+            rospy.Timer(rospy.Duration(0.1), self.on_timer)
+        def on_value(self, msg):
+            with self.lock:
+                {runs}
+        async def keep(self, msg):
+            self.values.append(msg.data)
+        async def pass_on(self, msg):
+            await self.keep(msg)
+        def on_timer(self, event):
+            self.pub.publish(sum(self.values) / len(self.values))
+    Node()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("runs", "found"),
+    [
+        ("asyncio.run_coroutine_threadsafe(self.keep(msg), self.loop)", 0),
+        ("asyncio.run_coroutine_threadsafe(self.pass_on(msg), self.loop)", 0),
+        ("self.loop.create_task(self.keep(msg))", 0),
+        ("asyncio.run(self.keep(msg))", 1),
+        ("asyncio.run(self.pass_on(msg))", 1),
+        ("self.loop.run_until_complete(self.keep(msg))", 1),
+    ],
+)
+def test_a_coroutine_that_runs_later_does_not_hold_the_lock_of_its_caller(runs, found):
+    assert len(lines("TARL201", COROUTINE.format(runs=runs))) == found
+
+
+MIXIN = """
+    class Sender:
+        def send(self, value):
+            with self.lock:
+                self.queue.put(value)
+        def flush(self):
+            self.queue.put(None)
+            self.queue.put(None)
+"""
+
+MIXED = """
+    import threading
+    import rospy
+    from queue import Queue
+    from std_msgs.msg import Float64
+    from a import Sender
+    class Node(Sender):
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.queue: {annotation} = None
+            self.queue = {made}
+            rospy.Subscriber("/in", Float64, self.on_value)
+            rospy.Timer(rospy.Duration(0.1), self.on_timer)
+        def on_value(self, msg):
+            self.send(msg.data)
+        def on_timer(self, event):
+            self.flush()
+    Node()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(("made", "found"), [("Queue()", 0), ("[]", 1)])
+def test_an_object_made_in_another_module_may_do_its_own_locking(made, found):
+    text = MIXIN if made == "Queue()" else MIXIN.replace(".put(", ".append(")
+    assert len(lines("TARL201", text, MIXED.format(annotation="object", made=made))) == found

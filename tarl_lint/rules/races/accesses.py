@@ -135,8 +135,8 @@ def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline)
 
 
 def _foreign(name: str, outline: Outline) -> bool:
-    """Return whether every value assigned to a name is an argument or an instance of a class."""
-    values = outline.assigned.get(name, [])
+    """Return whether every value assigned to a name, apart from None, is an argument or an instance of a class."""
+    values = [v for v in outline.values(name) if not (isinstance(v, ast.Constant) and v.value is None)]
     return bool(values) and all(_handed(value) for value in values)
 
 

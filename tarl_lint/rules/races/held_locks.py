@@ -12,6 +12,7 @@ from tarl_lint.trees import last_name, walk
 
 LOCKISH: Final = re.compile(r"lock|mutex|sem(aphore)?$|cond(ition)?$", re.I)
 FUNCTIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+TRY: Final = "acquire if free"
 EXITS: Final = (ast.Return, ast.Continue, ast.Break, ast.Raise)
 
 
@@ -21,6 +22,19 @@ def locks_around(node: ast.AST, outline: Outline) -> frozenset[str]:
     if known is None:
         known = outline.held[node] = _around(node, outline)
     return known
+
+
+def tried_around(node: ast.AST, outline: Outline) -> frozenset[str]:
+    """Return the locks around a node that the function only takes if they are free: `acquire(blocking=False)`.
+
+    Such a lock keeps an activity from running twice at a time. Code that needs the data of the activity cannot be
+    expected to take this lock.
+    """
+    function = outline.scope(node, FUNCTIONS)
+    if function is None:
+        return frozenset()
+    tried = {name for name, action, _ in _calls(function, outline) if action == TRY}
+    return locks_around(node, outline) & tried
 
 
 def _around(node: ast.AST, outline: Outline) -> frozenset[str]:
@@ -49,7 +63,7 @@ def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
     above: set[str] = set()
     below: set[str] = set()
     for name, action, where in _calls(function, outline):
-        if action == "acquire" and where <= line:
+        if action in ("acquire", TRY) and where <= line:
             above.add(name)
         elif action == "release" and where >= line:
             below.add(name)
@@ -57,14 +71,25 @@ def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
 
 
 def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
-    """Return (lock, method, line) of each method call on a lock in a function."""
+    """Return (lock, method, line) of each method call on a lock in a function; the method is TRY for a trial."""
     known = outline.lock_calls.get(function)
     if known is None:
         calls = [n for n in walk(function) if isinstance(n, ast.Call)]
         named = [(lock_name(c.func.value, outline), c) for c in calls if isinstance(c.func, ast.Attribute)]
-        known = [(n, c.func.attr, c.lineno) for n, c in named if n and isinstance(c.func, ast.Attribute)]
+        known = [(n, _method(c), c.lineno) for n, c in named if n]
         outline.lock_calls[function] = known
     return known
+
+
+def _method(call: ast.Call) -> str:
+    """Return the method that is called, or TRY if it acquires a lock without waiting."""
+    given = [k.value for k in call.keywords if k.arg == "blocking"] or call.args[:1]
+    name = last_name(call.func)
+    return (
+        TRY
+        if name == "acquire" and any(isinstance(v, ast.Constant) and v.value is False for v in given)
+        else name
+    )
 
 
 def lock_name(expr: ast.expr, outline: Outline) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from tarl_lint.evidence import Evidence
@@ -12,10 +13,12 @@ from tarl_lint.ir.nodes import Pos
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj
 from tarl_lint.rules.races.accesses import Access, How, accesses
-from tarl_lint.rules.races.held_locks import asked_before, in_loop, locks_around
+from tarl_lint.rules.races.held_locks import asked_before, in_loop, locks_around, tried_around
 from tarl_lint.rules.races.threads import EXECUTOR, MAIN, Threads
+from tarl_lint.trees import last_name
 
 MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")
+RUNS_COROUTINES: Final = frozenset(["run", "run_until_complete"])
 State = tuple[object, str]  # an object with one of its attributes, or a module with one of its globals
 
 
@@ -23,13 +26,15 @@ State = tuple[object, str]  # an object with one of its attributes, or a module 
 class Spot:
     """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `asked` are the locks that the function takes later; empty unless this access only decides on an early return.
+    `tried` are those of the locks that were taken only because they were free. `asked` are the locks that the function
+    takes later; empty unless this access only decides on an early return.
     """
 
     path: str
     pos: Pos
     function: str
     locks: frozenset[str] = frozenset()
+    tried: frozenset[str] = frozenset()
     asked: frozenset[str] = frozenset()
 
 
@@ -53,6 +58,11 @@ class Use:
         """Return the locks held at the access."""
         return self.spots[0].locks
 
+    @property
+    def guards(self) -> frozenset[str]:
+        """Return the locks that another access to the same state is expected to take, too."""
+        return self.locks - self.spots[0].tried
+
 
 class Locking:
     """Collects the accesses to attributes and globals in modules that create locks."""
@@ -73,7 +83,7 @@ class Locking:
         for frame in list(self.evidence.machine.frames.values()):
             written = self.accesses(frame) if frame.program.path in self.paths else []
             thread = threads.of(frame) if written else None
-            if thread is None:
+            if thread is None or self._scheduled(frame):
                 continue
             callers, repeated = self._callers(frame)
             receiver = _receiver(frame)
@@ -90,9 +100,10 @@ class Locking:
     def _use(self, access: Access, frame: Frame, thread: object, callers: Sequence[Spot]) -> Use:
         node, path = access.node, frame.program.path
         pos = (node.lineno, node.col_offset, node.end_lineno or 0, node.end_col_offset or 0)
+        outline = self.evidence.outline(path)
         above = callers[0].locks if callers else frozenset[str]()
-        asked = asked_before(node, self.evidence.outline(path))
-        spot = Spot(path, pos, frame.function.name, access.locks | above, asked)
+        tried = tried_around(node, outline) | (callers[0].tried if callers else frozenset())
+        spot = Spot(path, pos, frame.function.name, access.locks | above, tried, asked_before(node, outline))
         name = access.name if access.is_global else f"self.{access.name}"
         return Use(name, (spot, *callers), thread, access.writes, access.constant, access.how)
 
@@ -105,17 +116,30 @@ class Locking:
             path, pos, caller = current.caller.program.path, current.call_pos, current.caller
             outline = self.evidence.outline(path)
             call = outline.call(pos)
-            own = locks_around(call, outline) if call is not None else frozenset[str]()
-            asked = asked_before(call, outline) if call is not None else frozenset[str]()
-            repeated |= call is not None and in_loop(call, outline)
-            spots.append(Spot(path, pos, caller.function.name, own, asked))
+            spot = Spot(path, pos, caller.function.name)
+            if call is not None:
+                locks, tried = locks_around(call, outline), tried_around(call, outline)
+                spot = replace(spot, locks=locks, tried=tried, asked=asked_before(call, outline))
+                repeated |= in_loop(call, outline)
+            spots.append(spot)
             current = caller
-        held = frozenset[str]()
-        for index in range(len(spots) - 1, -1, -1):
-            spot = spots[index]
-            held |= spot.locks
-            spots[index] = Spot(spot.path, spot.pos, spot.function, held, spot.asked)
+        for index in range(len(spots) - 2, -1, -1):
+            spot, outer = spots[index], spots[index + 1]
+            spots[index] = replace(spot, locks=spot.locks | outer.locks, tried=spot.tried | outer.tried)
         return spots, repeated
+
+    def _scheduled(self, frame: Frame) -> bool:
+        """Return whether the code is in a coroutine that an event loop runs later, without the locks of its caller."""
+        current: Frame = frame
+        while current.caller is not None and current.call_pos is not None:
+            caller = current.caller
+            if isinstance(current.function.node, ast.AsyncFunctionDef):
+                outline = self.evidence.outline(caller.program.path)
+                call = outline.call(current.call_pos)
+                if call is not None and not runs_here(outline.parents.get(call)):
+                    return True
+            current = caller
+        return False
 
     def accesses(self, frame: Frame) -> list[Access]:
         """Return the accesses in the source of a function."""
@@ -142,6 +166,13 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
         spot = next((s for s in use.spots if (s.path, s.pos) not in held), use.spots[-1])
         if use.writes or not spot.asked & locks:
             yield use, spot
+
+
+def runs_here(outer: ast.AST | None) -> bool:
+    """Return whether a coroutine runs where it is made: `await it()`, `asyncio.run(it())`."""
+    return isinstance(outer, ast.Await) or (
+        isinstance(outer, ast.Call) and last_name(outer.func) in RUNS_COROUTINES
+    )
 
 
 class Harm:
