@@ -1,0 +1,1 @@
+"""Nodes of a cold store: climate, fans and logbook."""

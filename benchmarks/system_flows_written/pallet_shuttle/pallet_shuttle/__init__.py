@@ -1,0 +1,1 @@
+"""Nodes of a shuttle for pallets: drive, lift and mission."""
