@@ -47,9 +47,13 @@ class Script:
 
     @property
     def package(self) -> Path:
-        """Return the folder of the script's package."""
+        """Return the folder of the script's ROS package or, without one, the folder around its Python package.
+
+        pytest imports the `__init__.py` of each folder that a test is in, before there is a ROS.
+        """
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
-        return next((one for one in inside if (one / "package.xml").is_file()), self.path.parent)
+        outer = next((one for one in inside if not (one / "__init__.py").is_file()), self.repository)
+        return next((one for one in inside if (one / "package.xml").is_file()), outer)
 
 
 def scripts(repository: Path) -> list[Script]:

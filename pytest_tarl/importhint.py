@@ -6,6 +6,16 @@ from pytest_tarl.ros.messages.packages import could_be_package
 from pytest_tarl.ros.standins import STANDINS
 
 
+def package_hint(error: BaseException | None) -> str | None:
+    """Return advice where pytest imports a package around a test, and its `__init__.py` imports ROS."""
+    if import_hint(error) is None:
+        return None
+    return (
+        "The test is in a Python package whose __init__.py imports ROS. pytest imports this file before the test, when "
+        "TARL provides no ROS yet: move the test to a folder outside of the package."
+    )
+
+
 def import_hint(error: BaseException | None) -> str | None:
     """Return advice for an import that failed during collection; None for any other error."""
     while error is not None and not isinstance(error, ModuleNotFoundError):

@@ -111,6 +111,12 @@ def pytest_runtest_makereport(
         keep_error(item, call.excinfo.value, report)
         if item.config.getoption("usepdb", False):
             call.excinfo = in_the_node(call.excinfo)
+        if call.when == "setup" and isinstance(call.excinfo.value, pytest.Collector.CollectError):
+            from pytest_tarl.importhint import package_hint
+
+            hint = package_hint(call.excinfo.value)
+            if hint:
+                report.sections.append(("TARL", hint))
     return report
 
 

@@ -31,3 +31,31 @@ def test_other_import_errors_come_without_a_hint(tank: pytest.Pytester, line: st
     told = tank.runpytest("test_top.py")
     told.assert_outcomes(errors=1)
     told.stdout.no_fnmatch_line("*TARL*")
+
+
+def test_a_test_inside_a_package_that_imports_ros_is_told_to_move_out(tank: pytest.Pytester) -> None:
+    package = tank.mkpydir("robot")
+    (package / "__init__.py").write_text("from .driver import Driver\n")
+    (package / "driver.py").write_text("import rospy\nclass Driver:\n    pass\n")
+    tests = package / "tests"
+    tests.mkdir()
+    (tests / "test_driver.py").write_text(
+        "import pytest\n@pytest.mark.tarl(nodes=['../driver.py'])\ndef test_driver(tarl):\n    pass\n"
+    )
+    result = tank.runpytest(str(tests))
+    result.stdout.fnmatch_lines(
+        ["*whose __init__.py imports ROS*move the test to a folder outside of the package*"]
+    )
+
+
+def test_another_error_in_the_package_of_a_test_gets_no_advice_on_ros(tank: pytest.Pytester) -> None:
+    package = tank.mkpydir("robot")
+    (package / "__init__.py").write_text("import no_such_driver\n")
+    tests = package / "tests"
+    tests.mkdir()
+    (tests / "test_driver.py").write_text(
+        "import pytest\n@pytest.mark.tarl(nodes=['../driver.py'])\ndef test_driver(tarl):\n    pass\n"
+    )
+    result = tank.runpytest(str(tests))
+    result.stdout.fnmatch_lines(["*No module named 'no_such_driver'*"])
+    result.stdout.no_fnmatch_line("*imports ROS*")
