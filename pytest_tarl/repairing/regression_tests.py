@@ -1,4 +1,4 @@
-"""Regression tests: missions of other recorded tests of a changed file must not lose in the designed world."""
+"""Regression tests: other recorded tests of a changed file must not lose reward in the designed world."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the indices of recorded episodes to run: those in which the guard holds, if the recording shows it."""
+    """Return the indices of the recorded episodes to run: if known, those in which the guard holds."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))
@@ -73,7 +73,7 @@ def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
 def _compared(
     mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
 ) -> tuple[bool, str]:
-    """Compare missions under a candidate with their own recording; return whether they lose, and a sentence."""
+    """Compare a test's missions under a candidate with its recording; return whether they lose, and a sentence."""
     if not chosen:
         return False, f"{neighbour.test}: as recorded, because the condition never holds there"
     sample = neighbour.fixture.sample

@@ -75,9 +75,9 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:
-    """Return operands that set when the nodes publish, or decide what, plainest first.
+    """Return operands that determine when or what the nodes publish without being in a data flow, plainest first.
 
-    They are in no flow, so no slice ranks them.
+    No slice contains them, so no slice ranks them.
     """
     analysis = order.analysis
     known = set(operands(order))
