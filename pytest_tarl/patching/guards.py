@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Return whether a condition can hold before the first message, when fields of new messages are zero."""
+    """Return whether a condition can hold before the first message, given that fields of new messages are zero."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)

@@ -1,4 +1,4 @@
-"""Names that a module imports, and edits that add imports where a maintainer would."""
+"""Find the names that a module imports, and add imports at the places that a maintainer would choose."""
 
 from __future__ import annotations
 

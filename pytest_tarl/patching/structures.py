@@ -31,7 +31,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Keeper:
-    """A place where a node can store state between calls: the prefix of names, and where to initialise them."""
+    """Where a node can store state between calls: the prefix of variable names and the place to initialise them."""
 
     prefix: str
     place: int

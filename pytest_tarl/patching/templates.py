@@ -38,7 +38,10 @@ OPERATORS = (
 )  # placeholders of comparisons: the operator, its form with or without equality, its reverse
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
-LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of an operator needs
+LEADING = {
+    "*": TERM,
+    "+": ARITHMETIC,
+}  # operator → lowest precedence of its first operand without parentheses
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,7 +62,7 @@ class Examiner:
         self.turns = 1  # number of searches so far; each has its own `MOST` tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # sentences about other tests that lost under a candidate
+        self.lost: tuple[str, ...] = ()  # one sentence for each other test that earned less under a candidate
         self.cut = False  # whether the budget ended the search
 
     @property
@@ -275,8 +275,8 @@ class Examiner:
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
         """Return the reason why a candidate fails on known episodes, "" if it does not.
 
-        Known episodes are drifted ones (all that lost and some that did not), and recorded ones in which the guard
-        holds. Raises BudgetSpentError and RepairError.
+        Known episodes are drifted ones (all with a loss, some without), and recorded ones in which the guard holds.
+        Raises BudgetSpentError and RepairError.
         """
         goal, offline = self.order.goal, self.order.fixture.sample
         known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))

@@ -1,7 +1,7 @@
 """Improve the value of a candidate that holds but loses much of the margin, before its expensive test.
 
 A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The mean reward on
-the known seeds is biased upwards, because the candidate was chosen on them: a loss of a third of the margin there may
+the known seeds is biased upwards, because the candidate was chosen on them. A loss of a third of the margin there may
 be half of it on other seeds. A value in the middle of the range of good values loses less. Finding it costs a few
 episodes on known seeds and saves a test of hundreds of episodes.
 """
@@ -95,8 +95,8 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
 def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
     """Return a candidate's totals if their mean is higher than that of `totals`.
 
-    Return None as soon as the candidate falls behind or a mission fails, whatever it earns. Also return None if it
-    loses missions that rejected candidates lost.
+    Return None as soon as the candidate falls behind or a mission fails. Also return None if it loses missions that
+    rejected candidates lost.
     """
     earned: list[float] = []
     try:

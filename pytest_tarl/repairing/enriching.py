@@ -21,14 +21,14 @@ from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, 
 ENOUGH = 1 + CONFIRMATIONS  # number of losing seeds that a search needs
 LOOKED_AT = 12  # maximum number of recorded missions to run under the drift to find such seeds
 SELECTED = 0.5  # if this share of episodes fails or more, the failing ones are no selection
-CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose either
+CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
     """Return the goal with enough failing seeds, each with its reward in the designed world.
 
-    The episodes are charged to the budget. The goal is returned unchanged if the budget does not suffice, or if most
-    drifted episodes lose; in the latter case nothing runs.
+    The episodes are charged to the budget. The goal is returned unchanged if the budget does not suffice. If most
+    drifted episodes lose reward, nothing runs and the goal is returned unchanged, too.
     """
     order = mutants.order
     goal, online = order.goal, order.online.recorded.sample
@@ -65,9 +65,9 @@ def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> floa
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
     """Yield seeds and totals of recorded missions that are likely to lose under the drift, most likely first.
 
-    The score of a sensor's bin is the share of losing drifted episodes that visited it, minus the share of the other
-    drifted episodes that visited it. A mission's score is that of its best bin. Bins of single sensors are scored
-    instead of cells, because one sensor may suffice to detect the drift.
+    Each bin of a sensor has a score: the share of drifted episodes with a loss that visited it, minus the share of
+    those without a loss. A mission's score is that of its best bin. Bins of single sensors are scored instead of cells,
+    because one sensor may suffice to detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}

@@ -96,8 +96,8 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raises StaleTextError.
 
     The unrepaired program ran in this test, so any error now (a silent node, a reward that is not a number) is due to
-    the candidate. After an error or a crash of the node, the episode earns at most as much as the worst recorded
-    episode, because its reward up to that point means nothing.
+    the candidate. After an error or a crash of the node, the reward so far means nothing. The total is then at most
+    that of the worst recorded episode.
     """
     try:
         ended = run()

@@ -92,7 +92,7 @@ class Others:
             return False
 
     def beside(self, trials: Trials) -> OtherValues:
-        """Move a candidate that lost few missions in its test to a value that loses none of them.
+        """Propose neighbours of a candidate that lost few missions in its test, if they lose none of these missions.
 
         If a close value was rejected as well, the value halfway between the two comes first. Raises BudgetSpentError.
         """

@@ -227,7 +227,7 @@ def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:
-    """Return the best refused candidate; if nothing was tested, the reason is whatever ended the search."""
+    """Return the best refused candidate; if nothing was tested, its reason tells what ended the search."""
     if found.interrupted:
         return replace(examiner.refused, reason="interrupted")
     if found.late and examiner.refused.reason == "budget":

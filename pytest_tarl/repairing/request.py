@@ -101,7 +101,7 @@ class Order:
 
 
 def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
-    """Yield the indices of (size, index) pairs, ordered such that the first few span all sizes."""
+    """Yield the indices of (size, index) pairs, in an order in which the first few already span the sizes."""
     parts = [[index for _, index in sorted(drawn)]]
     while parts:
         part = parts.pop(0)
@@ -112,7 +112,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Return the goal: the drifted episodes that lost, worst last, and the totals that a mutation must reach."""
+    """Return the goal: the drifted episodes with a loss, worst last, and the totals that a mutation must reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

@@ -31,14 +31,14 @@ MOST = {
     "sent": 3,
     "sensor": 3,
     "sent by sensor": 2,
-}  # expressions at which to try a template, by its kind
-FIRST = 2  # expressions that get all templates first: the first of the slices and the last before publishing
+}  # maximum number of expressions at which to try a template, by the template's kind
+FIRST = 2  # number of expressions tried first: the one ranked first and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = 50  # minimum episodes for templates with a sensor that tells the drift, but at most a third of all
+LEAST = 50  # minimum number of episodes for templates with a telling sensor; limited to a third of the budget
 
 
 class Structures:
-    """A search over templates, cheapest first: at the best `FIRST` expressions of a kind, then at the others.
+    """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
 
     Templates of equal cost share a part of the episodes, in proportion to their number of parameters. If one of them
     gains much, the group also gets half of the episodes left for the other groups.
@@ -134,7 +134,7 @@ class Structures:
         ]
 
     def _told(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of all templates that use a sensor that tells the drift, at all expressions."""
+        """Return the operands of templates with a telling sensor (see `telling_sensors`), at all expressions."""
         sensors = telling(self.order)
         found: list[Operand] = []
         for made in known if sensors else ():
@@ -154,7 +154,7 @@ class Structures:
         return groups
 
     def _at(self, template: Template, among: Sequence[Spot], first: bool) -> Iterator[Operand]:
-        """Yield a template's operands at the first (or at the other) expressions, and store their forms."""
+        """Yield a template's operands at the first expressions, or else at all later ones; store their forms."""
         for number, forms in enumerate(_forms(self.order, template, among)):
             if (number < FIRST) == first:
                 for operand, form in forms:

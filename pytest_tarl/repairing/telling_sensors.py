@@ -1,4 +1,4 @@
-"""Find the sensors that tell a drift: a single value usually shows whether the world is drifted or designed."""
+"""Find telling sensors, whose values usually show whether the world is drifted or designed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.sensors import Sensor
 
-OVERLAP = 0.25  # a sensor tells the drift if the worlds have at most this share of steps in the same bins
+OVERLAP = 0.25  # a sensor is telling if at most this share of steps is in the same bins in both worlds
 
 
 def telling(order: Order) -> list[Sensor]:
-    """Return the numeric sensors that tell the drift, in their order."""
+    """Return the telling numeric sensors, in their order."""
     return [one for one in order.comparison.sensors if continuous(one) and _overlap(order, one) <= OVERLAP]
 
 

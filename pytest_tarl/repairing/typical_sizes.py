@@ -18,7 +18,7 @@ BOUNDING = ("abs", "float", "int", "max", "min", "round")
 
 
 class TypicalSizes:
-    """Mean absolute values in a world, the recorded one by default, by site, by assigned name, and by constant."""
+    """Mean absolute values by site, by assigned name and by constant; in the recorded world by default."""
 
     def __init__(self, order: Order, world: Sample | None = None) -> None:
         self.by_site = _recorded(order, world)

@@ -80,7 +80,7 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
 
     A guard's merit is the share of the change under it minus the share of designed steps under it (Youden's J). A guard
     that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually comes
-    second. It comes first in two cases: if no guard has much merit, because the drift is everywhere, or if the best
+    second. It comes first if no guard has much merit, because the drift is everywhere. It also comes first if the best
     guard holds wherever the drifted robot went. Such a guard says nothing about places that only a repaired robot
     reaches.
     """

@@ -15,7 +15,7 @@ from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
 EXACT = 0.01  # deviation (see `course`) up to which a mission counts as going as designed
-CLOSER = 0.6  # a candidate is preferred if it deviates at most by this share of the other's deviation
+CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
 COMPARED = 3  # missions on which two candidates that hold are compared
 POWERS = (
     1.0,
@@ -27,8 +27,8 @@ RIVALS = 8  # maximum number of runs of rival constants per candidate
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
     """Yield other named constants of the function, with the factor found, its reciprocal, then weaker factors.
 
-    The reciprocal is for constants that are divisors. Constants that never changed a mission are left out, as are
-    constants on a chart, for which the factor has no meaning.
+    The reciprocal is for constants that are divisors. Constants that never changed a mission are left out. So are
+    constants on another scale than `found`, for which the factor has no meaning.
     """
     at = found.operands[0].site
     tried = gains.under(guard)

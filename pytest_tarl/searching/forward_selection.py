@@ -49,7 +49,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class Settled:
-    """Candidates that were tried on further seeds, and those of them that were confirmed and yielded."""
+    """The candidates that were tried on further seeds, and the candidates that were confirmed and yielded."""
 
     tried: set[Candidate] = field(default_factory=set)
     held: set[Candidate] = field(default_factory=set)
@@ -200,7 +200,7 @@ class ForwardSelection:
                 return
 
     def _with_another(self, base: Joint) -> Iterator[Joint]:
-        """Yield combinations with one more part, first with its better near factor, then with the other."""
+        """Yield combinations with one more part, first with the better of its two near factors."""
         taken = {unit for unit, _ in base.parts}
         for turn in range(len(NEAR)):
             for unit in self.units:

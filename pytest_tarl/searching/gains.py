@@ -71,7 +71,7 @@ class Gains:
         """Return the units, without those that use the same constant as an earlier unit with the same effect.
 
         This happens when a constant is passed to a function. Both units then share the definition and have equal gains
-        for all common factors, of which there must be at least two.
+        for all common factors. At least two common factors are needed.
         """
         kept: list[Unit] = []
         for unit in among:

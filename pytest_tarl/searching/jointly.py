@@ -1,10 +1,10 @@
 """Search a few constants jointly: Bayesian optimisation over the logarithms of their steps.
 
 A step of a constant is its factor. If two constants have to grow together, a step in one of them alone loses reward. A
-Gaussian process fits all joint trials of a seed. Each new trial changes one to three constants of a good point; it is
-the proposal with the largest expected improvement (Regis & Shoemaker 2013; Jones, Schonlau & Welch 1998). The value of
-a trial combines its reward with the deviation of its missions from the designed ones: a mission that fails late is
-closer to the goal than one that fails at once, even if both earn the same.
+Gaussian process fits all joint trials of a seed. Proposals change one to three constants of a good point (Regis &
+Shoemaker 2013). The proposal with the largest expected improvement runs next (Jones, Schonlau & Welch 1998). The value
+of a trial combines its reward with the deviation of its missions from the designed ones. The deviation counts because a
+mission that fails late is closer to the goal than one that fails at once, even with the same reward.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ PROPOSALS = 400  # random proposals per trial; the one with the largest expected
 STARTS = 4  # number of best points to start from ...
 ASUNDER = 0.2  # ... which must differ by at least this much in some log step
 HIDDEN = 2  # maximum number of constants that hardly changed the reward alone ...
-SELDOM = 0.25  # ... and how often they move, as a share of the others
+SELDOM = 0.25  # ... and how often they move, relative to the other constants
 LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
 REFITTED = 4  # number of trials between two fits of the length scales
 NOISES = (0.05, 0.2)  # noise of a trial, as a share of the standard deviation of all trials
@@ -167,8 +167,8 @@ class Jointly:
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
         """Run a combination; return its share of the wanted gain minus the deviation of its missions.
 
-        A combination that would be the best so far also runs on a second seed, and the mean is returned, because a
-        single seed may be luck.
+        A combination that would be the best so far also runs on a second seed, because one seed may be luck. The mean
+        is then returned.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:

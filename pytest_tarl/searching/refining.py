@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import sqrt
 
-OUTWARD = 2.3  # ratio of the next factor to the outermost one, if the outermost is the best
-FINEST = 1.1  # stop refining between two factors when their ratio is below this ...
-ALMOST = 0.9  # ... unless one of them gains this share of the loss: then stop only at the ratio ...
-NARROWEST = 1.02  # ... `NARROWEST`; the same applies ...
-PROMISING = 0.4  # ... if one gains this share of the loss, and both of its neighbours gain at most ...
-SHARP = 0.5  # ... this share of its gain, because the peak is then narrow
+OUTWARD = 2.3  # if the outermost factor is the best, the next one is larger (or smaller) by this ratio
+FINEST = 1.1  # stop refining between two factors when their ratio is below this
+ALMOST = 0.9  # a factor that gains this share of the loss is refined down to the ratio `NARROWEST`
+NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
+PROMISING = 0.4  # so is a factor that gains this share of the loss, if its peak is sharp:
+SHARP = 0.5  # both neighbours gain at most this share of its gain
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:

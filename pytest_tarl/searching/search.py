@@ -22,7 +22,7 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds on which a promising candidate must also earn enough ...
-HARD = 2  # ... at most this many of them chosen because other candidates earned too little there
+HARD = 2  # ... at most this many of which are seeds on which other candidates earned too little
 FAR = 0.6  # a candidate that gains this share of the wanted gain releases the reserve of episodes
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
@@ -56,10 +56,10 @@ class Goal:
     - `pairs`: episodes of the unrepaired program that lost reward in the drifted world.
     - `near`: the total reward from which a candidate is worth confirming.
     - `enough`: the mean total reward that confirms a candidate.
-    - `online`: the mean total reward of all episodes in the drifted world, including those that lost nothing.
+    - `online`: the mean total reward of all drifted episodes, including those without loss.
     - `passing`: whether a failed mission never counts as near, because ending early can earn more than carrying on.
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
-    - `controls`: episodes in the drifted world that lost nothing.
+    - `controls`: drifted episodes without loss.
     """
 
     pairs: tuple[Pair, ...]
@@ -262,10 +262,10 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
 
-    The seeds on which other candidates fell short run first. A candidate is rejected early in four cases: it loses the
-    missions that rejected candidates lost in their acceptance tests; a mission fails although missions succeed in the
-    designed world (unless the drift's size varies); two seeds fall short; or it probably earns as little as an earlier
-    candidate (`falls_short`).
+    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
+    that rejected candidates lost in their acceptance tests. It is also rejected at the first failed mission, if
+    missions succeed in the designed world and the drift's size does not vary. The other reasons are a second seed that
+    falls short, and a low estimate of its mean total (`falls_short`).
     """
     if trials.loses(candidate):
         return False

@@ -60,10 +60,10 @@ class Sweep:
     """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
     The first two guards are used throughout, the others only at the end. With `proposed`, the operands are parameters
-    of a change that the program does not contain yet. They are then tried first with their own values, factors that
-    make a change `weaker` are skipped if it has no effect, and only parameters of the same change are combined. The
-    last steps of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of
-    these steps are tried, on named constants.
+    of a change that the program does not contain yet. They are first tried with their own values. If the change has no
+    effect, factors that make it `weaker` are skipped. Only parameters of the same change are combined. The last steps
+    of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of these steps
+    are tried, on named constants.
     """
 
     def __init__(
