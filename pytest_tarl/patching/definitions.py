@@ -170,7 +170,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return the name of a literal: the target of its assignment or the parameter whose default it is; else ""."""
+    """Return the name of a literal: the target of its assignment, or the parameter that has it as default; else ""."""
     key, inner = "", node
     for each in source.ancestors(node):
         if isinstance(each, ast.Dict | ast.List | ast.Tuple):

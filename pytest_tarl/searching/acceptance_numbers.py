@@ -1,9 +1,9 @@
 """Acceptance numbers: for each look, the largest number of failures that still shows a tolerable failure rate.
 
 A look evaluates the test after a fixed number of missions. A single look gives the bound of Clopper and Pearson: 0
-failures in 59 missions show a rate below 5 % at 95 %. Several looks share the risk of accepting wrongly. The risk of
-each look is exact: the distribution of the failure count is propagated from look to look, without the counts that were
-already accepted.
+failures in 59 missions show, with 95 % confidence, a rate below 5 %. Several looks share the risk of accepting wrongly.
+The risk of each look is exact: the distribution of the failure count is propagated from look to look, without the
+counts that were already accepted.
 """
 
 from __future__ import annotations

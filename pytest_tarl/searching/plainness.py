@@ -13,7 +13,7 @@ from tarl_lint.model import Operand
 
 UNTRIED = 2  # named constants to try before a changed literal is accepted
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)  # m/s², as programs write it
-ROUNDED = 6e-4  # relative error of 3.14
+ROUNDED = 6e-4  # relative error of 3.14 as π, with some room
 
 
 class Oddness(IntEnum):

@@ -22,7 +22,7 @@ Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds on which a promising candidate must also earn enough ...
-HARD = 2  # ... at most this many of which are seeds on which other candidates earned too little
+HARD = 2  # ... starting with at most this many seeds on which other candidates earned too little
 FAR = 0.6  # a candidate that gains this share of the wanted gain releases the reserve of episodes
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
@@ -74,7 +74,7 @@ class Goal:
 
     @property
     def wanted(self) -> float:
-        """Return the gain per episode that a repair must bring on the episodes that lost."""
+        """Return the gain per episode that a repair must bring on the losing episodes (`pairs`)."""
         if not self.pairs:
             return max(self.enough - self.online, 0.0)
         lost = fmean(pair.total for pair in self.pairs)
