@@ -3,7 +3,7 @@
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
 Other constants are fixed by notation, not chosen by the author. The exponents in `(x**2 + y**2) ** 0.5` are geometry,
 the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares. Booleans
-and zeros are not labels, because a search can change their truth.
+and zeros are not labels, because a search can change them from false to true.
 """
 
 from __future__ import annotations

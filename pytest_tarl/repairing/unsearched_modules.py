@@ -1,4 +1,4 @@
-"""Find modules that are not searched although a flow passes through them: the marker does not name them."""
+"""Find modules through which a flow passes but which are not searched, because the marker does not name them."""
 
 from __future__ import annotations
 

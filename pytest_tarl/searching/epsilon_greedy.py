@@ -30,7 +30,7 @@ class EpsilonGreedy:
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3  # sites to search, those that the slices rank first
+    SITES = 3  # number of sites to search: the ones ranked first by the slices
     CONFIRMED = 3  # best mutations to confirm at the end
     EPISODES = 200
 

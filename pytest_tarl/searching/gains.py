@@ -70,8 +70,8 @@ class Gains:
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
         """Return the units, without those that use the same constant as an earlier unit with the same effect.
 
-        This happens when a constant is passed to a function. Both units then share the definition and have equal gains
-        for all common factors. At least two common factors are needed.
+        For example, a constant that is passed to a function is used both in the call and in the function. Such units
+        share the definition, and changed missions equally by all common factors, of which two or more are needed.
         """
         kept: list[Unit] = []
         for unit in among:

@@ -1,5 +1,6 @@
 """What all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
+A mission is one episode of the test. A candidate holds on a seed if its mission there earns about as much as designed.
 A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
 """
 
