@@ -28,7 +28,7 @@ QUICK = 3  # known seeds on which to try a guard before its test on fresh seeds
 WORLDS = 3  # worlds in which a test runs: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # episodes in the old world, to display the reward there if the drift is permanent
 MOST = 5  # maximum number of candidates to test per search ...
-SHARE = 2  # ... and how many with the same operands before candidates with other operands get their turn
+SHARE = 2  # ... and tests for the same operands; further such candidates wait for those of other operands
 WORSE: Reason = "nominal gets worse"
 SCREENED = 20  # maximum number of candidates to run on fresh seeds per search
 

@@ -34,10 +34,10 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
 
     Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than for
     a single size. The bound on the risk stays valid for two reasons. Over a block, the expected growth of a fixed bet
-    is at most that for episodes with the mean of the strata (inequality of geometric and arithmetic mean). And with
-    different failure rates, a small number of failures is less likely than in a binomial distribution with the mean
-    rate (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin on average in each third of
-    the range; this check can only refuse.
+    is no larger than with episodes from random strata (inequality of geometric and arithmetic mean). And with different
+    failure rates, a small number of failures is less likely than in a binomial distribution with the mean rate
+    (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin on average in each third of the
+    range; this check can only refuse.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:

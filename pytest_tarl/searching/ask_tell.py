@@ -52,7 +52,7 @@ class Optimiser(Protocol):
         """Return a factor for every constant; raise StopIteration to end the search.
 
         A factor of 1 leaves the constant unchanged; a negative factor flips its sign, or flips a boolean. A constant
-        that is zero moves by `factor - 1` for factors above 1 and by `1 - 1 / factor` for factors below 1.
+        that is zero becomes `factor - 1` for factors above 1 and `1 - 1 / factor` for factors below 1.
         """
 
     def tell(self, factors: Sequence[float], gain: float) -> None:

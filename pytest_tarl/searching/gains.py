@@ -56,7 +56,7 @@ class Gains:
         return self.proposed and tried and (unit, 1.0) not in self._moved
 
     def moves(self, unit: Unit) -> bool:
-        """Return whether a unit ever changed an episode."""
+        """Return whether a unit changed any episode."""
         return any(moved == unit for moved, _ in self._moved)
 
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
