@@ -15,7 +15,7 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for every package that a patch imports messages from but package.xml does not list.
+    """Return a sentence for every message package that a patch imports and that package.xml does not list.
 
     `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
     """

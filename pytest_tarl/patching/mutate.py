@@ -73,7 +73,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation by a step on a chart, or by a factor if `chart` is None; None if there is none."""
+    """Return the mutation for a step on a chart, or for a factor if `chart` is None. None if nothing changes."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)

@@ -31,7 +31,7 @@ Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Propose other values; each method runs once for the same operands and guard."""
+    """Propose other values of a candidate; each method runs at most once per set of operands and guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants

@@ -45,7 +45,7 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """Results of the searches so far; `effects` come from the first search that has any, which is `method`."""
+    """Results of the searches so far; `method` names the first search with any `effects`, which are kept."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None

@@ -189,7 +189,7 @@ class ForwardSelection:
             return
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Yield a combination that holds, without unneeded parts, unless the remaining one was yielded before."""
+        """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before."""
         fewer = self._least(joint).candidate(self.mutate)
         if fewer in self.settled.held:
             self.settled.tried.add(candidate)

@@ -265,8 +265,8 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 
     The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
     that rejected candidates lost in their acceptance tests. It is also rejected at the first failed mission, if
-    missions succeed in the designed world and the drift's size does not vary. The other reasons are a second seed that
-    falls short, and a low estimate of its mean total (`falls_short`).
+    missions succeed in the designed world and the drift's size does not vary. The other reasons are a second seed with
+    too little reward, and a low estimate of the candidate's mean total (`falls_short`).
     """
     if trials.loses(candidate):
         return False
