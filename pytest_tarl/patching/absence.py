@@ -1,4 +1,4 @@
-"""Check whether code already fails or is skipped while a variable is still None."""
+"""Check whether code already raises or is skipped while a variable is None (before the first message)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether the code at or around a place cannot complete anyway while `code` is None."""
+    """Return whether a place is skipped while `code` is None, or the code there or around it already raises."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place

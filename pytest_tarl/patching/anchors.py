@@ -1,4 +1,4 @@
-"""Find where a node creates its subscriptions, so that a repair can add another one beside them."""
+"""Find where a node creates its subscriptions, so that a repair can add another subscription there."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _NODE_METHODS = {
 
 @dataclass(frozen=True)
 class Anchor:
-    """A statement beside which the node can subscribe; `node` is the rclpy node expression, "" for rospy."""
+    """A statement next to which a subscription can be added; `node` is the rclpy node's expression, "" for rospy."""
 
     source: Document
     statement: ast.stmt
@@ -58,9 +58,9 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield the places where the node subscribes: those of the site's flows first, then those in its file.
+    """Yield places to subscribe: subscriptions in the site's flows, those in its file, then starts of nodes.
 
-    The last ones are places where nodes start, for nodes without usable subscriptions.
+    Starts of nodes serve nodes that have no usable subscription.
     """
     own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
     sources = dict.fromkeys(flow.source for flow in analysis.flows)
@@ -72,7 +72,7 @@ def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
 
 
 def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
-    """Return the place for another registration: after `call`, but outside any loop; None if there is none."""
+    """Return the place for another subscription: after `call`, but outside any loop; None if there is none."""
     statement = source.statement(call)
     within = [statement, *_until_function(source, statement)]
     loops = [each for each in within if isinstance(each, Loop)]
@@ -99,7 +99,7 @@ def is_ros2(source: Document, api: str = "") -> bool:
 
 
 def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
-    """Yield the place beside a subscription call found by the analysis."""
+    """Yield the place next to a subscription call found by the analysis."""
     text = analysis.sources.get(origin.span.path)
     if text is None or origin.api.endswith("wait_for_message"):
         return
@@ -116,7 +116,7 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
 
 
 def _started(source: Document) -> Iterator[Anchor]:
-    """Yield the places after calls that start a node, then places after calls that use it."""
+    """Yield the places after calls that start a node, then those after calls that use the node."""
     ros2 = is_ros2(source)
     calls = [node for node in ast.walk(source.tree) if isinstance(node, ast.Call)]
     ranked = [(_start_rank(source, call, ros2), call) for call in calls]
@@ -128,7 +128,7 @@ def _started(source: Document) -> Iterator[Anchor]:
 
 
 def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
-    """Return 0 for calls that certainly run once at node start, 1 and 2 for less certain ones, else `_NO_START`."""
+    """Return 0 if a call certainly runs once at node start, 1 or 2 if this is less certain, else `_NO_START`."""
     name = _called(call)
     if not ros2:
         return 0 if name == "init_node" else _NO_START
@@ -181,6 +181,6 @@ def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]
 
 
 def _leader(source: Document, statement: ast.stmt) -> ast.stmt | None:
-    """Return the first of several statements on one line; None if it is a definition."""
+    """Return the first statement on a statement's line; None if it is a definition."""
     around = [*reversed(source.block(statement)), *_until_function(source, statement)]
     return next((each for each in around if each.lineno == statement.lineno and source.leads(each)), None)

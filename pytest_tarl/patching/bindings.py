@@ -1,4 +1,4 @@
-"""Bindings of a module: where it assigns a name and the value before the first message."""
+"""Bindings of a module: the places that assign a name, and its values before the first message."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Scope = Function | ast.Lambda
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A place that assigns `target`; `constants` if the value is a constant, `fresh` if it is a new default object."""
+    """A place that assigns `target`: `constants` if the value is a constant, `fresh` if it is a default object."""
 
     node: ast.AST
     target: str
@@ -63,7 +63,7 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether evaluating `a.b.c` at a place cannot raise unless the surrounding code raises as well."""
+    """Return whether `a.b.c` can be evaluated at a place, except where the surrounding code raises anyway."""
     chain = prefixes(code)
     read = {ast.unparse(node) for node in _read_at(place)}
     if code in read:
@@ -74,7 +74,7 @@ def is_bound(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant], bool]:
-    """Return the constants that the module assigns to `a.b.c`, and whether it also assigns new default objects."""
+    """Return the constants that the module assigns to `a.b.c`, and whether it assigns new default objects to it."""
     local = scope(source, place, code) if code.isidentifier() else None
     constants: set[Constant] = set()
     fresh = False
@@ -140,7 +140,7 @@ def _bindings(node: ast.AST) -> Iterator[Binding]:
 
 
 def _pairs(node: ast.stmt, target: ast.expr, value: ast.expr) -> Iterator[Binding]:
-    """Pair targets with their values, also in assignments between tuples of equal length."""
+    """Yield the bindings of an assignment; tuples of equal length are paired element by element."""
     if isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
         if len(target.elts) == len(value.elts):
             for left, right in zip(target.elts, value.elts, strict=True):

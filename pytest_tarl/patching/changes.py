@@ -11,7 +11,7 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """A hunk fits nowhere in the file; the argument is its original line number, from 1."""
+    """A hunk matches no place in the file; the argument is its original line number, counted from 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class FilePatch:
         return FilePatch(self.name, self.after, self.before, tuple(turned))
 
     def exact(self, content: bytes) -> bytes | None:
-        """Return the patched content; None if the blob ids of the content or of the result do not match."""
+        """Return the patched content; None if the blob id of the content or of the result does not match."""
         if not identical(content, self.before):
             return None
         lines, result, at = split_lines(content), list[bytes](), 0

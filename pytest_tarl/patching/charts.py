@@ -1,8 +1,8 @@
-"""Scales on which a constant moves, beside factors on its value.
+"""Charts: scales on which a search moves a constant, in addition to factors on its value.
 
-A share of 0.95 that should be 0.994 is wrong by a factor of 8 in its distance from 1. An offset of -0.012 that should
-be 0.055 is wrong by as much as the angles that it is added to. On either scale, a search makes the same steps as for a
-gain.
+If a share of 0.95 should be 0.994, its distance from 1 is wrong by a factor of 8. If an offset of -0.012 should be
+0.055, the error is as large as the angles to which the offset is added. On these two scales, a search takes the same
+steps as for factors.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import copysign
 
 
 class Scale(Enum):
-    """`REST` moves the distance of a share from 1, `SHIFT` adds to an offset."""
+    """`REST` scales the distance of a share from 1, `SHIFT` adds to an offset."""
 
     REST = "rest"
     SHIFT = "shift"
@@ -21,16 +21,16 @@ class Scale(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A scale with the size of its steps: for `SHIFT`, that of the values to which the constant is added."""
+    """A scale and, for `SHIFT`, the usual size of the values to which the constant is added."""
 
     scale: Scale
     size: float = 1.0
 
     def factor(self, value: float, step: float) -> float | None:
-        """Return the factor on a constant that makes one step, as `mutations` takes it; None if there is none.
+        """Return the factor on the constant's value that corresponds to a step; None if there is none.
 
-        A step of 1 changes nothing. Steps above and below 1 are symmetric on a log scale: 5 moves a share to a fifth of
-        its distance from 1, and an offset by four times `size`; 0.2 the other way.
+        A step of 1 changes nothing. A step of 5 divides a share's distance from 1 by 5, and adds four times `size` to
+        an offset. A step of 0.2 is the inverse.
         """
         if step <= 0.0:
             return None
@@ -47,12 +47,12 @@ class Chart:
 
 
 def distance(step: float) -> float:
-    """Return how far a step from zero goes, in units of its size: 5 goes by 4, 0.2 by -4."""
+    """Return the change made by a step, in multiples of the size: 4 for a step of 5, -4 for a step of 0.2."""
     return step - 1.0 if step >= 1.0 else 1.0 - 1.0 / step
 
 
 def step_to(distance: float) -> float:
-    """Return the step from zero that goes this far; the inverse of `distance`."""
+    """Return the step that makes this change; the inverse of `distance`."""
     return 1.0 + distance if distance >= 0.0 else 1.0 / (1.0 - distance)
 
 

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
 SEVERAL = "declare_parameters"  # takes a namespace and a list of names with defaults
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
-_MOST_FILES = 400  # configuration files of a package to read at most
+_MOST_FILES = 400  # maximum number of configuration files to read per package
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
 _PLAIN = re.compile(r"[-+]?\d+")
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A number at its definition: the characters `start` to `end` of a file, its name there and its value."""
+    """A number at its definition: its offsets `start` and `end` in a file, its name there and its value."""
 
     path: str
     start: int
@@ -38,7 +38,7 @@ class Place:
 
 
 def defined(analysis: Analysis, operand: Operand) -> Place | None:
-    """Return the definition of the operand's constant, away from its use; None unless it is a single number."""
+    """Return the definition of an operand's constant; None unless it is one number at another place than the use."""
     span = operand.definition
     if span is None or operand.literal or span.path not in analysis.sources:
         return None
@@ -127,7 +127,7 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
 
 
 def _number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the number, with its sign, that an expression spells out; None for other expressions."""
+    """Return the value of a literal number, with its sign; None for other expressions."""
     sign = 1
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         node, sign = node.operand, -1
@@ -158,7 +158,7 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
 
 
 def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
-    """Return the parameter, with its namespace, that an entry of `declare_parameters` declares."""
+    """Return the parameter declared by an entry of `declare_parameters`, including its namespace."""
     elements = entry.elts if isinstance(entry, ast.Tuple | ast.List) else []
     namespace = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "namespace")]
     texts = [
@@ -170,7 +170,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return the name of a literal: the target of its assignment or the parameter whose default it is; else ""."""
+    """Return the name of a literal: the target of its assignment, or the parameter that has it as default; else ""."""
     key, inner = "", node
     for each in source.ancestors(node):
         if isinstance(each, ast.Dict | ast.List | ast.Tuple):

@@ -1,4 +1,4 @@
-"""Find packages from which a patch imports messages and on which the file's ROS package does not depend yet."""
+"""Find message packages that a patch imports and that the file's ROS package does not depend on yet."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for every package whose messages a patch imports and package.xml does not list.
+    """Return a sentence for every message package that a patch imports and that package.xml does not list.
 
     `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
     """

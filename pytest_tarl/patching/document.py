@@ -1,4 +1,4 @@
-"""A source text with its syntax tree: positions of nodes, and edits that change nothing else."""
+"""A source text with its syntax tree: positions of nodes, and edits that leave all other text unchanged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _COMMENT = re.compile(r"[ \t\f]*(#[^\r\n]*)?")
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`, whose lines end with a bare line feed."""
+    """Replace the characters from `start` to `end` by `text`; lines in `text` end with a line feed."""
 
     start: int
     end: int
@@ -54,7 +54,7 @@ class Document:
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map (start, end) offsets to expressions; the innermost one if several share them."""
+        """Map (start, end) offsets to expressions; if several share the offsets, to the innermost one."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
@@ -70,7 +70,7 @@ class Document:
         return "    "
 
     def start(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset of a node's first character; decorators are not part of a definition."""
+        """Return the offset of a node's first character, after any decorators."""
         return self.offset(node.lineno, node.col_offset)
 
     def end(self, node: ast.expr | ast.stmt) -> int:
@@ -163,7 +163,7 @@ class Document:
         return self.line_starts[line - 1] + column - 1 if 0 < line <= len(self.line_starts) else -1
 
     def offset(self, line: int, byte: int) -> int:
-        """Return the offset of a line and a column, which syntax trees count in UTF-8 bytes."""
+        """Return the offset of a position in the syntax tree, whose columns count UTF-8 bytes."""
         start = self.line_starts[line - 1]
         if self.text.isascii():
             return start + byte
@@ -205,7 +205,7 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
 
 def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
-    """Return a text, not necessarily Python, with all edits applied. Raises RepairError if two overlap."""
+    """Return a text in any language with all edits applied. Raises RepairError if two edits overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:

@@ -93,7 +93,7 @@ def enclosed(code: str, needed: int) -> str:
 
 
 def fitted(source: Document, node: ast.expr, code: str) -> str:
-    """Return an expression with the parentheses that it needs in place of `node`."""
+    """Return the code, in parentheses if it needs them at the place of `node`."""
     before = source.text[: source.start(node)].rstrip(" \t")[-1:]
     after = source.text[source.end(node) :].lstrip(" \t")[:1]
     if before == "(" and after == ")":
@@ -167,7 +167,7 @@ def _is_integer_vector(node: ast.AST) -> bool:
 
 
 def _needed(parent: ast.AST, child: ast.expr) -> int:
-    """Return the precedence that an expression needs to stand below `parent` without parentheses."""
+    """Return the lowest precedence of a child expression that needs no parentheses under `parent`."""
     if isinstance(parent, ast.BinOp):
         return _beside(parent, child)
     if isinstance(parent, ast.UnaryOp):

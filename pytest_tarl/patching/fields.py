@@ -1,4 +1,4 @@
-"""Integer fields of messages: a constant stored in one must stay an integer, or ROS rejects the message."""
+"""Integer fields of messages: ROS rejects a message if such a field gets a float."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SHAPING = ast.BinOp | ast.UnaryOp | ast.IfExp | ast.List | ast.Tuple
 
 
 def in_integer_field(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression becomes (part of) the value of an integer field of a message."""
+    """Return whether an expression is the value, or part of the value, of an integer field of a message."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.keyword) and parent.arg is not None:
@@ -74,7 +74,7 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type as called in this file; "" if it was not imported."""
+    """Return the ROS name of a message type, given its expression in this file; "" if it was not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 

@@ -1,4 +1,4 @@
-"""Write guards as Python: the expression for a sensor's value, and a condition that cannot raise."""
+"""Write guards (conditions on sensors) as Python expressions that cannot raise."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from pytest_tarl.variables import prefixes
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """An expression for a sensor's value; `absent` is the part of it that is None before the first message."""
+    """An expression for a sensor's value; `absent` is the subexpression that is None before the first message."""
 
     code: str
     absent: str = ""
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python, given the readings of its sensors by name; "" if the guard always holds."""
+    """Return a guard as Python; `readings` maps sensor names to expressions. Return "" if the guard always holds."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -53,8 +53,8 @@ def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:
     """Return the first expression that can be evaluated at `place`, or None.
 
-    An expression is skipped if it may be unbound there, or if its initial value makes the condition true: before the
-    first message the original code must stay in force.
+    An expression is skipped if it may be unbound at `place`. It is also skipped if its initial value makes the
+    condition true, because the original code must run until the first message arrives.
     """
     for code in expressions:
         chain = prefixes(code)
@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Return whether a condition can hold before the first message; the fields of new messages are zero."""
+    """Return whether a condition can hold before the first message, given that fields of new messages are zero."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)
@@ -104,9 +104,9 @@ def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
 
 
 def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
-    """Return the condition for the bins from low to high: half-open, except that the last bin includes its end.
+    """Return the condition `low <= code < high`; at the upper end of the sensor's range, `<=` replaces `<`.
 
-    For an angle whose interval crosses the end of the range, the condition bounds the rotation from `low`.
+    If the interval of an angle crosses the end of the range, the condition bounds the angle relative to `low`.
     """
     if low > high:
         period = (sensor.high or 0.0) - (sensor.low or 0.0)
@@ -139,6 +139,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Return whether a test is False for None instead of raising."""
+    """Return whether the condition is False, and does not raise, if the value is None."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

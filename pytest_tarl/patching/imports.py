@@ -1,4 +1,4 @@
-"""Names that a module imports, and edits that add imports where a maintainer would."""
+"""Find the names that a module imports, and add imports at the places that a maintainer would choose."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def reference(source: Document, module: str, name: str) -> tuple[str, Import | N
 
 
 def import_edits(source: Document, wanted: Iterable[Import]) -> list[Edit]:
-    """Return edits that add imports, to a line that imports from the same module if there is one."""
+    """Return edits that add imports; they extend an existing import of the same module if there is one."""
     by_module: dict[str, list[Import]] = {}
     for each in dict.fromkeys(wanted):
         by_module.setdefault(each.module, []).append(each)
@@ -92,7 +92,7 @@ def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[E
 
 
 def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Import) -> Edit:
-    """Add a name to an import: alphabetically if the names are sorted, on its own line if the names are."""
+    """Add a name to an import: in sorted order if the names are sorted, on its own line if each name has one."""
     names = [alias.name for alias in node.names]
     later = [alias for alias in node.names if alias.name > wanted.name and names == sorted(names)]
     neighbour = later[0] if later else node.names[-1]

@@ -28,7 +28,7 @@ class Conflict:
         )
 
 
-CONSTANT = "constant"  # key of the header line that names a changed constant at its definition
+CONSTANT = "constant"  # key of the header line with the definition of a changed constant
 
 
 def constants(patch: Patch) -> list[str]:
@@ -37,7 +37,7 @@ def constants(patch: Patch) -> list[str]:
 
 
 def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
-    """Return the conflicts between patches made for the same text."""
+    """Return the conflicts between patches of the same text."""
     found: list[Conflict] = []
     for at, first in enumerate(patches):
         for second in patches[at + 1 :]:
@@ -79,7 +79,7 @@ def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
 
 
 def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> str:
-    """Return one diff for several patches; `originals` maps file names to the texts that they were made for."""
+    """Return one diff for several patches; `originals` maps file names to the contents before the patches."""
     texts = {}
     for name, original in originals.items():
         files = [file for patch in patches for file in patch.files if file.name == name]
@@ -99,7 +99,7 @@ def same_change(first: Patch, second: Patch) -> bool:
 
 
 def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
-    """Yield the constants that both patches change, for example one at its use and one at its definition."""
+    """Yield conflicts on constants that both patches change, for example at the use and at the definition."""
     for told in constants(first):
         file, _, line = told.partition(" ")[0].rpartition(":")
         if told in constants(second) and line.isdecimal() and first.base == second.base:
@@ -107,7 +107,7 @@ def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
-    """Return the distinct replacements from the top of the file down, with equivalent ones merged."""
+    """Return the distinct replacements in file order, with replacements of the same lines merged if possible."""
     ordered: list[Replacement] = []
     for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
         joined = agreed(ordered[-1], one) if ordered else None

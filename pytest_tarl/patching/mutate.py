@@ -1,4 +1,4 @@
-"""Mutations: a new value for a constant at its use, written into the source exactly as the patch will have it."""
+"""Mutations: new values of constants at their uses, written into the source exactly as in the later patch."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ if TYPE_CHECKING:
 class Mutation:
     """A new value for an operand at its use.
 
-    `value` is the new value of a literal. For other operands it is the factor that multiplies the use, or the summand
-    if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at the constant's
-    definition instead.
+    An operand is a use of a constant. `value` is the new value of a literal. For other operands it is a factor on the
+    use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at the
+    constant's definition instead.
     """
 
     operand: Operand
     value: float | int | bool
     place: Place | None = None
     form: Form | None = (
-        None  # set for a structural repair, whose operand is an expression and whose value is a factor
+        None  # set for a structural repair: the operand is then an expression and the value a factor
     )
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
-    """Return the mutation of one sweep step, or None if it would change nothing.
+    """Return the mutation of an operand by a factor, or None if it would change nothing.
 
-    Zero moves by `factor - 1`, or by `1 - 1/factor` for factors below 1, so that steps are symmetric on a log scale.
-    With `integral` (see `is_integral`) an integer stays one and moves by at least one.
+    A zero becomes `factor - 1`, or `1 - 1/factor` for factors below 1, so that factors f and 1/f are symmetric. With
+    `integral` (see `is_integral`), an integer stays an integer and changes by at least 1.
     """
     value = operand.value
     if isinstance(value, bool):
@@ -73,7 +73,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation of one step on a chart, or by a factor without one; None if there is none."""
+    """Return the mutation for a step on a chart, or for a factor if `chart` is None. None if nothing changes."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)
@@ -84,14 +84,14 @@ def stepped(
 def to_step(
     mutation: Mutation, step: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return a mutation of the same operand by another step; None if there is none."""
+    """Return the mutation of the same operand by another step; None if there is none."""
     if mutation.form is not None:
         return replace(mutation, value=step)
     return stepped(mutation.operand, step, mutation.chart, mutate)
 
 
 def step_of(mutation: Mutation) -> float | None:
-    """Return the step of a mutation on its chart; None if it has no chart or no step leads there."""
+    """Return the step of a mutation on its chart; None if it has no chart or no step gives its value."""
     constant = mutation.operand.value
     if mutation.chart is None or constant is None:
         return None
@@ -101,7 +101,7 @@ def step_of(mutation: Mutation) -> float | None:
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether the operand's place needs an integer: an index, a length, a compared code or an integer field."""
+    """Return whether an operand must stay an integer: an index, a length, a compared code, an integer field."""
     source = _document(analysis, operand.span.path)
     return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
@@ -124,10 +124,10 @@ def rewrite(
     topics: Mapping[str, str],
     texts: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, str]:
-    """Return the new text of every file that changes if the mutations are applied under the guard.
+    """Apply mutations under a guard; return the new text of every changed file, by path.
 
-    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts` are
-    further files with definitions of constants. Raises RepairError if a change cannot be written.
+    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
+    holds further files that define constants. Raises RepairError if a change cannot be written.
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
@@ -165,7 +165,7 @@ def form_values(mutation: Mutation) -> dict[str, float]:
 def _formed(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
-    """Yield each form once, with the parameters from all its mutations."""
+    """Yield each form (template at an expression) once, with the parameters from all its mutations."""
     found: dict[tuple[Span, Template], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
         if mutation.form is not None:
@@ -180,7 +180,7 @@ def _formed(
 
 
 def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:
-    """Return the new numbers of redefined places, by file."""
+    """Return the new numbers at definitions, by file."""
     found: dict[str, dict[Place, float | int | bool]] = {}
     for mutation in mutations:
         if mutation.place is not None:
@@ -191,7 +191,7 @@ def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | i
 def guard_text(
     guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
 ) -> str:
-    """Return the guard as Python, as `rewrite` writes it at the first mutation; "" if it always holds."""
+    """Return the Python code of the guard at the first mutation; "" if the guard always holds."""
     conditions = Conditions(analysis, guard, topics)
     for source, node, _, _, site in _formed(analysis, mutations[:1]):
         return conditions.at(source, site, source.statement(node))
@@ -203,14 +203,14 @@ def guard_text(
 
 @dataclass(frozen=True)
 class Use:
-    """A change with its site."""
+    """A change of one use, with its site (statement)."""
 
     site: SiteId
     change: Change
 
 
 class Conditions:
-    """One guard, as Python at every place that checks it, and the subscriptions that the guard needs."""
+    """The Python code of one guard at every place that checks it, and the subscriptions that the guard needs."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -285,7 +285,7 @@ def _by_file(
 
 
 def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return where each use checks the condition: at the statement, or inside its lambda or generator."""
+    """Return a function that gives the place where a use checks the condition: its statement, lambda or generator."""
     if doubled(source, statement, [use.change for use in uses]):
         return lambda _: statement
     return lambda use: lazy(source, use.change.node) or statement
@@ -346,7 +346,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return the step by which zero moves for a factor: symmetric on a log scale, 0 for factor 1."""
+    """Return the value that a zero gets for a factor; the negative value for its reciprocal, 0 for factor 1."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0

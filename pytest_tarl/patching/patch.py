@@ -18,11 +18,11 @@ from pytest_tarl.files import advice_on, slug, write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
-BASE = "paths are relative to"  # header key of the folder to which the patch's paths are relative
+BASE = "paths are relative to"  # header key of the patch's base folder
 SEAL = "digest of all other lines"  # header key of the digest that reveals edited or damaged patches
 TITLE = "Repair by tarl "
-PARTIAL = ".partial"  # suffix of a file whose change was not accepted as a repair ...
-QUOTE = b"| "  # ... and the prefix of each of its lines, so that no tool applies it
+PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair ...
+QUOTE = b"| "  # ... and prefix of each line in them, so that no tool applies the change
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
@@ -32,8 +32,8 @@ def unified_diff(
     """Return the diff from the files' bytes to their new text, preceded by comment lines.
 
     Paths are relative to the top of the git repository that contains the files, else to `root`, because `git apply`
-    silently skips other paths. Bytes that are not UTF-8 become surrogates; `readable` replaces them. Raises RepairError
-    if the files are in several repositories or their encoding cannot represent the new text.
+    silently skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raises
+    RepairError if the files are in several repositories or their encoding cannot represent the new text.
     """
     base = _base([path.resolve() for path in changed], root.resolve())
     texts = {
@@ -52,7 +52,7 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the digest of a patch whose digest line is left out."""
+    """Return the digest of a patch, given its content without the digest line."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -172,7 +172,7 @@ def _encoded(path: Path, original: bytes, text: str) -> bytes:
 
 
 def _with_endings(original: str, text: str) -> str:
-    """Restore the endings of unchanged lines; new lines take the ending of most lines."""
+    """Keep the line endings of unchanged lines; new lines get the most frequent ending."""
     before, after = _lines(original), _lines(text)
     usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
     bare = [line.replace("\r\n", "\n") for line in before]

@@ -1,4 +1,4 @@
-"""Locate the files of a patch, which must be inside the project whatever its header and links say."""
+"""Locate the files of a patch; they must be inside the project, even if header or links lead elsewhere."""
 
 from __future__ import annotations
 

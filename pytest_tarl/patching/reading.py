@@ -1,4 +1,4 @@
-"""Read patches back: the facts of the header and the changes of each file."""
+"""Read patches from files: the facts of the header and the changes of each file."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ class Patch:
 
     @property
     def sealed(self) -> bool:
-        """Return whether the patch contains its digest; `read` has checked it."""
+        """Return whether the patch contains its digest, which `read` has then verified."""
         return bool(self.told(SEAL))
 
     @property
     def root(self) -> Path | None:
         """Return the folder that contains `.tarl`, None if the patch is elsewhere."""
-        home = Path(os.path.normpath(self.path.absolute())).parent  # links unresolved, as `.tarl` may be one
+        home = Path(os.path.normpath(self.path.absolute())).parent  # keep links: `.tarl` may be one
         inside = (home.name, home.parent.name) == ("patches", ".tarl")
         return home.parent.parent if inside else None
 
     @property
     def base(self) -> str:
-        """Return the folder to which the patch's paths are relative, itself relative to `root`."""
+        """Return the base folder of the patch's paths, relative to `root`."""
         return self.told(BASE)[-1]
 
     def told(self, key: str) -> list[str]:
-        """Return all header values of a key; a merged patch has one for each of its parts."""
+        """Return all header values of a key; a merged patch has one value for each of its parts."""
         return [value for name, value in self.facts if name == key]
 
 

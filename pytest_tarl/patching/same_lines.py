@@ -1,4 +1,4 @@
-"""Reconcile two changes of the same lines: names added to one import, or one insertion within another."""
+"""Reconcile two changes of the same lines: two added imports, or an insertion that contains the other."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _added(before: Imports, after: Imports) -> bool:
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Write the imports of both; names are sorted if they are sorted in both."""
+    """Return lines with the imports of both texts; names are sorted if both texts sort them."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

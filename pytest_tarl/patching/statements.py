@@ -11,8 +11,8 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expressions import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # lines; longer statements are not written twice, for readability
-LONGEST_CONDITION = 48  # characters; longer conditions get a name instead of standing inside an expression
+LONGEST_COPY = 3  # maximum lines of a statement that is written twice, under `if` and `else`
+LONGEST_CONDITION = 48  # maximum characters of a condition inside an expression; longer ones get a name
 _ARITHMETIC = {
     "abs",
     "bool",
@@ -34,9 +34,9 @@ _DIRECTIVES = ("# noqa", "# type:", "# pragma", "# pylint", "# tarl:", "# pyrigh
 
 @dataclass(frozen=True)
 class Change:
-    """A use of a constant and the code that replaces it while the condition holds.
+    """A use of a constant, and the code `then` that replaces it while the condition holds.
 
-    If the change is just a factor, `factor` and `rest` are the parts of `then`: `2.4` and ` * self.kp`.
+    If the change is a factor, `factor` and `rest` are the two parts of `then`, for example `2.4` and ` * self.kp`.
     """
 
     node: ast.expr
@@ -46,7 +46,7 @@ class Change:
 
 
 def lazy(source: Document, node: ast.expr) -> ast.expr | None:
-    """Return the body of the lambda or generator that evaluates a use later than its statement, or None."""
+    """Return the body of the lambda or generator that evaluates a use after the statement has run, or None."""
     for around in source.ancestors(node):
         if isinstance(around, ast.stmt):
             return None
@@ -101,7 +101,7 @@ def named(source: Document, statement: ast.stmt, name: str, condition: str) -> E
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Return whether a condition computed just before a statement still applies when its expressions are evaluated."""
+    """Return whether a condition keeps its value from just before a statement until the changes are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -110,7 +110,7 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 def choices(
     source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
 ) -> Iterator[Edit]:
-    """Yield edits inside a statement; a condition that is long or needed twice gets a name before the statement."""
+    """Yield edits inside a statement; a long or repeated condition is assigned to a name before the statement."""
     test = tests[0]
     long = len(changes) > 1 or len(test) > LONGEST_CONDITION
     if long and nameable(source, statement, changes):
@@ -125,7 +125,7 @@ def choices(
 def neighbours(
     source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
 ) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
-    """Group consecutive statements under one condition that none of them changes."""
+    """Group consecutive statements that share a condition and do not change its value."""
     group: list[tuple[ast.stmt, list[Change], str]] = []
     for each in twice:
         if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
@@ -147,7 +147,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Return whether a statement runs code that may change the value of a condition; arithmetic does not."""
+    """Return whether a statement runs code that may change the value of a condition; arithmetic cannot."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True
@@ -178,7 +178,7 @@ def _place(source: Document, node: ast.expr) -> tuple[int, int]:
 
 
 def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> str:
-    """Return a statement with its changes, without its comment unless that is a directive for a tool."""
+    """Return a statement with its changes; of comments, keep only directives for tools."""
     start, end = source.start(statement), source.end(statement)
     text = source.text[start:end]
     for edit in sorted(replaced(source, changes), key=lambda each: -each.start):

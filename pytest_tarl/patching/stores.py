@@ -1,4 +1,4 @@
-"""Storage for the values of a subscription that a repair adds: on the instance, or in the module."""
+"""Where a subscription added by a repair stores its values: on the instance or in the module."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from pytest_tarl.patching.document import Document, Edit, Function
 
 @dataclass(frozen=True)
 class Store:
-    """Values are stored in attributes of `owner`'s instances, or in globals of the module without an owner.
+    """A place for values: attributes of `owner`'s instances, or globals of the module if there is no owner.
 
-    `places` are the nodes that read them. `module` is this module's name in the module that subscribes, if another.
+    `places` are the syntax nodes that read the values. If another module subscribes, `module` is this module's name
+    there.
     """
 
     source: Document
@@ -32,7 +33,7 @@ class Store:
 
 @dataclass(frozen=True)
 class Callback:
-    """A function to add, which stores fields of a message (`names`: field → variable)."""
+    """A function to add that stores fields of a message in variables (`names`: field → variable)."""
 
     store: Store
     anchor: Anchor
@@ -75,7 +76,7 @@ def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
 
 
 def _instance_edits(callback: Callback, owner: ast.ClassDef) -> list[Edit]:
-    """Initialise attributes before anything can read them; put the callback after the method that subscribes."""
+    """Initialise attributes before any code reads them; put the callback after the method that subscribes."""
     source, method = callback.store.source, callback.anchor.source.method(callback.anchor.statement)
     if method is None:
         raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside its methods.")
@@ -113,7 +114,7 @@ def _first_reader(
 
 
 def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
-    """Put variables and functions before the first definition, or earlier if a statement needs them earlier.
+    """Put variables and functions before the first definition, or before an earlier statement that needs them.
 
     If module variables precede that place, the new variables are appended to them.
     """
@@ -163,7 +164,7 @@ def _above_comments(source: Document, start: int) -> int:
 
 
 def _field(message: str, field: str) -> str:
-    """Return the access to a dotted field; a number indexes a sequence, with a length check."""
+    """Return the expression for a dotted field; a number is an index into a sequence, with a length check."""
     code, checks = message, list[str]()
     for part in field.split("."):
         if part.lstrip("-").isdigit():

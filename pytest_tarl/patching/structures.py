@@ -1,4 +1,4 @@
-"""Apply a template of a structural repair to an expression: the edits for the expression and its state."""
+"""Apply a structural repair's template to an expression: edits for the expression and for its state."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CLOSED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """A template at an expression: the parameter to search, all parameters' defaults, and what the template needs."""
+    """A template at an expression: the parameter to search, the defaults of all parameters, sensor and partner."""
 
     template: Template
     parameter: str = ""
@@ -31,7 +31,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Keeper:
-    """Where a node can store state between calls: how names are written, and where the edits add them."""
+    """Where a node can store state between calls: the prefix of variable names and the place to initialise them."""
 
     prefix: str
     place: int
@@ -65,7 +65,9 @@ def form_edits(
         taken.add(states[name])
         fill[name] = keeper.prefix + states[name]
     found = _written(_Place(source, statement, node, form, condition), fill)
-    if keeper is not None:  # first, because `global` has to precede the lines that use the state
+    if (
+        keeper is not None
+    ):  # these edits come first, because `global` has to precede the lines that use the state
         found = _state_edits(keeper, [(states[name], initial) for name, initial in made.state]) + found
     return found
 
@@ -81,7 +83,7 @@ class _Place:
     condition: str
 
     def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
-        """Return the lines that a form adds for a value of this name, and the expression that replaces the value."""
+        """Return the lines that a form adds, and the expression that replaces the value; `name` holds the value."""
         fill = {**fill, "x": name}
         new = filled(self.form.template.expression, fill)
         lines = [filled(line, fill) for line in self.form.template.lines]
@@ -113,7 +115,7 @@ def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Change a value after the statement that assigns it to a name."""
+    """Return edits that change a value after the statement that assigns it to a name. Raises RepairError."""
     source, statement = place.source, place.statement
     target = _target(statement)
     if target is None or statement.value is not place.node or not source.alone(statement):  # type: ignore[attr-defined]
@@ -125,7 +127,7 @@ def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Assign an unnamed value, as in `return a * b`, to a new name before the statement and change it there."""
+    """Assign an unnamed value, as in `return a * b`, to a new name before the statement; change it there."""
     source, statement, node = place.source, place.statement, place.node
     if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
         raise RepairError(
@@ -248,14 +250,14 @@ def _target(statement: ast.stmt) -> ast.expr | None:
 
 
 def _short(statement: ast.stmt, node: ast.expr) -> str:
-    """Return a name for a value: the last part of its target, or of the left side of a comparison."""
+    """Return a short name for a value, taken from its target or from the left side of a comparison."""
     named = _target(statement) or (node.left if isinstance(node, ast.Compare) else node)
     text = ast.unparse(named).rpartition(".")[2]
     return text if text.isidentifier() else "value"
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return left side, operator and right side of a comparison; the operator is "" unless it has two sides."""
+    """Return left side, operator and right side of a comparison; the operator is "" unless there are two sides."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Subscriptions that a repair adds to a node, so that its guard can read a sensor that the node ignored."""
+"""Subscriptions that a repair adds to a node, so that the guard can read a sensor unknown to the node."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Subscriptions:
     def edits(self) -> dict[str, list[Edit]]:
         """Return the edits that add the subscriptions, by path.
 
-        All registrations come first, because a callback may be added at the very end of the method that subscribes.
+        The calls that subscribe come first, because a callback may be added directly after the subscribing method.
         """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return the subscription that serves a place, a new one if necessary. Raises RepairError."""
+        """Return a subscription whose values a place can read; add one if necessary. Raises RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the call that subscribes and the name of the message type there; append the imports they need."""
+        """Return the call that subscribes and its name for the message type; append the needed imports."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -131,7 +131,7 @@ class Subscriptions:
         return f"{subscriber}({topic}, {kind}, {target})", kind
 
     def _target(self, each: Subscription, callback: str, imports: list[Import]) -> str:
-        """Return how the registration refers to the callback; append the imports that this needs."""
+        """Return the expression for the callback in the call that subscribes; append the needed imports."""
         here = each.anchor.source.method(each.anchor.statement)
         if each.store.owner is not None and here is not None:
             return f"{here[2]}.{callback}"
@@ -148,7 +148,7 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Return a name that is unused where it is stored and imported, and reserve it there."""
+        """Return a name that is unused in the modules that store and import it, and reserve it there."""
         attribute = store.owner is not None
         known = [self._names(store.source, attribute)]
         if not attribute:

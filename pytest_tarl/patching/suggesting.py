@@ -23,7 +23,7 @@ _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
 
 def sarif(patch: Patch) -> str:
-    """Return SARIF 2.1.0 with one result whose fix is the patch; paths are those of the patch."""
+    """Return SARIF 2.1.0 with one result whose fix is the patch, with the same paths as the patch."""
     rule = {
         "id": RULE,
         "name": "RepairFound",
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return the evidence and a `suggestion` block for each change, under a line that names its place."""
+    """Return the evidence, then a `suggestion` block for each change after a line with its file and lines."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -95,7 +95,7 @@ def _escaped(text: str) -> str:
 
 
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
-    """Yield path, first and last line (from 1) and replacement text; a pure insertion also replaces one line."""
+    """Yield (path, first line, last line, new text), lines from 1; a pure insertion also replaces one line."""
     for file in patch.files:
         encoding = _encoding(patch, file)
         around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}
@@ -110,7 +110,7 @@ def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
 
 
 def _block(text: str) -> str:
-    """Fence a suggestion with a fence longer than any in the text."""
+    """Return a `suggestion` block whose fence is longer than any fence in the text."""
     longest = max((len(found) for found in re.findall(r"`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return f"{fence}suggestion\n{text}\n{fence}"
@@ -137,7 +137,7 @@ def _artifact(file: FilePatch) -> dict[str, str]:
 
 
 def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
-    """Return the last change that removes lines; imports and subscriptions, which only add lines, come before it."""
+    """Return the last change that removes lines: imports and subscriptions, before it, only add lines."""
     taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
     return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
 

@@ -21,31 +21,34 @@ SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
 KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sensor")
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
-SCALES = (  # what a default is a multiple of
+SCALES = (  # units of a parameter's default
     "",  # 1
     "typical",  # the usual size of the value in the designed world
-    "larger",  # its usual size in the world where that is larger
+    "larger",  # the larger of its usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
-FIXED = "designed"  # parameters of this scale are not searched
+FIXED = "designed"  # parameters with this scale stay fixed in the search
 STRONGER = ("larger", "smaller")
 OPERATORS = (
     "op",
     "closed",
     "back",
-)  # placeholders for a comparison: its operator, with or without equality, and its reverse
+)  # placeholders of comparisons: the operator, its form with or without equality, its reverse
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
-LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of an operator needs
+LEADING = {
+    "*": TERM,
+    "+": ARITHMETIC,
+}  # operator → lowest precedence of its first operand without parentheses
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with the start value; `stronger` says which values change more.
+    """A parameter to search, with its start value; `stronger` tells whether larger or smaller values change more.
 
-    With a `grid`, only its multiples are tried.
+    With a `grid`, only multiples of it are tried.
     """
 
     name: str
@@ -57,7 +60,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """The replacement of an expression, the lines before it, and the state that they keep between calls."""
+    """The replacement of an expression, the lines before it, and the state that these keep between calls."""
 
     name: str
     summary: str
@@ -127,7 +130,7 @@ def contents(path: Path) -> Mapping[str, Any]:
 
 
 def filled(text: str, values: Mapping[str, str]) -> str:
-    """Fill a text's placeholders, with parentheses where the surrounding expression needs them."""
+    """Return a text with its placeholders replaced, in parentheses where the surrounding expression needs them."""
 
     def put(match: re.Match[str]) -> str:
         code = values[match[1]]
@@ -142,7 +145,7 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def plainly(text: str, values: Mapping[str, str]) -> str:
-    """Fill a sentence's placeholders; unknown ones stay."""
+    """Return a sentence with its placeholders replaced; unknown placeholders stay."""
     return _PLACEHOLDER.sub(lambda match: values.get(match[1], match[0]), text)
 
 

@@ -1,7 +1,7 @@
-"""Check, before a patch is written, that the file loses nothing except the lines that the repair changes.
+"""Before a patch is written, check that the file loses nothing except the lines that the repair changes.
 
-Edits replace spans of the text. This check is independent of spans: it parses both texts to concrete syntax trees,
-comments included.
+This check does not rely on the positions that the edits use: it parses both texts to concrete syntax trees, which
+include comments.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     ]
     kept = (text for _, text in _pieces(after, after))
     for piece in wanted:
-        if piece not in kept:  # searching consumes the iterator, so pieces must occur in order
+        if piece not in kept:  # `in` consumes the iterator, so pieces must occur in order
             raise RepairError(f"The repair of {path} would lose `{piece}`, so no patch is written.")
 
 
 def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcst.CSTNode, str]]:
-    """Yield simple statements and comments in the order of the text, without their indentation."""
+    """Yield simple statements and comments in the order of the text, each with its code without indentation."""
     import libcst as cst
 
     if isinstance(node, cst.Comment):

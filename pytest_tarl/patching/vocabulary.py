@@ -1,4 +1,4 @@
-"""Names that a module already uses, and unused ones similar to a given name."""
+"""Find the names that a module already uses, and unused names similar to a given one."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""`--tarl-repair`: search for a mutation and its guard, accept it on fresh seeds, and write the patch."""
+"""`--tarl-repair`: search for a mutation and its guard (condition), test them on fresh seeds, write the patch."""

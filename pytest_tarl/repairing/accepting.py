@@ -1,4 +1,4 @@
-"""Examine confirmed candidates: choose a guard, then test on fresh seeds until one is accepted."""
+"""Examine confirmed candidates one by one: choose a guard and test on fresh seeds, until one is accepted."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome,
 from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Candidate, Trials
 
-QUICK = 3  # seeds on which to try a guard before testing it on fresh ones
+QUICK = 3  # known seeds on which to try a guard before its test on fresh seeds
 WORLDS = 3  # worlds in which a test runs: drifted, designed, and designed without the candidate
-OLD_WORLD = 8  # episodes that show the reward of a permanent repair in the old world
-MOST = 5  # candidates to test per search ...
-SHARE = 2  # ... and how many of them may have the same operands while others wait
+OLD_WORLD = 8  # episodes in the old world, to display the reward there if the drift is permanent
+MOST = 5  # maximum number of candidates to test per search ...
+SHARE = 2  # ... and tests for the same operands; further such candidates wait for those of other operands
 WORSE: Reason = "nominal gets worse"
-SCREENED = 20  # candidates to run on fresh seeds per search
+SCREENED = 20  # maximum number of candidates to run on fresh seeds per search
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Accepted:
 
 
 class Examiner:
-    """Try guards on confirmed candidates, test each candidate once, and remember the best refused one."""
+    """Try guards on confirmed candidates, test each candidate once, and keep the best refused one."""
 
     def __init__(self, mutants: Mutants, guards: Sequence[Guard]) -> None:
         self.mutants = mutants
@@ -54,15 +54,15 @@ class Examiner:
         self.ledger = Ledger()
         self.waiting: list[
             Candidate
-        ] = []  # held on known seeds, but `SHARE` candidates of the same operands were tested before
+        ] = []  # waiting: they hold on known seeds, but `SHARE` candidates of the same operands were already tested
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
         self.tested = 0
         self._ran = 0  # episodes run in the current test
-        self.turns = 1  # searches, or kinds of change, whose candidates were tested
+        self.turns = 1  # number of searches so far; each has its own `MOST` tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # losses of other tests under candidates
+        self.lost: tuple[str, ...] = ()  # one sentence for each other test that earned less under a candidate
         self.cut = False  # whether the budget ended the search
 
     @property
@@ -85,8 +85,8 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then other values of it: stronger, milder and neighbouring ones."""
-        edges: list[Candidate] = []  # held on known seeds but failed on some fresh ones
+        """Examine a candidate under every guard, then with other values: stronger, milder and neighbouring ones."""
+        edges: list[Candidate] = []  # candidates that hold on known seeds but fail on some fresh ones
         weak: list[Guard] = []  # guards under which the reward in the drifted world stays too low
         for guard in self.guards:
             if any(_narrower(guard, known) for known in weak):
@@ -106,7 +106,7 @@ class Examiner:
                 candidate = replace(candidate, mutations=examined.candidate.changes)  # centred once
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                break  # this guard is as wide as in the search, so narrower guards cannot gain more
+                break  # this guard is as wide as the one of the search, so narrower ones cannot gain more
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),
             *(self.others.beyond(edge) for edge in edges),
@@ -122,7 +122,7 @@ class Examiner:
         return None
 
     def _followed(self, others: OtherValues, trials: Trials) -> Accepted | None:
-        """Examine other values of a candidate, each chosen by the results of the previous ones."""
+        """Examine other values of a candidate, where each result determines the next value."""
         told: Tried | None = None
         while True:
             try:
@@ -137,7 +137,7 @@ class Examiner:
             told = examined
 
     def _conditionally(self, examined: Tried, trials: Trials) -> Accepted | Tried:
-        """Examine a value that holds in the drifted world and not in the designed one under every condition."""
+        """If a value holds in the drifted world but not in the designed one, examine it under every condition."""
         candidate, found = examined.candidate, examined
         for guard in self.guards if not candidate.guard.conjuncts else ():
             with_guard = self._examined(replace(candidate, guard=guard, mutations=candidate.changes), trials)
@@ -147,7 +147,7 @@ class Examiner:
         return found
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
-        """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""
+        """Examine a candidate on known seeds, then on fresh seeds, unless a similar candidate was examined before."""
         chosen = candidate in self.others.chosen
         value = candidate if chosen else self._centred(candidate, trials)
         if isinstance(value, Tried):
@@ -180,7 +180,7 @@ class Examiner:
         return self._on_fresh_seeds(candidate)
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
-        """Return the candidate with its best value nearby; the result if it, or one like it, need not be examined."""
+        """Return the candidate with the best value nearby, or the known result if no examination is needed."""
         known = self._known(candidate)
         if known is not None:
             return known
@@ -190,7 +190,7 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        # Where centring leads back to a value that was examined before, the value itself is examined.
+        # If centring leads to a value that was examined before, examine the original value.
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
@@ -199,10 +199,10 @@ class Examiner:
         return self.ledger.alike(candidate) or next(waiting, None)
 
     def _acting_alike(self, candidate: Candidate, trials: Trials) -> Tried | None:
-        """Return a candidate that acts the same on every known seed, and whose missions earned too little in its test.
+        """Return a tested candidate that earned too little and that equals this candidate on all known seeds.
 
-        One whose missions failed proves nothing: values that act alike on known seeds may differ on
-        the hard ones.
+        Entries whose missions failed do not count: two values with equal outcomes on known seeds may still differ on
+        hard seeds.
         """
         return next(
             (
@@ -216,7 +216,7 @@ class Examiner:
         )
 
     def _goes_further(self, candidate: Candidate) -> bool:
-        """Return whether a smaller step of the same operands under the same guard broke what went well."""
+        """Return whether a smaller step of the same operands under the same guard already did harm."""
         return any(
             one.reason in STRONG
             and one.candidate.guard == candidate.guard
@@ -241,7 +241,7 @@ class Examiner:
         return self.tested >= most or of_fresh_seeds(self.tried) >= screened
 
     def _on_fresh_seeds(self, candidate: Candidate) -> Accepted | Tried:
-        """Test a candidate, once; include the other tests that its guard affects."""
+        """Test a candidate once, then run the other tests that it affects."""
         found = self._tested(candidate)
         self.spent += found.episodes
         others = beside(self.mutants, candidate) if found.accepted else NOTHING_BESIDE
@@ -268,14 +268,14 @@ class Examiner:
         return replace(found, nominal=tuple(self.mutants.run(candidate, seed, None) for seed in fresh))
 
     def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
-        """Distinguish a gain that is too small from a reward below that of the unrepaired program."""
+        """Replace the reason "gain too small" if the reward is even below that of the unrepaired program."""
         worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
         return "worse than unrepaired" if worse else reason
 
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return the reason why a candidate fails on episodes whose totals are known, "" if it does not.
+        """Return the reason why a candidate fails on known episodes, "" if it does not.
 
-        These are drifted episodes, those that lost and some that did not, and recorded ones in which the guard holds.
+        Known episodes are drifted ones (all with a loss, some without), and recorded ones in which the guard holds.
         Raises BudgetSpentError and RepairError.
         """
         goal, offline = self.order.goal, self.order.fixture.sample
@@ -334,7 +334,7 @@ class Examiner:
         )
 
     def _firing(self, candidate: Candidate) -> tuple[int, ...]:
-        """Return the seeds of recorded episodes in which the guard holds; none if the drift is permanent."""
+        """Return the seeds of recorded episodes in which the guard holds; empty if the drift is permanent."""
         if self.order.permanent:
             return ()
         return candidates.firing_episodes(
@@ -346,5 +346,5 @@ class Examiner:
 
 
 def _narrower(guard: Guard, known: Guard) -> bool:
-    """Return whether a guard is stricter than a known one because it adds conditions to it."""
+    """Return whether a guard consists of a known guard and additional conditions."""
     return bool(known.conjuncts) and set(known.conjuncts) < set(guard.conjuncts)

@@ -1,4 +1,4 @@
-"""Bisect between the original, which gains too little, and a value that breaks what went well without it."""
+"""Bisect between the original value, which gains too little, and a changed value that does harm elsewhere."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ WEAK: tuple[Reason, ...] = (
     "not over the whole range",
 )
 STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
-FINEST = 1.05  # two factors with a smaller ratio are not bisected further
+FINEST = 1.05  # stop when the ratio of the two factors is below this
 
 
 class Between:
-    """A bisection on a log scale, of all operands of a candidate at once; signs and booleans are not bisected."""
+    """A bisection of all operands of a candidate together, on a log scale; signs and booleans are not bisected."""
 
     def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
         self.candidate = candidate
@@ -41,7 +41,7 @@ class Between:
                 self.weak = max(self.weak, log(weak) / log(strong))
 
     def middle(self) -> Candidate | None:
-        """Return the candidate halfway between the weak and the strong one, None when the bisection is over."""
+        """Return the candidate halfway between the weak and the strong exponent, None when the bisection is over."""
         factors = [one for one in self._factors if one is not None]
         if self.steps >= STEPS or len(factors) < len(self._factors):
             return None
@@ -58,7 +58,7 @@ class Between:
         return replace(self.candidate, mutations=moved) if moved else None
 
     def told(self, reason: Reason) -> bool:
-        """Take the result for the last candidate; return whether it shows on which side to continue."""
+        """Receive the result of the last candidate; return whether it decides on which side to continue."""
         share = (self.weak + self.strong) / 2
         if reason in WEAK:
             self.weak = share
@@ -86,7 +86,7 @@ def stronger(
 
 
 def further(candidate: Candidate, other: Candidate) -> bool:
-    """Return whether a candidate moves the same operands as another one in the same direction, at least as far."""
+    """Return whether a candidate moves the same operands in the same direction as `other`, at least as far."""
     mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
     if mine.keys() != its.keys():
         return False
@@ -99,7 +99,7 @@ def _beyond(one: float, other: float) -> bool:
 
 
 def searched_step(mutation: Mutation) -> float | None:
-    """Return the factor of a structural repair's parameter, or that of a constant; None if there is none."""
+    """Return the factor on a constant or on a structural repair's parameter; None if there is none."""
     searched = mutation.form is not None and mutation.form.parameter
     return float(mutation.value) if searched else factor(mutation)
 

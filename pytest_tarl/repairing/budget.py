@@ -13,9 +13,9 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 @dataclass
 class Purse:
-    """A budget that the phases draw on, one after the other.
+    """A budget from which the phases of a search are paid in turn.
 
-    A phase ends when it has spent `share` of the budget left at its start. `late` is set when the time is up.
+    A phase ends when it has spent `share` of the budget that was left at its start. `late` is set when the time is up.
     """
 
     episodes: int

@@ -1,9 +1,9 @@
 """Improve the value of a candidate that holds but loses much of the margin, before its expensive test.
 
-A loss of more than half of the margin is hard to distinguish from a loss of all of it. The mean over a few known seeds,
-on which the candidate was chosen, is too high, so a third of the margin there may be half of it elsewhere. A value
-closer to the middle of the candidate's window loses less; finding it costs a few known seeds and saves a test of
-hundreds of episodes.
+A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The mean reward on
+the known seeds is biased upwards, because the candidate was chosen on them. A loss of a third of the margin there may
+be half of it on other seeds. A value in the middle of the range of good values loses less. Finding it costs a few
+episodes on known seeds and saves a test of hundreds of episodes.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from pytest_tarl.repairing.between import on_grid, searched_step
 from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 
-THIN = 0.35  # share of the margin; candidates that lose less are not improved
+THIN = 0.35  # candidates that lose less than this share of the margin are not improved
 STEPS = (1.3, 1.12, 1.04)  # ratios of neighbouring values
-SEEDS = 5  # seeds on which to compare values; a value that falls behind runs on fewer
+SEEDS = 5  # maximum number of seeds on which to compare values
 BEHIND = 2  # seeds after which a value that earned less is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio
 ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios to the neighbours of a value that fails on some seeds
@@ -45,7 +45,7 @@ def centred(
 
 
 def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
-    """Yield a candidate with its value moved to either side; nothing for several sites or without a factor."""
+    """Yield the candidate with a smaller and a larger value; nothing if it has several sites or no factor."""
     for ratio in ASIDE:
         other = moved(candidate, ratio, mutate)
         if other is not None:
@@ -53,7 +53,7 @@ def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
 
 
 def in_place(candidate: Candidate) -> Candidate:
-    """Return a candidate that changes its constants where they are used."""
+    """Return the candidate with its changes at the uses of the constants instead of their definitions."""
     return replace(candidate, mutations=candidate.changes)
 
 
@@ -71,9 +71,9 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its value scaled by `ratio`, powers and the like unchanged.
+    """Return a candidate with its value scaled by `ratio`; parameters on a grid, such as powers, stay.
 
-    None for several sites, or if nothing has a factor.
+    Return None if the candidate has several sites or no factor.
     """
     made: list[Mutation] = []
     if all(map(on_grid, candidate.mutations)):
@@ -93,9 +93,9 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
 
 
 def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
-    """Return a candidate's totals if they are higher in the mean than these.
+    """Return a candidate's totals if their mean is higher than that of `totals`.
 
-    None as soon as it falls behind or a mission fails, even if that one earns more, and if it loses missions that
+    Return None as soon as the candidate falls behind or a mission fails. Also return None if it loses missions that
     rejected candidates lost.
     """
     earned: list[float] = []

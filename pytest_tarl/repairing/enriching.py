@@ -1,8 +1,9 @@
-"""Find more seeds whose missions fail, where few do, and what each of them earns in the designed world.
+"""If few missions fail, find more seeds whose missions fail, and their rewards in the designed world.
 
-If few missions fail, they fail for a reason, such as a person on the road, and are harder in the designed world, too.
-They are a selection, so a repair cannot be expected to reach the recorded mean on them. Each is therefore compared with
-the designed mission of its own seed. Acceptance draws fresh seeds, so this selection does not bias its test.
+A few failing missions have something in common, such as a person on the road, which makes them harder in the designed
+world, too. A repair cannot be expected to reach the recorded mean on such a selection. Each mission is therefore
+compared with the designed mission of its own seed. Acceptance draws fresh seeds, so the selection does not bias its
+test.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, Pair, Trials
 
-ENOUGH = 1 + CONFIRMATIONS  # seeds on which a candidate is tried
-LOOKED_AT = 12  # recorded missions to run under the drift in search of such seeds
-SELECTED = 0.5  # share of failing episodes from which they do not count as a selection
-CONTROLS = 2  # drifted episodes that lost nothing and in which a candidate must not lose either
+ENOUGH = 1 + CONFIRMATIONS  # number of losing seeds that a search needs
+LOOKED_AT = 12  # maximum number of recorded missions to run under the drift to find such seeds
+SELECTED = 0.5  # if this share of episodes fails or more, the failing ones are no selection
+CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
-    """Return the goal with enough failing seeds, each with its reward in the designed world; charge the episodes.
+    """Return the goal with enough failing seeds, each with its reward in the designed world.
 
-    Return the goal unchanged if most drifted episodes lose (nothing runs in this case) or if the budget does not
-    suffice.
+    The episodes are charged to the budget. The goal is returned unchanged if the budget does not suffice. If most
+    drifted episodes lose reward, nothing runs and the goal is returned unchanged, too.
     """
     order = mutants.order
     goal, online = order.goal, order.online.recorded.sample
@@ -64,9 +65,9 @@ def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> floa
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
     """Yield seeds and totals of recorded missions that are likely to lose under the drift, most likely first.
 
-    Each bin of each sensor is scored by the share of losing drifted episodes that visited it, minus the share of the
-    others. A mission counts by its best bin. Single bins are scored instead of cells because one sensor may suffice to
-    detect the drift.
+    Each bin of a sensor has a score: the share of drifted episodes with a loss that visited it, minus the share of
+    those without a loss. A mission's score is that of its best bin. Bins of single sensors are scored instead of cells,
+    because one sensor may suffice to detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}

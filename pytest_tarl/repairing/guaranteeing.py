@@ -1,4 +1,4 @@
-"""Guarantees for a repaired program, from episodes that no decision used, not even its acceptance."""
+"""Guarantees for a repaired program, from fresh episodes that neither the search nor the acceptance used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Track all candidates during a search: the best one so far, and those dropped, with the reason."""
+"""Track the candidates of a search: the best one so far, and the dropped ones with the reason."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
-LEAST = 2  # runs; a candidate with more was tried for confirmation
+LEAST = 2  # a candidate with more runs than this was tried for confirmation
 
 
 class Watch:
@@ -34,7 +34,7 @@ class Watch:
         return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
 
     def best_so_far(self, refused: Refused) -> Refused:
-        """Return the best candidate with its figures, unless one was refused on fresh seeds."""
+        """Return the best candidate of the search with its figures, or `refused` if that has a candidate."""
         if refused.candidate is not None or self.best is None:
             return refused
         totals = [run.total for run in self.seen[self.best].values()]
@@ -60,6 +60,6 @@ class Watch:
         return f"{method} (best so far {self.gain(self.best):+.3g} of {wanted:.3g})"
 
     def _worth(self, candidate: Candidate) -> float:
-        """Return the gain, shrunk towards 0 for few runs."""
+        """Return a candidate's gain, shrunk towards 0 if it has few runs."""
         runs = len(self.seen[candidate])
         return self.gain(candidate) * runs / (runs + 1)

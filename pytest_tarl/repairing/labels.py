@@ -1,9 +1,9 @@
-"""Constants that are not quantities: members of enumerations, values tested only for truth, and notation.
+"""Labels: constants that are not quantities, so that no search moves them.
 
-A factor on a member of an enumeration raises an error, and a factor on `self.done` in `if not self.done` changes
-nothing. The exponents in `(x**2 + y**2) ** 0.5` are geometry, the `1e-9` in `stamp.nanosec * 1e-9` is a unit, and the
-`1.0` in `1.0 - alpha` says that shares sum to 1; none is a choice of the author. No search moves these. Booleans and
-zeros stay, since their truth can change.
+A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
+Other constants are fixed by notation, not chosen by the author. The exponents in `(x**2 + y**2) ** 0.5` are geometry,
+the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares. Booleans
+and zeros are not labels, because a search can change them from false to true.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def quantities(analysis: Analysis, operands: Iterable[Operand]) -> list[Operand]
 
 
 def is_member(source: Document, node: ast.expr, texts: Iterable[str]) -> bool:
-    """Return whether an expression is a member of an enumeration, or is compared with one or by identity.
+    """Return whether an expression is, or is compared with, an enumeration member, or is compared by `is`.
 
     `texts` are the modules in which enumerations may be defined.
     """
@@ -59,7 +59,7 @@ def _is_label(analysis: Analysis, operand: Operand) -> bool:
 
 
 def _is_exponent(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is a literal exponent as geometry has it."""
+    """Return whether an expression is a literal exponent that is common in geometry."""
     around = source.parents.get(node)
     power = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Pow) and around.right is node
     return power and isinstance(node, ast.Constant) and node.value in GEOMETRIC
@@ -85,7 +85,7 @@ def _is_whole(source: Document, node: ast.expr) -> bool:
 
 
 def _only_truth(source: Document, node: ast.expr) -> bool:
-    """Return whether a condition asks for the truth of a value and nothing uses the value itself."""
+    """Return whether only the truth of a value is used, in a condition, and not the value itself."""
     inner: ast.AST = node
     for around in source.ancestors(node):
         if isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.Not):

@@ -12,7 +12,7 @@ from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
 ALIKE = 0.05  # relative difference up to which values of the same operands and guard count as equal
-# Reasons of candidates that held in the drifted world, and in both worlds.
+# Reasons for refusing candidates that held in the drifted world (first) or in both worlds (second).
 HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 
 
@@ -32,7 +32,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """The best refused candidate and the reason; `mean` is its mean reward on fresh seeds, -inf without any."""
+    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, -inf if it ran on none."""
 
     candidate: Candidate | None
     reason: Reason
@@ -92,7 +92,7 @@ def of_fresh_seeds(tried: Sequence[Tried]) -> int:
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return the one that held in more worlds; if equal, the one with more reward on fresh seeds."""
+    """Return the candidate that held in more worlds; on ties, the one with more reward on fresh seeds."""
 
     def came(refused: Refused) -> tuple[bool, int, float]:
         held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0

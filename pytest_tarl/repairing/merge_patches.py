@@ -16,7 +16,7 @@ from pytest_tarl.patching.reading import Patch, read
 
 @dataclass(frozen=True)
 class Joined:
-    """Sentences about patches of the same files, and the commands that apply the patches."""
+    """Sentences about the patches that share files, and the commands that apply the patches."""
 
     lines: tuple[str, ...] = ()
     commands: tuple[str, ...] = ()
@@ -81,7 +81,7 @@ def _combined(patches: Sequence[Patch]) -> Path:
 
 
 def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
-    """Yield groups of patches that share files or constants, directly or through others, in their order."""
+    """Yield groups of patches that share files or constants, directly or through other patches, in order."""
     left = list(patches)
     while left:
         group, files = [left.pop(0)], set[tuple[str, str]]()

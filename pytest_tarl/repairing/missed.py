@@ -1,4 +1,4 @@
-"""Missions that refused candidates lost; later candidates must pass them before their test."""
+"""Missions that refused candidates lost; later candidates run on them before their own test."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
-FEW = 0.25  # share of lost missions up to which a candidate's value counts as nearly right
-SPREAD = 5  # missions of a test that stand for all of them
+FEW = 0.25  # a candidate that loses at most this share of its missions has a nearly right value
+SPREAD = 5  # number of missions that represent a test
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class Lost:
 class Missed:
     """Seeds on which tested candidates lost, each with the total that counts as close to its designed mission.
 
-    `few` contains the lost seeds of candidates that lost at most `FEW` of their missions, `poor` the candidates that
-    failed hardly any mission and earned too little. `spread` contains, for each of the latter, missions of its test
-    that range from the least to the largest loss, each with the designed total.
+    `few` holds the lost seeds of candidates that lost at most `FEW` of their missions. `poor` holds the candidates that
+    failed hardly any mission but earned too little. For each of these, `spread` holds missions of its test, from the
+    smallest to the largest loss.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
@@ -56,7 +56,7 @@ class Missed:
             self.spread[candidate] = _spread(found)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
+        """Return whether a candidate loses most of the missions that were stored last. Raises BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
             lost += _loses(candidate, trials, goal, seed, near)
@@ -65,12 +65,12 @@ class Missed:
         return False
 
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses none of the missions that a refused one lost. Raises BudgetSpentError."""
+        """Return whether a candidate loses none of the missions that `refused` lost. Raises BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
 
 
 def _spread(found: Acceptance) -> list[Lost]:
-    """Return missions at equally spaced ranks of the loss, so that their mean is near that of the whole test."""
+    """Return missions at equally spaced ranks of the loss, so that their mean loss is near that of the test."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
     ranked = sorted(
         (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss

@@ -20,7 +20,7 @@ MOST_KEPT = 128  # candidates whose source is cached
 
 
 class Mutants:
-    """Write candidates into the source and run them; with workers, also ahead of requests."""
+    """Write candidates into the source and run them; workers may also run them ahead of requests."""
 
     def __init__(self, order: Order) -> None:
         self.order = order
@@ -29,7 +29,7 @@ class Mutants:
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return one sweep step of an operand."""
+        """Return the mutation of an operand by a factor; None if it changes nothing."""
         return mutations(operand, factor, is_integral(self.order.analysis, operand))
 
     def source(self, candidate: Candidate) -> Mapping[Path, str]:
@@ -65,7 +65,7 @@ class Mutants:
     ) -> Outcome:
         """Run one episode of another test, with the unrepaired program if `candidate` is None.
 
-        `worst` is the total of a candidate that breaks that test. Raises RepairError.
+        `worst` is the total reward to assume if the candidate breaks that test. Raises RepairError.
         """
         plan = EpisodePlan(seed, drift, self.source(candidate) if candidate else {})
         return _outcome(lambda: rollout(plan), worst)
@@ -82,7 +82,7 @@ class Mutants:
 
 
 def _check_text(ended: EpisodeRun) -> None:
-    """Raise StaleTextError if an episode ran an older text than the candidate's."""
+    """Raise StaleTextError if an episode ran an older version of the source than the candidate's."""
     if ended.older:
         names = ", ".join(path.name for path in ended.older)
         raise StaleTextError(
@@ -95,9 +95,9 @@ def _check_text(ended: EpisodeRun) -> None:
 def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raises StaleTextError.
 
-    The unrepaired program ran in this test, so any failure now (a silent node, a reward that is not a number) is due to
-    the candidate. Such an episode, or one in which the node crashed, earns at most as much as the worst recorded one;
-    the reward up to the crash means nothing.
+    The unrepaired program ran in this test, so any error now (a silent node, a reward that is not a number) is due to
+    the candidate. After an error or a crash of the node, the reward so far means nothing. The total is then at most
+    that of the worst recorded episode.
     """
     try:
         ended = run()

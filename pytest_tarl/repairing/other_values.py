@@ -19,19 +19,19 @@ from pytest_tarl.searching.accept import TOO_LITTLE
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
+POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of the range of good values
 MILDER = (0.75, 0.5)  # exponents for a candidate whose missions succeed but earn too little
-RATIOS = (1.1, 1.03)  # of neighbouring values, around one that loses too much in its test
+RATIOS = (1.1, 1.03)  # ratios of neighbouring values, around a value that loses too much in its test
 MOVES = 3  # largest number of moves in one direction with one ratio
-BETTER = 0.1  # share of the margin that a neighbour must earn more
-CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
+BETTER = 0.1  # a neighbour must earn more by at least this share of the margin
+CLOSE = 1.3  # two rejected values within this ratio may have good values between them
 
 OtherValues = Generator[Candidate, Tried, None]
 Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Propose other values; each method runs once for the same operands and guard."""
+    """Propose other values of a candidate; each method runs at most once per set of operands and guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants
@@ -42,12 +42,14 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        self.chosen: set[Candidate] = set()  # values that missions of a test prefer to the value tested
+        self.chosen: set[Candidate] = (
+            set()
+        )  # values that earned more than the tested value on missions of its test
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps for a candidate that fails on some seeds: it is at the edge of its window.
+        """Propose larger steps if the candidate fails on some seeds, smaller ones if it only earns too little.
 
-        Propose smaller steps for a candidate whose missions succeed and earn too little.
+        A candidate that fails on some seeds is at the edge of the range of good values.
         """
         place = (operands(candidate), candidate.guard)
         if place in self._pushed:
@@ -62,11 +64,11 @@ class Others:
                 return
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose a value between the original and one that lost few missions in its test, perhaps by going too far.
+        """Propose a smaller change than `refused`, which lost few missions in its test and may go too far.
 
-        Bisect: a value that fails on the first seed of the search is too small a change, and one that passes may be too
-        large. Of the values that also pass the missions lost in the test, the middle one is proposed.
-        Raises BudgetSpentError.
+        Bisect between the original value and the refused one. A change that fails on the first seed of the search is
+        too small; one that passes may be too large. Of the values that also pass the missions lost in the test, propose
+        the middle one. Raises BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         if not self.missed.few.get(refused) or place in self._inward:
@@ -90,10 +92,9 @@ class Others:
             return False
 
     def beside(self, trials: Trials) -> OtherValues:
-        """Move a candidate that lost few missions in its test to a value that loses none of them.
+        """Propose neighbours of a candidate that lost few missions in its test, if they lose none of these missions.
 
-        If a value on the other side was rejected, too, the value between the two comes first.
-        Raises BudgetSpentError.
+        If a close value was rejected as well, the value halfway between the two comes first. Raises BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
@@ -103,10 +104,10 @@ class Others:
                     break
 
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose the best value near one whose missions succeed and that loses too much, or nearly so, in its test.
+        """Propose the best value near a refused one whose missions succeed but earn too little in its test.
 
-        Values are compared on missions that represent the test, so that a better value is found even if it is close.
-        Raises BudgetSpentError.
+        Values are compared on missions that represent the test, so that small improvements are found. Raises
+        BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         missions = self.missed.spread.get(refused)
@@ -130,9 +131,10 @@ class Others:
     def _earned(
         self, candidate: Candidate, missions: Sequence[Lost], most: float, trials: Trials
     ) -> float | None:
-        """Return how much more than designed a candidate earns on missions; None once it can earn at most `most`.
+        """Return a candidate's total reward on missions minus the designed total.
 
-        A mission counts as earning at most its designed reward.
+        The reward of a mission is capped at its designed reward. Return None if the difference cannot exceed `most` or
+        a mission fails.
         """
         earned = 0.0
         trials.expect((candidate, one.seed) for one in missions)
@@ -147,7 +149,7 @@ class Others:
         return earned
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Return whether close values on both sides lost few missions, which indicates a narrow window between them."""
+        """Return whether a smaller and a larger close value lost few missions, so that good values may lie between."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)
@@ -168,7 +170,7 @@ class Others:
             return False
 
     def milder(self, candidate: Candidate) -> OtherValues:
-        """Bisect between the original, which gains too little, and a candidate that breaks what went well."""
+        """Bisect between the original value, which gains too little, and a candidate that does harm elsewhere."""
         known, place = self.ledger.alike(candidate), (operands(candidate), candidate.guard)
         if known is None or known.reason not in STRONG or place in self._bisected:
             return

@@ -1,4 +1,4 @@
-"""Partial repairs: candidates that certainly gain and do no harm in the designed world, but do not gain enough."""
+"""Partial repairs: candidates that significantly gain and do no harm in the designed world, but gain too little."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from pytest_tarl.searching.search import Candidate
 
 MOST = 2  # number of candidates to test
 EPISODES = 40  # episodes per world, each paired with one of the unrepaired program
-SCREENED = 12  # number of candidates to screen ...
-KNOWN = 3  # ... in this number of recorded episodes of the designed world
+SCREENED = 12  # maximum number of candidates to screen ...
+KNOWN = 3  # ... in this many recorded episodes of the designed world
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (
     "nominal gets worse",
@@ -51,7 +51,7 @@ class Best:
 
 
 def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
-    """Test the best candidates; return the first that certainly helps, if any, and the number of episodes."""
+    """Test the best candidates; return the first with a significant gain, if any, and the number of episodes."""
     spent, number = 0, -1
     for candidate in islice(_promising(examiner, watch), SCREENED):
         try:
@@ -91,7 +91,7 @@ def _harmless(mutants: Mutants, designed: Gained) -> bool:
 
 
 def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
-    """Yield the best refused candidate, then those with the highest gains in the search, except harmful ones."""
+    """Yield the best refused candidate, then those with the highest gains in the search, without harmful ones."""
     goal = watch.order.goal
     harmful = [one.candidate.changes for one in examiner.tried if one.reason in HARMFUL]
     furthest = [examiner.refused.candidate] if examiner.refused.candidate is not None else []

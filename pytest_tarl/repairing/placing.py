@@ -1,4 +1,4 @@
-"""Choose where to write a repair: at the constant's definition if it is in force in this test, else at its use."""
+"""Choose where to write a repair: at the constant's definition if this test uses it, else at the use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST_NAMED = 5  # other users to name in a note
 
 
 class Placing:
-    """Move the mutations of a candidate to the definitions of their constants; cache which definitions are in force."""
+    """Move mutations to the definitions of their constants; cache which definitions this test uses."""
 
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
@@ -29,7 +29,7 @@ class Placing:
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Return the candidate with its final places; None if `--tarl-edit` requires a place that does not work."""
+        """Return the candidate with its final places; None if the place required by `--tarl-edit` does not work."""
         edit = self.order.options.edit
         movable = [one for one in candidate.mutations if not one.operand.literal and one.form is None]
         if edit == "use" or candidate.guard.conjuncts or not movable:
@@ -49,7 +49,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions in force; return None if there are none or the moved candidate fails."""
+        """Move mutations to definitions that the test uses; return None if there are none or the result fails."""
         mutations = []
         for mutation in candidate.mutations:
             stays = mutation.operand.literal or mutation.form is not None
@@ -67,7 +67,7 @@ class Placing:
         pairs = self.order.goal.pairs[:LOOKED_AT]
         first = pairs[0].seed
         if trials(moved, first) == trials(candidate, first):
-            return moved  # same reward as a change at the use, so nothing else depends on the definition
+            return moved  # equal rewards at definition and use, so nothing else in the test depends on the definition
         if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved
         for mutation in mutations:
@@ -89,7 +89,7 @@ class Placing:
         return self._in_force[operand]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
-        """Return the first place where a change affects the episode, which shows that the place is in force."""
+        """Return the first place at which a change affects the episode, so the test must use that definition."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)

@@ -1,6 +1,6 @@
-"""Constants that need not be searched one by one, because a factor on another one gives the same program.
+"""Constants that need not be searched, because a factor on another constant has the same effect.
 
-They are those of one product, and constructors that only store a constant that is used elsewhere.
+They are the factors of one product, and constants that a constructor only stores for a use elsewhere.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ Product = tuple[str, int, int]  # file, and the offsets of the outermost express
 
 
 def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[Operand], list[Operand]]:
-    """Split operands into those that a search must move, and those that are equivalent to one of these.
+    """Split operands into those that a search must move and those that are equivalent to one of them.
 
-    The first constant of a product, in the given order, must be moved. So must a constant with another use in the same
-    statement, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because its uses move together. A constructor that only
-    stores a constant, by `self.limit = limit`, is equivalent to the use of this constant.
+    The first constant of a product, in the given order, must be moved. So must a constant that a statement uses twice,
+    such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. An operand in `self.limit = limit`
+    of a constructor is equivalent to the later use of that attribute.
     """
     stored = {operand for operand in operands if _stored(analysis, operand)}
     used = {one.definition for one in operands if one not in stored and one.definition is not None}
@@ -45,7 +45,7 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
 
 
 def _stored(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether a constructor assigns the operand, one of its parameters, as it is."""
+    """Return whether the operand is a parameter that a constructor assigns without changing it."""
     if operand.literal or operand.site.qualname.rpartition(".")[2] != "__init__":
         return False
     try:

@@ -1,4 +1,4 @@
-"""Drifts whose size varies from episode to episode: a repair must hold in every part of the range."""
+"""Drifts whose size varies by episode within a range: a repair must hold in every part of the range."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
-LEAST_NEAR = 2  # successful episodes before a candidate can be said to fit a part of the range
+LEAST_NEAR = 2  # minimum number of successful episodes for saying that a candidate fits a part of the range
 
-STRATA = 4  # parts of equal width from which a test takes its seeds in turn; all looks are multiples of it
+STRATA = 4  # number of strata (parts of the range); every look is a multiple of it
 
 Test = Callable[[Sequence[int]], Acceptance]  # test of a candidate on these seeds
 
@@ -30,13 +30,14 @@ class Ranged:
 
 
 def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Acceptance, Ranged]:
-    """Test a candidate once; if the drift has a range, on seeds that are spread evenly over it.
+    """Test a candidate once; if the drift has a range, spread the seeds evenly over it.
 
-    Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than one
-    for a drift of a single size. Its risk is kept. Over a block, a fixed bet grows at most as if all episodes came from
-    the mean of the strata (inequality of geometric and arithmetic mean). The number of failures with different rates
-    varies less than a binomial one with the mean rate, so a small number is less likely (Hoeffding 1956). An accepted
-    candidate must also lose less than the margin on average in each third of the range; this can only refuse.
+    Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than for
+    a single size. The bound on the risk stays valid for two reasons. Over a block, the expected growth of a fixed bet
+    is no larger than with episodes from random strata (inequality of geometric and arithmetic mean). And with different
+    failure rates, a small number of failures is less likely than in a binomial distribution with the mean rate
+    (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin on average in each third of the
+    range; this check can only refuse.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:
@@ -50,7 +51,7 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
 
 
 def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
-    """Return fresh seeds such that each block of `STRATA` draws one size from each stratum, in order."""
+    """Return fresh seeds in an order in which each block of `STRATA` seeds has one from each stratum."""
     strata: list[list[int]] = [[] for _ in range(STRATA)]
     wanted = -(-most // STRATA)
     for index in count():
@@ -86,7 +87,7 @@ def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
 
 
 def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
-    """Return the drift sizes of the comparison, with the sizes in the repair's acceptance test added."""
+    """Return the drift sizes of the comparison and, in addition, those of the repair's acceptance test."""
     drawn = [_drawn(order, seed) for seed in ranged.seeds]
     return {
         part: replace(one, of={**one.of, "repaired": tuple(each[part] for each in drawn)})
@@ -95,7 +96,7 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """Describe the sizes at which a candidate held if they are at one end of a range only; else return ""."""
+    """Describe the sizes at which a candidate held if they form one end of a range; else return ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]

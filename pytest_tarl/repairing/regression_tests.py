@@ -1,4 +1,4 @@
-"""Regression tests: missions of other recorded tests of a changed file must not lose in the designed world."""
+"""Regression tests: other recorded tests of a changed file must not lose reward in the designed world."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ EPISODES = 8  # episodes per test: the first ones in which the guard holds
 
 @dataclass(frozen=True)
 class Beside:
-    """Results of the other tests: sentences about those that held and those that lost, and the episodes run."""
+    """Results of the other tests: sentences about tests that held and tests that lost reward, and the episodes run."""
 
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ NOTHING_BESIDE = Beside()
 
 
 def beside(mutants: Mutants, candidate: Candidate) -> Beside:
-    """Run the recorded missions of other tests of the changed files until one of them loses. Raises RepairError."""
+    """Run the recorded missions of other tests of the changed files, until a test loses reward. Raises RepairError."""
     changed = {path.resolve() for path in mutants.source(candidate)}
     concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, mutants.order.root)]
     held: list[str] = []
@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test's nodes are among the changed files, or a node or the test mentions one of them."""
+    """Return whether a test depends on changed files: as its nodes, or mentioned in a node or in the test."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the indices of recorded episodes to run: those in which the guard holds, if the recording shows it."""
+    """Return the indices of the recorded episodes to run: if known, those in which the guard holds."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))
@@ -73,7 +73,7 @@ def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
 def _compared(
     mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
 ) -> tuple[bool, str]:
-    """Compare missions under a candidate with their own recording; return whether they lose, and a sentence."""
+    """Compare a test's missions with its recording; return whether they lose reward, and a sentence."""
     if not chosen:
         return False, f"{neighbour.test}: as recorded, because the condition never holds there"
     sample = neighbour.fixture.sample

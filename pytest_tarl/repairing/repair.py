@@ -28,14 +28,14 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
-CONSTANTS = 2 / 3  # share of the budget for constants, if structural changes get the rest
-RESERVE = 1 / 6  # share of the budget added for constants if a candidate gained much
-NAMED_FROM = 3  # episodes; candidates with more are reported if they fit a part of a range
+CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
+RESERVE = 1 / 6  # share of the budget added to the search of constants if a candidate gained much
+NAMED_FROM = 3  # minimum number of episodes for reporting that a candidate fits a part of a range
 
 
 @dataclass(frozen=True)
 class Repaired:
-    """Result of a repair: the comparison with culprits, curves and repair, the accepted candidate, episodes by kind."""
+    """Result: the comparison with culprits, curves and repair, the accepted candidate, and episodes by kind."""
 
     comparison: Comparison
     accepted: Accepted | None
@@ -45,7 +45,7 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """Results of the searches so far; `effects` are those of the first search that has any, named by `method`."""
+    """Results of the searches so far; `method` names the first search with any `effects`, which are kept."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
@@ -106,7 +106,7 @@ def _search(
     found: _Findings,
     watch: Watch,
 ) -> None:
-    """Run one search; after a repair was accepted, only for its curve."""
+    """Run one search; if a repair is already accepted, run it only for its curve in the report."""
     share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
     if share < 1.0:
@@ -167,7 +167,7 @@ def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> Non
 
 
 def _exhibit(strategy: Strategy) -> None:
-    """Run a search up to its first candidate, only for its curve."""
+    """Run a search up to its first candidate, only for its curve in the report."""
     with suppress(BudgetSpentError):
         next(strategy.candidates(), None)
 
@@ -186,7 +186,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
-        with suppress(KeyboardInterrupt):  # the repair stays accepted without bounds
+        with suppress(KeyboardInterrupt):  # Ctrl-C skips only the bounds; the repair stays accepted
             bounds, spent = guaranteed(mutants, accepted)
     part = None
     if accepted is None and not found.interrupted:
@@ -227,7 +227,7 @@ def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:
-    """Return the best refused candidate; if nothing was tested, the reason is whatever ended the search."""
+    """Return the best refused candidate; if nothing was tested, its reason tells what ended the search."""
     if found.interrupted:
         return replace(examiner.refused, reason="interrupted")
     if found.late and examiner.refused.reason == "budget":
@@ -279,7 +279,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of the slices, then sites unknown to the recording or outside of the flows."""
+    """Return the sites in the order of the slices, then those that are not in the recording or in any flow."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     aside = (*order.analysis.deciding, *order.analysis.timing)

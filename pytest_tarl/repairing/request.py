@@ -19,7 +19,7 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
 from pytest_tarl.searching.search import Goal, Pair
 from tarl_lint.api import Analysis
 
-SMALL = 0.05  # share of the loss used as the margin if designed missions earn nothing
+SMALL = 0.05  # margin as a share of the loss, used if designed missions earn nothing
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,12 @@ class Order:
     progress: Progress
     patches: Path
     recorded: Path | None = None  # file of the recording
-    neighbours: Callable[[], Sequence[Neighbour]] = tuple  # called once a candidate has held otherwise
+    neighbours: Callable[[], Sequence[Neighbour]] = (
+        tuple  # called only after a candidate has passed all other checks
+    )
     world: Drift | None = None  # the declaration of the drift
     declared: tuple[float, float] | None = None  # declared range of an episode's total reward
-    searched: Goal | None = (
-        None  # the goal with more seeds than the comparison had, if some were searched for
-    )
+    searched: Goal | None = None  # the goal with the additional seeds of `enriching`, if it ran
 
     @property
     def comparison(self) -> Comparison:
@@ -66,7 +66,7 @@ class Order:
 
     @property
     def permanent(self) -> bool:
-        """Return whether the world has changed permanently; the designed world is then history and is not tested."""
+        """Return whether the world has changed permanently, so that the designed world is not tested."""
         return self.comparison.permanent
 
     @cached_property
@@ -96,12 +96,12 @@ class Order:
 
     @cached_property
     def worst(self) -> float:
-        """Return the lowest total of any recorded episode, which a candidate gets that breaks the test."""
+        """Return the lowest total of any recorded episode; a candidate that breaks the test gets this total."""
         return float(min(self.fixture.sample.total.min(), self.online.recorded.sample.total.min()))
 
 
 def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
-    """Yield the indices of (size, index) pairs in an order whose first few span the sizes."""
+    """Yield the indices of (size, index) pairs, in an order in which the first few already span the sizes."""
     parts = [[index for _, index in sorted(drawn)]]
     while parts:
         part = parts.pop(0)
@@ -112,7 +112,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Pick the drifted episodes that lost, worst last, and compute the totals that a mutation must reach."""
+    """Return the goal: the drifted episodes with a loss, worst last, and the totals that a mutation must reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

@@ -1,6 +1,6 @@
-"""Which constants move on a scale of their own.
+"""Choose the constants that move on a scale of their own.
 
-They are shares close to 1, named offsets that are small beside the values that they are added to, and zeros.
+These are zeros, shares close to 1, and named offsets that are small compared with the values to which they are added.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes
 from tarl_lint.model import Operand
 
-NEARLY_ALL = 0.8  # smallest share whose rest to 1 is the better scale
+NEARLY_ALL = 0.8  # from this share on, the distance to 1 is the better scale
 
 
 def charts(order: Order, operands: Sequence[Operand]) -> Mapping[Operand, Chart]:
-    """Return the scales on which constants move beside factors on their values."""
+    """Return the scales on which constants move, in addition to factors on their values."""
     sizes = TypicalSizes(order)
     found: dict[Operand, Chart] = {}
     for operand in operands:
@@ -44,15 +44,16 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
     if NEARLY_ALL <= value < 1.0:
         return SHARE
     if operand.literal and value:
-        return None  # a number inside a line is rarely an offset of a wrong size, and there are many
+        return None  # literals inside a line are numerous and rarely offsets of a wrong size
     size = max(_beside(source, node, operand, sizes), default=0.0)
     return offset(size) if size > abs(value) else None
 
 
 def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes) -> Iterator[float]:
-    """Yield the usual sizes of the values that a constant is added to, and of their sum; for a zero, of what it meets.
+    """Yield the usual sizes of the values to which a constant is added, and of the sum.
 
-    Nothing if the constant is a factor, or stands alone.
+    For a zero, also yield the sizes of values that it is combined or compared with. Yield nothing if the constant is a
+    factor or stands alone.
     """
     inner: ast.AST = node
     for around in source.ancestors(node):

@@ -19,8 +19,10 @@ from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
 
 SUM, SCALE = "sum", "scale"
-ALIKE = 2.0  # largest ratio between a constant's change and the sensor's value for which a plain sum is tried
-REST = 0.9  # share of the recorded steps in which the sensor must be about zero
+ALIKE = (
+    2.0  # a plain sum is tried if the constant's change and the sensor's value differ at most by this ratio
+)
+REST = 0.9  # the sensor must be about zero in this share of the recorded steps
 
 
 def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:

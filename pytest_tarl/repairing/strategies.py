@@ -75,9 +75,9 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:
-    """Return operands that set when the nodes publish, or decide what, plainest first.
+    """Return operands that decide when or what the nodes publish but are in no data flow, plainest first.
 
-    They are in no flow, so no slice ranks them.
+    The slices do not rank them.
     """
     analysis = order.analysis
     known = set(operands(order))

@@ -1,4 +1,4 @@
-"""Structural repairs, for drifts that no constant repairs: templates at the expressions that the slices rank first.
+"""Structural repairs, for drifts that no constant repairs: templates applied at the expressions ranked first.
 
 Each parameter of a template at an expression is an operand like any other, so the sweep can search it.
 """
@@ -31,21 +31,17 @@ MOST = {
     "sent": 3,
     "sensor": 3,
     "sent by sensor": 2,
-}  # expressions at which to try a template, by its kind
-FIRST = (
-    2  # expressions that get all templates first: the slices' first one and the one next to the publish call
-)
+}  # maximum number of expressions at which to try a template, by the template's kind
+FIRST = 2  # number of expressions tried first: the one ranked first and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = (
-    50  # episodes that templates with a sensor get at least if the sensor tells the drift; at most a third
-)
+LEAST = 50  # minimum number of episodes for templates with a telling sensor; limited to a third of the budget
 
 
 class Structures:
-    """A search over templates, cheapest first: at the best `FIRST` expressions of a kind, then at the others.
+    """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
 
-    Templates of equal cost share a part of the episodes, in proportion to their number of parameters; if one gains
-    much, they also get half of what the others have left.
+    Templates of equal cost share a part of the episodes, in proportion to their number of parameters. If one of them
+    gains much, the group also gets half of the episodes left for the other groups.
     """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
@@ -90,7 +86,7 @@ class Structures:
                 self.trials.budget, self.trials.reserve = whole, 0
 
     def _beyond_its_share(self, candidate: Candidate, whole: int) -> Iterator[Candidate]:
-        """Yield a candidate, whose examination may spend more than the share of its templates."""
+        """Yield a candidate; its examination may spend more than the share of its templates."""
         trials = self.trials
         budget, reserve, spent = trials.budget, trials.reserve, trials.spent
         trials.budget, trials.reserve = whole, 0
@@ -107,16 +103,14 @@ class Structures:
         return found
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return one step of a parameter; a template without parameters has a single step."""
+        """Return the mutation of one parameter by a factor; a template without parameters has a single mutation."""
         form = self._found[operand]
         if not form.parameter:
             return Mutation(operand, True, form=form)
         if factor == 1.0 and form.parameter != form.defaults[0][0]:
-            return (
-                None  # unchanged, hence the same change for every parameter; only the first one proposes it
-            )
+            return None  # factor 1 is the same change for all parameters; only the first proposes it
         grid = next((one.grid for one in form.template.parameters if one.name == form.parameter), 0.0)
-        if grid:  # the first parameter of its template, so that factor 1 has been proposed
+        if grid:  # a grid is only on the first parameter, so factor 1 was already proposed
             start = dict(form.defaults)[form.parameter]
             factor = round(start * factor / grid) * grid / start
             if not factor:
@@ -130,7 +124,7 @@ class Structures:
         return 0.0 < factor != 1.0 and (factor < 1.0) == growing.get(form.parameter, factor > 1.0)
 
     def given(self, operand: Operand) -> list[Operand]:
-        """Return the parameters that a structural change takes as given: they are moved only once it gains much."""
+        """Return the fixed parameters of a structural change, which are moved only after it gains much."""
         form = self._found[operand]
         bare = replace(form, parameter="")
         return [
@@ -140,7 +134,7 @@ class Structures:
         ]
 
     def _told(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of templates with a sensor that tells the drift, at all of their expressions."""
+        """Return the operands of templates with a telling sensor (see `telling_sensors`), at all expressions."""
         sensors = telling(self.order)
         found: list[Operand] = []
         for made in known if sensors else ():
@@ -160,7 +154,7 @@ class Structures:
         return groups
 
     def _at(self, template: Template, among: Sequence[Spot], first: bool) -> Iterator[Operand]:
-        """Yield a template's operands at the first or at the other expressions, and remember their forms."""
+        """Yield a template's operands at the first expressions, or else at all later ones; store their forms."""
         for number, forms in enumerate(_forms(self.order, template, among)):
             if (number < FIRST) == first:
                 for operand, form in forms:
@@ -202,13 +196,15 @@ def _forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[
 
 
 def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
-    """Return the expressions that a template fits, those to try first at the beginning."""
+    """Return the expressions that a template fits, in the order to try them."""
     if template.on.startswith("sent"):
         return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
-    if template.on == "sensor":  # a sensor is read where messages arrive, and corrects what is sent
-        # ... before it is limited, so that the limits still hold
+    if (
+        template.on == "sensor"
+    ):  # sensors are read where messages arrive, and correct the values that are sent
+        # ... before these are limited, so that the limits still hold
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
@@ -225,7 +221,7 @@ def _limited(node: ast.expr) -> bool:
 
 
 def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
-    """Return what defaults are multiplied by, by the key that says what they are of."""
+    """Map each key of `of` in a template (such as `usual`) to the size by which defaults are multiplied."""
     drifted = usual(order, sensor)
     scales = {"sensor": 1.0 / drifted, "usual": drifted}
     if sensor.low is not None and sensor.low >= 0.0:
@@ -251,7 +247,7 @@ def _operands(
 
 
 def _fixed(form: Form) -> bool:
-    """Return whether the parameter of a form is one that the change takes as given."""
+    """Return whether the parameter of a form is fixed: moved only after the change gains much."""
     return any(one.name == form.parameter and one.of == FIXED for one in form.template.parameters)
 
 

@@ -1,4 +1,4 @@
-"""Find the sensors that tell a drift: their values differ so much between the worlds that one value shows the world."""
+"""Find telling sensors, whose values usually show whether the world is drifted or designed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.sensors import Sensor
 
-OVERLAP = 0.25  # largest share of steps that the two worlds may have in common for a sensor that tells
+OVERLAP = 0.25  # a sensor is telling if at most this share of steps is in the same bins in both worlds
 
 
 def telling(order: Order) -> list[Sensor]:
-    """Return the numeric sensors that tell the drift, in their order."""
+    """Return the telling numeric sensors, in their order."""
     return [one for one in order.comparison.sensors if continuous(one) and _overlap(order, one) <= OVERLAP]
 
 
@@ -23,9 +23,9 @@ def continuous(sensor: Sensor) -> bool:
 
 
 def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
-    """Return a sensor's mean absolute value in a world, from the middles of its bins; 1 if that is 0.
+    """Return a sensor's mean absolute value, computed from the middles of its bins; 1 if the mean is 0.
 
-    Without `world`, it is that of the drifted world.
+    `world` defaults to the drifted world.
     """
     seen = [
         (abs(low + high) / 2, count)
@@ -37,7 +37,7 @@ def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
 
 
 def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield the ends of the sensor's bin and the number of steps for every entry of the chain."""
+    """Yield (low end, high end, number of steps) of the sensor's bin for every entry of the Markov chain."""
     names = [one.name for one in order.comparison.sensors]
     at = names.index(sensor.name)
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
@@ -46,7 +46,7 @@ def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, f
 
 
 def _overlap(order: Order, sensor: Sensor) -> float:
-    """Return the share of steps that both worlds spend in the same bins, 1 if a world was not seen."""
+    """Return the share of steps that both worlds spend in the same bins, 1 if either world has no steps."""
     designed = _shares(order, order.fixture.sample, sensor)
     drifted = _shares(order, order.online.recorded.sample, sensor)
     if not designed or not drifted:

@@ -22,9 +22,9 @@ _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"
 class Spot:
     """An expression of a kind at which a template may be written.
 
-    `typical` is the usual size of its value as designed, `larger` that of the world where it is larger, `away` its
-    distance in statements from a publish call. `hears` tells whether its module subscribes to topics, so that a
-    template can read a sensor there.
+    `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in both
+    worlds. `away` is its distance from a publish call, in statements. `hears` is whether its module subscribes to
+    topics, so that a template can read a sensor there.
     """
 
     site: SiteId
@@ -64,7 +64,7 @@ def spots(order: Order) -> Iterator[Spot]:
 def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
     """Return the flows' statements, alternately from the slices' ranking and from the publish calls backwards.
 
-    Limits, filters and offsets of a command belong where the command is sent, whatever causes the loss.
+    The publish calls count because limits, filters and offsets of a command belong where the command is sent.
     """
     rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
     ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
@@ -84,9 +84,9 @@ def _away(order: Order) -> dict[SiteId, int]:
 def _expressions(
     source: Document, span: Span, numeric: bool, returned: Collection[str]
 ) -> Iterator[tuple[ast.expr, str]]:
-    """Yield the expressions to change in the statement at a span, with kind.
+    """Yield (expression, kind) for the expressions to change in the statement at a span.
 
-    `numeric` tells whether the statement recorded numbers, `returned` which functions returned some.
+    `numeric` is whether the recording has numbers for the statement; `returned` names functions that returned numbers.
     """
     statements = [
         node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
@@ -109,7 +109,7 @@ def _expressions(
 
 
 def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
-    """Yield the numbers computed for the arguments of a call, also inside messages constructed there.
+    """Yield numeric expressions in the arguments of a call, including those of messages constructed there.
 
     `returned` are the functions of the program that returned numbers.
     """
@@ -121,7 +121,7 @@ def _passed(call: ast.Call, returned: Collection[str]) -> Iterator[ast.expr]:
 
 
 def _sent(call: ast.Call) -> Iterator[ast.expr]:
-    """Yield the names and attributes that a published message is made of."""
+    """Yield the names and attributes from which a published message is constructed."""
     if ast.unparse(call.func).rpartition(".")[2] != "publish":
         return
     for each in ast.walk(call):

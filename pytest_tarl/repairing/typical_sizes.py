@@ -1,4 +1,4 @@
-"""Usual sizes of the values that expressions have in the recording, as start values for structural changes."""
+"""Usual sizes (mean absolute values) of expressions in the recording, as start values of structural changes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BOUNDING = ("abs", "float", "int", "max", "min", "round")
 
 
 class TypicalSizes:
-    """Mean absolute values in a world, the recorded one by default, by site, by assigned name, and by constant."""
+    """Mean absolute values by site, by assigned name and by constant; in the recorded world by default."""
 
     def __init__(self, order: Order, world: Sample | None = None) -> None:
         self.by_site = _recorded(order, world)
@@ -32,7 +32,7 @@ class TypicalSizes:
         }
 
     def of(self, site: SiteId, node: ast.expr) -> float:
-        """Return the usual size of an expression of a site: recorded, else estimated from its parts, else 1."""
+        """Return the usual size of an expression of a site: as recorded, else estimated from its parts, else 1."""
         return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
 
     def known(self, site: SiteId, node: ast.expr) -> float | None:
@@ -40,7 +40,7 @@ class TypicalSizes:
         return self._estimated(site, node)
 
     def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
-        """Return the size that follows from the sizes of the parts; of a sum, the largest; None if unknown."""
+        """Return the size estimated from the parts (for a sum: the largest part's size); None if unknown."""
         if isinstance(node, ast.Constant):
             number = finite_number(node.value)
             return None if number is None else abs(number)
@@ -95,7 +95,7 @@ def _recorded(order: Order, world: Sample | None) -> Mapping[str, float]:
 
 
 def _returned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-    """Yield the names of functions of the flows that returned numbers, with the size recorded there."""
+    """Yield the functions in the flows that returned numbers, each with the recorded size."""
     for step in order.analysis.sites:
         size = by_site.get(str(step.site))
         if size and step.site.text.startswith("return "):
@@ -103,7 +103,7 @@ def _returned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str,
 
 
 def _assigned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-    """Yield the assigned names and attributes of the flows with the size recorded where they are assigned."""
+    """Yield the names and attributes assigned in the flows, each with the size recorded at the assignment."""
     for step in order.analysis.sites:
         size = by_site.get(str(step.site))
         try:

@@ -1,4 +1,4 @@
-"""Modules of the project through which a flow passes but which the marker does not name, so they are not searched."""
+"""Find modules through which a flow passes but which are not searched, because the marker does not name them."""
 
 from __future__ import annotations
 

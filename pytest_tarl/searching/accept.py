@@ -2,12 +2,13 @@
 
 In both the drifted and the designed world the test must show that
 
-- the mean total reward is at most the margin δ below that of the unrepaired program in the designed world, and
-- the failure rate is at most five percentage points higher.
+- the mean total reward is at most the margin δ below the unrepaired program's mean in the designed world, and
+- the failure rate is at most five percentage points higher than there.
 
-A mission counts as losing at most what a designed mission earns, because failures are judged separately. Each mission
-is paired with the unrepaired program's mission of the same seed in the designed world. Only the size of the bets is
-fitted to the candidate; this uses separate seeds at the beginning, which can refuse the candidate but not accept it.
+The loss of one mission is capped at the reward of a designed mission, because failures are counted separately. Each
+mission is paired with the unrepaired program's mission of the same seed in the designed world. The means are tested by
+betting (see `learning`). The size of the bets is chosen on separate seeds before the test. These first seeds can refuse
+the candidate but not accept it.
 """
 
 from __future__ import annotations
@@ -23,13 +24,15 @@ from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
 SCREEN = 8  # episodes before the test
-EARLY = (8, 16, 32)  # looks (numbers of episodes) at which the test can only refuse ...
-LOOKS = tuple(range(60, 201, 20))  # ... and looks at which it can also accept
+EARLY = (8, 16, 32)  # looks (numbers of episodes after which the test is evaluated) that can only refuse ...
+LOOKS = tuple(range(60, 201, 20))  # ... and looks that can also accept
 SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-SHARE = 2 / 3  # share of the risk α for the first candidate; each later one gets a third of the previous risk
+SHARE = (
+    2 / 3
+)  # share of the risk α spent on the first candidate; each later test spends a third of the one before
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +48,9 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The designed world as recorded, to which a repair is compared; `margin` is δ, in reward per episode.
+    """The recorded missions of the designed world, the standard for repairs; `margin` is δ, in reward per episode.
 
-    A declared range of the reward bounds every mission in both worlds: none earns less than `lowest` or more than
-    `highest`.
+    `lowest` and `highest` are the declared bounds of a mission's total reward, in both worlds.
     """
 
     totals: Sequence[float]
@@ -64,29 +66,29 @@ class Reference:
 
     @property
     def tolerated(self) -> float:
-        """Return the highest tolerable failure rate; a repair must be shown to fail less often."""
+        """Return the failure rate that a repair must be shown to stay below."""
         return min(1.0 - self.pass_rate + PASS_RATE_LOSS, 1.0)
 
     @property
     def least(self) -> float:
         """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
 
-        No difference is below that of the worst mission, declared or recorded. If that difference exceeds 20 times the
-        margin (with a margin of 5 % that is all a designed mission earns), it is clipped there: failures are counted by
-        a test of their own. Without the clip, the smallest loss that 200 episodes can show would grow with the cost of
-        a failure, and correct repairs would be refused.
+        The bound is the difference of the worst mission, declared or recorded, but at most 20 margins. With a margin of
+        5 %, 20 margins are the whole reward of a designed mission. Failures can be clipped because a separate test
+        counts them. Without the clip, one costly failure would hide a small loss from a test of 200 episodes, and
+        correct repairs would be refused.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
 
 
 def unforeseen(wanted: Sequence[object]) -> None:
-    """Start no episodes ahead of time."""
+    """Do nothing: the default for worlds that start no episodes ahead of time."""
 
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """Run a program by seed; `foresee` receives the seeds that are requested next unless the test ends."""
+    """Run a program by seed; `foresee` receives the seeds that follow if the test continues."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -94,7 +96,7 @@ class World:
 
 @dataclass
 class Designed:
-    """The unrepaired program in the designed world; each seed runs once, for both worlds of a candidate."""
+    """The unrepaired program in the designed world; each seed runs once and serves both worlds of a candidate."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
@@ -111,11 +113,11 @@ class Designed:
 class Acceptance:
     """Result of a test.
 
-    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed. Those of a refused
-      candidate include the first seeds.
-    - `tested`: False if the first seeds refused the candidate, which then spends no risk.
-    - `episodes`: number of all episodes, including those of the unrepaired program.
-    - `bets`: the bets placed in the two worlds.
+    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed. For a refused
+      candidate they include the episodes on the first seeds.
+    - `tested`: False if the first seeds refused the candidate; no risk is spent in that case.
+    - `episodes`: total number of episodes, including those of the unrepaired program.
+    - `bets`: the sizes of the bets in the two worlds.
     - `seeds`: the seeds of the drifted episodes; `designed`: the unrepaired program's totals on them in the designed
       world.
     """
@@ -144,7 +146,7 @@ def accept(
     reference: Reference,
     risk: float,
 ) -> Acceptance:
-    """Test one candidate; `nominal` is None if the repair cannot make a difference in the designed world.
+    """Test one candidate; `nominal` is None if the repair changes nothing in the designed world.
 
     `seeds` are `SEEDS` fresh ones. `risk` bounds the probability of accepting a candidate that loses more than the
     margin or fails too often in one of the worlds.
@@ -167,7 +169,7 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # A refused candidate is described by all of its missions, an accepted one only by those of its test.
+    # Report all missions of a refused candidate, but only the test's missions of an accepted one.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])
@@ -219,7 +221,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Return whether a look shows both that missions succeed and that they lose no more than the margin."""
+        """Return whether this look shows that missions succeed and lose no more than the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:

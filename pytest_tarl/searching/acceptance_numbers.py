@@ -1,8 +1,9 @@
-"""Acceptance numbers: the largest number of failures that still shows a tolerable failure rate, for each look.
+"""Acceptance numbers: for each look, the largest number of failures that still shows a tolerable failure rate.
 
-With a single look at n missions and c failures this is the bound of Clopper and Pearson: 0 of 59 shows 5 % at 95 %.
-Several looks share the risk. The risk spent by a look is computed exactly, by convolving the distribution of the
-failure count over the paths that no earlier look accepted.
+A look evaluates the test after a fixed number of missions. A single look gives the bound of Clopper and Pearson: 0
+failures in 59 missions show, with 95 % confidence, a rate below 5 %. Several looks share the risk of accepting wrongly.
+The risk of each look is exact: the distribution of the failure count is propagated from look to look, without the
+counts that were already accepted.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) ->
     """Return the acceptance number of each look, `NEVER` where no number suffices.
 
     A program that fails with probability `tolerated` or more is accepted with probability at most `risk` over all
-    looks. By look n of N, risk × √(n/N) may be spent, so early looks get more than their proportion of the episodes.
+    looks. After n of N missions, risk × √(n/N) may be spent, so early looks get more than a proportional share.
     """
     waiting = np.ones(1)  # P(k failures so far and not accepted yet) at the tolerated rate, shape (k,)
     spent, seen = 0.0, 0

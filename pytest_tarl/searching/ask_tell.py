@@ -33,7 +33,7 @@ MOST_AT_ONCE = 1000
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A use of a constant as the optimiser sees it; `value` is None if it is known only at run time."""
+    """A use of a constant, as passed to the optimiser; `value` is None if it is known only at run time."""
 
     path: str
     line: int
@@ -42,20 +42,21 @@ class Constant:
 
 
 class Optimiser(Protocol):
-    """Interface of a plug-in. The optional attribute `batch` is the number of proposals to request at once.
+    """Interface of a plug-in optimiser.
 
-    Episodes of a batch run in parallel under `--tarl-workers`; the number of workers never changes the batch.
+    The optional attribute `batch` is the number of proposals to request at once. Episodes of a batch run in parallel
+    under `--tarl-workers`; the number of workers never changes the batch.
     """
 
     def ask(self) -> Sequence[float]:
         """Return a factor for every constant; raise StopIteration to end the search.
 
         A factor of 1 leaves the constant unchanged; a negative factor flips its sign, or flips a boolean. A constant
-        that is zero moves by `factor - 1` for factors above 1 and by `1 - 1 / factor` for factors below 1.
+        that is zero becomes `factor - 1` for factors above 1 and `1 - 1 / factor` for factors below 1.
         """
 
     def tell(self, factors: Sequence[float], gain: float) -> None:
-        """Take the gain in reward of these factors over the unmutated run of the same seed."""
+        """Receive the gain of these factors: their reward minus that of the unmutated run of the same seed."""
 
 
 Factory = Callable[[Sequence[Constant], int], Optimiser]
@@ -84,7 +85,7 @@ def factory(name: str, folders: Sequence[Path]) -> Factory:
 
 
 class Asking:
-    """A search led by optimisers, one for each guard, in turns. Raises SearchError for faults of the plug-in."""
+    """A search by plug-in optimisers, one for each guard, which take turns. Faults of the plug-in raise SearchError."""
 
     def __init__(
         self,
@@ -110,7 +111,7 @@ class Asking:
         self._found: list[Candidate] = []
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, each without the mutations that it does not need."""
+        """Yield confirmed candidates, reduced to the mutations that they need. Raises SearchError."""
         turn, idle, leads = 0, 0, list(self._leads)
         while self.operands and leads and idle < MOST_IDLE:
             guard, optimiser = leads[turn % len(leads)]
@@ -180,7 +181,7 @@ class Asking:
         return Candidate(tuple(mutation for mutation in moved if mutation is not None), guard)
 
     def _gained(self, candidate: Candidate, pair: Pair) -> tuple[float, bool]:
-        """Run a candidate; one that cannot be written into the source earns as little as the worst episode."""
+        """Run a candidate; if it cannot be written into the source, give it the gain of the worst episode."""
         if not candidate.mutations:
             return 0.0, False
         try:
@@ -190,7 +191,7 @@ class Asking:
         return outcome.total - pair.total, self.goal.reached(outcome, pair.seed)
 
     def _least(self, candidate: Candidate, pair: Pair) -> Candidate:
-        """Drop, one by one, mutations that the seed does not need: optimisers tend to move everything a little."""
+        """Drop unneeded mutations one by one, because optimisers tend to move every constant a little."""
         for mutation in candidate.mutations:
             kept = tuple(one for one in candidate.mutations if one != mutation)
             fewer = Candidate(kept, candidate.guard)

@@ -1,7 +1,7 @@
-"""If a change of a returned value holds, find out which calls of the function need it.
+"""Replace a change of a function's return value by changes at the calls that need it.
 
-A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on what it
-returns changes all of them, and a maintainer changes the ones that are wrong.
+A getter such as `def p(self, name): return self.get_parameter(name).value` returns many constants. A factor on the
+return value changes all of them, but a maintainer would change only the wrong ones.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from tarl_lint.model import Operand
 
 
 def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
-    """Return the units that are calls of the function whose returned value this unit changes, each once.
+    """Return the units (calls, each once) of the function whose return value `unit` changes.
 
-    Units on a chart are other scales of the same calls, on which the factor of the returned value means nothing.
+    Units on a chart are left out: they use another scale, on which the factor of the return value has no meaning.
     """
     operand = unit.operands[0]
     function = operand.site.qualname.rpartition(".")[2]

@@ -1,4 +1,7 @@
-"""Candidate guards, proposed by the region, by novel cells and by single sensors; simulation selects among them."""
+"""Candidate guards, the conditions under which a repair applies.
+
+They are proposed from the region of change, from novel cells and from single sensors. Simulation selects among them.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +17,12 @@ from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
-COVERED = 0.95  # share of the drifted steps from which a guard counts as holding everywhere
-ENTIRELY = 0.999  # share from which no search under the guard is needed beside one without
+COVERED = 0.95  # a guard that holds in this share of the drifted steps counts as holding everywhere
+ENTIRELY = 0.999  # from this share on, a search under the guard adds nothing to a search without a guard
 HARMLESS = 0.25  # bonus in `merit` for a guard that never holds in the designed world ...
 CONDITION = 0.1  # ... and cost of a second condition, both as shares of the change
-EVERYWHERE = 0.3  # if the best merit is lower, the drift counts as being everywhere
-WIDER = 2  # bins by which an interval is widened on either side, as the last proposals
+EVERYWHERE = 0.3  # if the best merit is lower, the drift counts as present everywhere
+WIDER = 2  # bins added to each side of an interval for the last proposals
 
 Bins = tuple[int, int]  # first and last bin, both included
 
@@ -37,8 +40,8 @@ class Evidence:
     def shares(self) -> dict[Cell, float]:
         """Return, for each cell, its share of the change minus its share of the designed steps.
 
-        In a novel cell, one never visited in the designed world, every visit is a change. Its share of the change is
-        therefore its share of the drifted steps. The visited known cells divide the rest in proportion to their change.
+        A novel cell was never visited in the designed world, so its share of the change is its share of the drifted
+        steps. The known cells divide the rest in proportion to their change.
         """
         visited, designed = _occupancy(self.online), _occupancy(self.offline)
         novel = {cell: visited.get(cell, 0.0) for cell in self.region.novel}
@@ -50,7 +53,7 @@ class Evidence:
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
-    """Return the guards worth simulating: fewest conditions first, then those that hold least in the designed world."""
+    """Return the guards worth simulating, fewest conditions first, then those that hold least as designed."""
     region = evidence.region
     proposals = [
         ALWAYS,
@@ -73,12 +76,13 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 
 
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
-    """Return the guards to search under: those that hold where much changed and rarely elsewhere, and `ALWAYS`.
+    """Return the guards to search under: `ALWAYS`, and those that hold where much changed and rarely elsewhere.
 
-    A guard's merit is the share of the change under it minus the share of designed steps under it (Youden's J), plus a
-    bonus if it never holds in the designed world, minus a cost for a second condition. `ALWAYS` comes second. It comes
-    first if the drift is everywhere, so that no guard has much merit, and if the best guard holds wherever the drifted
-    robot came: such a guard says nothing about the places that only a repaired robot reaches.
+    A guard's merit is the share of the change under it minus the share of designed steps under it (Youden's J). A guard
+    that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually comes
+    second. It comes first if no guard has much merit, because the drift is everywhere. It also comes first if the best
+    guard holds wherever the drifted robot went. Such a guard says nothing about places that only a repaired robot
+    reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 
@@ -93,7 +97,9 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
         return (ALWAYS, *best)
     covered = share(best[0], evidence.online, evidence.sensors)
     if covered >= ENTIRELY:
-        return (ALWAYS,)  # no drifted episode can tell them apart; acceptance tries the guard as well
+        return (
+            ALWAYS,
+        )  # drifted episodes cannot tell the guard from `ALWAYS`; acceptance tries the guard, too
     if covered >= COVERED:
         return (ALWAYS, best[0])  # the test in the designed world decides whether the guard is needed
     return (best[0], ALWAYS, *best[1:])
@@ -137,7 +143,7 @@ def _within(conjunct: Conjunct, index: int) -> bool:
 
 
 def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
-    """Return the bins that the cells span on a sensor; for an angle the shortest arc, which may pass the last bin."""
+    """Return the bins that the cells span on a sensor; for an angle, the shortest arc, which may wrap around."""
     chosen = sorted({cell[i] for cell in cells})
     if not chosen:
         return None
@@ -179,7 +185,7 @@ def _values(evidence: Evidence) -> Iterator[Guard]:
 
 
 def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
-    """Yield conditions on single sensors and on pairs, if they can be false and a node can check them."""
+    """Yield conditions on one sensor and on two sensors, if they can be false and a node can check them."""
     conjuncts = []
     for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
         seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
@@ -197,7 +203,7 @@ def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
 
 
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
-    """Return the interval of the bins, unbounded at an end beyond which no bin was ever seen."""
+    """Return the interval of the bins; an end is unbounded if no bin beyond it was ever seen."""
     low, high = sensor.interval(*bins)
     if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low
@@ -224,7 +230,7 @@ def _wider(conjunct: Conjunct) -> Conjunct:
     step = WIDER * sensor.resolution
     low, high = conjunct.low - step, conjunct.high + step
     within = 1e-9 * step
-    # Values outside the range fall into one bin on either side, which is either inside the guard or outside it.
+    # Values below (above) the sensor's range share one bin, which lies wholly inside or outside the guard.
     return Conjunct(
         sensor,
         low if low >= sensor.low - within else -np.inf,

@@ -1,8 +1,8 @@
-"""Decide which of several repairs is at the cause: with it, missions go as designed from start to end.
+"""Decide which of several repairs fixes the cause: its missions follow the designed ones from start to end.
 
-For example, if the heating elements of a kiln are weak, a controller with a larger constant for the loss of the walls
-keeps the hot kiln at its temperature. But only the right constant for the power also lets the kiln heat up as designed.
-Both repairs earn the same total, at different times.
+For example, the heating elements of a kiln are weak. A larger constant for the heat loss of the walls keeps a hot kiln
+at its temperature. Only the right constant for the power also makes the kiln heat up as designed. Both repairs earn the
+same total, but at different times.
 """
 
 from __future__ import annotations
@@ -14,18 +14,21 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.01  # deviation up to which a mission goes as designed
-CLOSER = 0.6  # a candidate is preferred if it deviates at most by this share of the other's deviation
+EXACT = 0.01  # deviation (see `course`) up to which a mission counts as going as designed
+CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
 COMPARED = 3  # missions on which two candidates that hold are compared
-POWERS = (1.0, 0.7)  # of the factor found; a first factor that holds is often larger than needed
-RIVALS = 8  # maximum number of runs of other constants for a candidate that deviates
+POWERS = (
+    1.0,
+    0.7,
+)  # exponents for the factor found, because the first factor that holds is often larger than needed
+RIVALS = 8  # maximum number of runs of rival constants per candidate
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield other named constants of the same function, with the factor found and its reciprocal, then weaker ones.
+    """Yield other named constants of the function, with the factor found, its reciprocal, then weaker factors.
 
-    A constant that divides needs the reciprocal. Left out are constants that never changed a mission, and constants on
-    other scales, for which the factor has no meaning.
+    The reciprocal is for constants that are divisors. Constants that never changed a mission are left out. So are
+    constants on another scale than `found`, for which the factor has no meaning.
     """
     at = found.operands[0].site
     tried = gains.under(guard)

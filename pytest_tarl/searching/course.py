@@ -1,4 +1,4 @@
-"""Compare the courses of two missions: when they earned what."""
+"""Compare the courses of two missions, which are their cumulative rewards over time."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from itertools import accumulate
 
 
 def deviation(rewards: Sequence[float], designed: Sequence[float]) -> float:
-    """Return the mean distance of the cumulative rewards of two missions, as a share of the designed one's largest.
+    """Return the mean distance between two cumulative rewards, divided by the designed one's largest absolute value.
 
-    The arguments are the rewards by step. A mission that ended keeps its total.
+    The arguments are the rewards of each step. The shorter mission keeps its total after its end.
     """
     steps = max(len(rewards), len(designed))
     mine, its = _cumulative(rewards, steps), _cumulative(designed, steps)

@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 
 class EpsilonGreedy:
-    """Learn on fresh seeds which mutation pays off, then confirm the best ones on episodes that lost reward."""
+    """Learn on fresh seeds which mutations gain most, then confirm the best ones on episodes that lost reward."""
 
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3  # sites to search, those that the slices rank first
+    SITES = 3  # number of sites to search: the ones ranked first by the slices
     CONFIRMED = 3  # best mutations to confirm at the end
     EPISODES = 200
 
     @classmethod
     def episodes(cls, budget: int) -> int:
-        """Return the number of episodes for learning; a third of the budget stays for confirming and for guards."""
+        """Return the number of episodes for learning; a third of the budget is kept for confirmation and guards."""
         return max(1, min(cls.EPISODES, 2 * budget // 3))
 
     def __init__(
@@ -111,7 +111,7 @@ class EpsilonGreedy:
             last, action = action, following
 
     def _choose(self, state: int) -> int:
-        """Explore with probability ε, or 1/2 while mutations are untried; else return the best known mutation."""
+        """Explore with probability ε (1/2 while some mutations are untried), else return the best known mutation."""
         untried = [a for a in range(len(self.actions)) if a not in self.seen]
         if untried and self.generator.random() < 0.5:
             return untried[int(self.generator.integers(len(untried)))]

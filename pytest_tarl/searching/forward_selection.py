@@ -1,7 +1,8 @@
-"""Combined repairs by greedy forward selection: add the best other unit to the best one until the goal is reached.
+"""Combined repairs by greedy forward selection: start with the best unit and add units until the goal is reached.
 
-Units are chosen by their main effects, as in matching pursuit. After each step the parts are balanced against each
-other. Parts that turn out to be unnecessary are dropped before the candidate is yielded.
+A part is a unit with its factor. Units are chosen by their gains alone, as in matching pursuit. After each step the
+factors of the parts are adjusted to each other (balanced). Unnecessary parts are dropped before the candidate is
+yielded.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
 from pytest_tarl.searching.units import NEAR, Unit
 
-MOST = 3  # parts of a combined repair
+MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
-LEADERS = 5  # units to combine with the first; one of them may gain too little alone to stand out
+LEADERS = 5  # number of units to combine with the first, because a useful one may gain little alone
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-CLIMBS = (0.9, 1.1)  # factors by which a value that a change takes as given is moved, again and again ...
-CLIMB = 4  # ... but no more often than this
-STRONG = 5.0  # factor for parts that change nothing alone
+CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly ...
+CLIMB = 4  # ... at most this many times
+STRONG = 5.0  # factor for parts that have no effect alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class Settled:
-    """Candidates that were tried on further seeds, and the ones among them that held and were yielded."""
+    """The candidates that were tried on further seeds, and the candidates that were confirmed and yielded."""
 
     tried: set[Candidate] = field(default_factory=set)
     held: set[Candidate] = field(default_factory=set)
@@ -89,7 +90,7 @@ class ForwardSelection:
         """Yield combined candidates that hold on every seed they ran on."""
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
-            return  # it reaches the goal on this seed, so no further part can show a gain
+            return  # the base reaches the goal on this seed, so no further part can show a gain
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
             widened = list(self._with_another(base))
@@ -105,7 +106,7 @@ class ForwardSelection:
     def unions(
         self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
     ) -> Iterator[Candidate]:
-        """Combine the first part with the next ones, the best two with a third, and balance the best combination.
+        """Combine the first part with each of the next, add a third to the best pair, and balance the best result.
 
         `hidden` are units that never changed a reward alone.
         """
@@ -124,7 +125,7 @@ class ForwardSelection:
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
             if best is not None and self._suffices(best[1]):
-                break  # two parts suffice on this seed but not on fresh ones: adjust values, do not add parts
+                break  # the pair suffices on this seed but not on others: adjust its values instead of adding parts
         if best is not None and best[1] > PROMISING * needed:
             joint, gain = yield from self._balanced(*best)
             if len(joint.parts) > 1 and not self._suffices(gain):
@@ -132,7 +133,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units without effect alone, perhaps because missions end too early, to two parts with a high gain."""
+        """Add units without effect alone to a pair with a high gain: missions may have ended too early for them."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():
@@ -165,7 +166,7 @@ class ForwardSelection:
         return self.trials.gain(candidate, self.goal.pairs)
 
     def climbed(self, base: Joint, unit: Unit) -> Iterator[Candidate]:
-        """Add a unit in small steps to either side, while that increases the gain."""
+        """Add a unit and move it in small steps up or down while the gain increases."""
         most = yield from self.gain(base)
         for step in CLIMBS if most is not None else ():
             before, best = most, most
@@ -178,7 +179,7 @@ class ForwardSelection:
                 return
 
     def fewest(self, joint: Joint) -> Iterator[Candidate]:
-        """Yield a combination without the parts that it does not need, if it holds and at most `MOST` are left."""
+        """Yield a combination that holds, without unneeded parts, if at most `MOST` parts remain."""
         try:
             fewer = self._least(joint) if self._reached(joint.candidate(self.mutate)) else joint
             candidate = fewer.candidate(self.mutate)
@@ -188,7 +189,7 @@ class ForwardSelection:
             return
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Yield a combination that holds, without its unneeded parts, unless the rest was yielded before."""
+        """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before."""
         fewer = self._least(joint).candidate(self.mutate)
         if fewer in self.settled.held:
             self.settled.tried.add(candidate)
@@ -199,7 +200,7 @@ class ForwardSelection:
                 return
 
     def _with_another(self, base: Joint) -> Iterator[Joint]:
-        """Yield combinations with one more part, first with its better near factor, then with the other."""
+        """Yield combinations with one more part, first with the better of its two near factors."""
         taken = {unit for unit, _ in base.parts}
         for turn in range(len(NEAR)):
             for unit in self.units:
@@ -209,7 +210,7 @@ class ForwardSelection:
                     yield base.with_part(unit, ranked[turn])
 
     def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
-        """Move the parts one by one while that increases the gain; return the result and its gain."""
+        """Move the factors of the parts one by one while the gain increases; return the result and its gain."""
         for unit, factor in base.parts:
             for step in STEPS:
                 moved = base.with_part(unit, round(factor * step, 3))

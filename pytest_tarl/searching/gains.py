@@ -1,4 +1,4 @@
-"""Table of the gains of single units, by guard and factor, and the rankings that the sweep derives from it."""
+"""Table of the gains of single units by guard and factor, and the rankings that the sweep reads from it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Part = tuple[Unit, float]  # a unit with a factor
 class Gains:
     """Gains in total reward over the unmutated runs of the same seeds.
 
-    A gain of at most `slack` is too small to build upon. With `proposed`, the factor 1 counts as a change.
+    Gains of at most `slack` are treated as noise. With `proposed`, the factor 1 counts as a change.
     """
 
     def __init__(self, slack: float, proposed: bool = False) -> None:
@@ -25,7 +25,7 @@ class Gains:
         self._moved: set[tuple[Unit, float]] = set()
 
     def enter(self, key: Key, factor: float, gain: float, moved: bool | None = None) -> None:
-        """Store the gain of a factor, and whether it changed an episode; by default, whether there is a gain."""
+        """Store the gain of a factor, and whether it changed an episode (by default: whether the gain is not 0)."""
         self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain
         if gain if moved is None else moved:
             self._moved.add((key[0], factor))
@@ -47,20 +47,20 @@ class Gains:
         return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
 
     def anything(self) -> bool:
-        """Return whether any gain is large enough to build upon."""
+        """Return whether any gain exceeds `slack`."""
         return any(max(gains.values()) > self.slack for gains in self._by_key.values())
 
     def idle(self, unit: Unit) -> bool:
-        """Return whether a proposed change, as proposed, changed no episode."""
+        """Return whether a proposed change had no effect at factor 1, its proposed value."""
         tried = any(1.0 in gains for (one, _), gains in self._by_key.items() if one == unit)
         return self.proposed and tried and (unit, 1.0) not in self._moved
 
     def moves(self, unit: Unit) -> bool:
-        """Return whether a unit ever changed an episode."""
+        """Return whether a unit changed any episode."""
         return any(moved == unit for moved, _ in self._moved)
 
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units except those moved both ways, under any guard, without changing an episode."""
+        """Return the units, without those that were increased and decreased under any guard without effect."""
         tries: dict[Unit, int] = {}
         for (unit, _), by_factor in self._by_key.items():
             tries[unit] = tries.get(unit, 0) + sum(factor != 1.0 for factor in by_factor)
@@ -68,9 +68,10 @@ class Gains:
         return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units without those that are the same constant as an earlier one, passed on to a function.
+        """Return the units, without those that use the same constant as an earlier unit with the same effect.
 
-        They share the definition, and changed missions in the same way by all factors of which at least two are known.
+        For example, a constant that is passed to a function is used both in the call and in the function. Such units
+        share the definition, and changed missions equally by all common factors, of which two or more are needed.
         """
         kept: list[Unit] = []
         for unit in among:
@@ -94,9 +95,10 @@ class Gains:
         return len(pairs) >= len(NEAR) and all(gain == its for its, gain in pairs)
 
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
-        """Return the units that lost with all of these factors: more than the slack, or nothing where all is lost.
+        """Return the units that lost more than `slack` with each of these factors.
 
-        A mission that already earns the least cannot lose more, so there a changed episode without a gain counts.
+        A mission that already earns the least possible reward cannot lose more. There a changed episode without a gain
+        counts as a loss.
         """
         tried = {unit: self.of(unit, guard) for unit in among}
 
@@ -111,7 +113,7 @@ class Gains:
     def leading(
         self, before: float, guard: Guard, among: Sequence[Unit], least: float, inert: bool = False
     ) -> list[Unit]:
-        """Return the units that gained at least `least` with the factor `before`, best first.
+        """Return the units whose gain with the factor `before` is at least `least`, best first.
 
         Units that never changed an episode are excluded unless `inert` is true.
         """

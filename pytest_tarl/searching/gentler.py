@@ -1,7 +1,7 @@
 """Decide whether to try gentler repairs before one that holds, and which constants these may change.
 
-For example, if a rope camera with wet brake pads passes its mark, a very low speed helps, and so does another value of
-gravity. A maintainer corrects the friction of the pads: the mission then goes as designed.
+For example, a rope camera with wet brake pads overshoots its mark. A very low speed avoids that, and so does a wrong
+value for gravity. A maintainer would instead correct the friction of the pads, so that the mission goes as designed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tarl_lint.model import SiteId
 
 COARSE = (1.5, 0.65)
 FINE = (*COARSE, 1.22, 0.82, 1.35, 0.73)
-LONGER = 1.3  # missions whose length differs by this ratio go in another way than designed
+LONGER = 1.3  # a mission that is longer or shorter than designed by this ratio takes another course
 
 
 def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
@@ -35,10 +35,10 @@ def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 def gentler(
     found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard, promising: float
 ) -> list[tuple[Unit, Sequence[float]]]:
-    """Return the named constants to try in small steps instead, with these steps, best statement first.
+    """Return the named constants to try in place of `found`, each with its steps, best statement first.
 
-    Where another constant of the same statement gained at least `promising`, steps are fine. Constants that were moved
-    both ways without any effect are left out.
+    The steps are smaller if another constant of the same statement gained at least `promising`. Constants that were
+    increased and decreased without any effect are left out.
     """
     tried = gains.under(guard)
     at_site: dict[SiteId, float] = {}

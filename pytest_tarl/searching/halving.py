@@ -1,8 +1,8 @@
-"""Sequential halving: run every operand with every factor, and drop half of them after each round.
+"""Sequential halving: run every arm (an operand with a factor), and drop half of the arms after each round.
 
-Each round uses common seeds. It also drops arms that gain nothing or that the paired race shows to be behind, and it
-refines the best ones (Karnin, Koren & Somekh 2013; the race as in Maron & Moore 1994). This search tries everything
-once before it decides, so it needs at least as many episodes as there are operands times factors.
+Each round uses common seeds. It also drops arms that gain nothing or that fall significantly behind in a paired race,
+and it refines the best arms. References: Karnin, Koren & Somekh 2013; for the race, Maron & Moore 1994. The first round
+runs every arm once, so the search needs at least (operands × factors) episodes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SLACK = 0.1  # minimum gain that counts, as a share of the loss
 
 
 class Halving:
-    """Sequential halving with local refinement and a paired race, for one guard after the other."""
+    """Sequential halving with local refinement and a paired race, run for each guard in turn."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class Halving:
                     yield candidate
 
     def _kept(self, arms: Sequence[Arm]) -> list[Arm]:
-        """Return the better half of the arms that gain and are not behind, plus arms around the best of them."""
+        """Return the better half of the arms that gain and are not behind, plus new arms around the best ones."""
         gaining = [arm for arm in self.race.abreast(arms) if self.race.gain(arm) > self.slack]
         kept = gaining[: (len(gaining) + 1) // 2]
         return list(dict.fromkeys([*kept, *(one for arm in kept[:REFINED] for one in self.race.around(arm))]))
@@ -83,7 +83,7 @@ class Halving:
 
 
 def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
-    """Return, for each site, each operand's best gain; ties go to the value tried first."""
+    """Return for each site the best gain of each operand; on ties, the value tried first wins."""
     best: dict[Operand, OperandEffect] = {}
     for arm in race.gains:
         for mutation in arm.unit.mutations(race.mutate, arm.factor):

@@ -1,10 +1,10 @@
 """Search a few constants jointly: Bayesian optimisation over the logarithms of their steps.
 
-Two constants that have to grow together lie on a ridge, where a step along either axis loses. A Gaussian process fits
-all joint trials of a seed; the next trial changes one to three constants of a good point where the expected improvement
-is largest (Regis & Shoemaker 2013; Jones, Schonlau & Welch 1998). Trials are judged by reward and by how far their
-missions are from the designed ones, because a mission that fails late is nearer to the goal than one that fails at
-once, whatever the two earn.
+A step of a constant is its factor. If two constants have to grow together, a step in one of them alone loses reward. A
+Gaussian process fits all joint trials of a seed. Proposals change one to three constants of a good point (Regis &
+Shoemaker 2013). The proposal with the largest expected improvement runs next (Jones, Schonlau & Welch 1998). The value
+of a trial combines its reward with the deviation of its missions from the designed ones. The deviation counts because a
+mission that fails late is closer to the goal than one that fails at once, even with the same reward.
 """
 
 from __future__ import annotations
@@ -27,32 +27,32 @@ from tarl_lint.model import Operand
 
 Floats = NDArray[np.float64]
 
-DIMENSIONS = 8  # most constants that move ...
-LEAST = 2  # ... and fewest
-EPISODES = 50  # most trials ...
-PATIENCE = 25  # ... and trials without a better one after which the search ends
+DIMENSIONS = 8  # maximum number of constants to move ...
+LEAST = 2  # ... and minimum number
+EPISODES = 50  # maximum number of trials ...
+PATIENCE = 25  # ... and of consecutive trials without an improvement
 FARTHEST = 3.0  # largest |log step|, a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
-PROPOSALS = 400  # number of proposals among which the expected improvement chooses
-STARTS = 4  # best points to start from ...
-ASUNDER = 0.2  # ... that differ by at least this much in some log step
-HIDDEN = 2  # maximum number of constants that alone never changed the reward much ...
-SELDOM = 0.25  # ... and how often they move, as a share of the others
+PROPOSALS = 400  # random proposals per trial; the one with the largest expected improvement runs
+STARTS = 4  # number of best points to start from ...
+ASUNDER = 0.2  # ... which must differ by at least this much in some log step
+HIDDEN = 2  # maximum number of constants that hardly changed the reward alone ...
+SELDOM = 0.25  # ... and how often they move, relative to the other constants
 LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
-REFITTED = 4  # trials after which the length scales are chosen again
-NOISES = (0.05, 0.2)  # standard deviations of a trial, as shares of that of all trials
-WORST = 2.0  # largest deviation from the designed mission that counts
-REFUSED = 0.5  # subtracted if a point that is good on this seed was refused on others
-SMALL = 0.02  # smaller changes of a log step count as none
+REFITTED = 4  # number of trials between two fits of the length scales
+NOISES = (0.05, 0.2)  # noise of a trial, as a share of the standard deviation of all trials
+WORST = 2.0  # larger deviations from the designed mission are clipped to this
+REFUSED = 0.5  # subtracted from the value of a point that is good on this seed but was refused on others
+SMALL = 0.02  # smaller changes of a log step are set to 0
 
 
 @dataclass
 class Surrogate:
     """A Gaussian process with a Matérn kernel (ν = 5/2) and a length scale for each coordinate.
 
-    `points` has shape (n, k), `values` shape (n,). Without `lengths`, of shape (k,), the marginal likelihood chooses
-    them, coordinate by coordinate.
+    `points` has shape (n, k), `values` shape (n,). `lengths` has shape (k,); if it is not given, the lengths that
+    maximise the marginal likelihood are chosen, one coordinate at a time.
     """
 
     points: Floats
@@ -78,7 +78,7 @@ class Surrogate:
         return mean, self._size * np.sqrt(variance)
 
     def _likeliest(self) -> Floats:
-        """Return the length scales of the highest marginal likelihood found."""
+        """Return the length scales with the highest marginal likelihood found."""
         found = np.full(self.points.shape[1], 1.0)
         best = self._likelihood(found, NOISES[-1])
         for at in range(len(found)):
@@ -103,20 +103,20 @@ class Surrogate:
 
 
 def _kernel(apart: Floats, lengths: Floats) -> Floats:
-    """Return the correlations of points whose squared distances by coordinate are `apart`, shape (m, n, k)."""
+    """Return correlations of shape (m, n); `apart` holds squared distances by coordinate, shape (m, n, k)."""
     scaled = np.sqrt(5.0 * (apart @ lengths**-2.0))
     return np.asarray((1.0 + scaled + scaled**2 / 3.0) * np.exp(-scaled), np.float64)
 
 
 def expected_improvement(mean: Floats, deviation: Floats, best: float) -> Floats:
-    """Return how much more than `best` points earn in expectation."""
+    """Return the expected improvement of points over `best`, shape (m,)."""
     ahead = (mean - best) / deviation
     normal = np.array([0.5 * (1.0 + erf(one / sqrt(2.0))) for one in ahead])
     return np.asarray((mean - best) * normal + deviation * np.exp(-0.5 * ahead**2) / sqrt(2.0 * pi))
 
 
 class Jointly:
-    """Joint search of units from given points; `selection` runs and confirms combinations.
+    """Joint search of units, starting at given points; `selection` runs and confirms the combinations.
 
     The last `hidden` units move less often.
     """
@@ -165,10 +165,10 @@ class Jointly:
         return Joint(tuple((unit, float(f"{step:.3g}")) for unit, step in joint.parts), joint.guard)
 
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
-        """Run a combination; return the share of the wanted gain that it earns, less its missions' deviation.
+        """Run a combination; return its share of the wanted gain minus the deviation of its missions.
 
-        A combination that would be the best so far also runs on a second seed, and gets the mean, since one seed may be
-        luck.
+        A combination that would be the best so far also runs on a second seed, because one seed may be luck. The mean
+        is then returned.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:
@@ -198,7 +198,7 @@ class Jointly:
         return tuple(float(one) for one in proposals[int(np.argmax(gains))])
 
     def _proposals(self, starts: Floats) -> Floats:
-        """Return starts with one to `CHANGED` coordinates moved, shape (m, k); too small steps are set to none."""
+        """Return the starts with one to `CHANGED` coordinates moved, shape (m, k); steps below `SMALL` are set to 0."""
         draw, size = self.generator, (PROPOSALS, starts.shape[1])
         many = draw.integers(1, CHANGED + 1, PROPOSALS)
         ranks = (draw.random(size) ** (1.0 / self._often)).argsort(axis=1)[:, ::-1].argsort(axis=1)
@@ -210,7 +210,7 @@ class Jointly:
 
 
 def _best_apart(points: Floats, values: Floats) -> Floats:
-    """Return the best points of which no two are close to each other, shape (m, k)."""
+    """Return the best points, no two of them close to each other, shape (m, k)."""
     found: list[Floats] = []
     for at in np.argsort(-values, kind="stable"):
         if len(found) < STARTS and all(np.abs(points[at] - one).max() >= ASUNDER for one in found):
@@ -219,10 +219,10 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 
 
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
-    """Return the units to move jointly, and how many of the last ones may be hidden by others.
+    """Return the units to move jointly, and how many of the last ones have effects that others may hide.
 
-    Each constant moves on the scale on which it gained most. Named constants come first, then those that changed the
-    reward most; those that changed it little come last. Booleans, zeros and constants of nature are left out.
+    Each constant moves on the scale on which it gained most. Named constants come first, then the other constants by
+    how much they changed the reward. Booleans, zeros and constants of nature are left out.
     """
     best: dict[tuple[Operand, ...], tuple[float, Unit]] = {}
     for unit in among:

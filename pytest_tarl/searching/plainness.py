@@ -13,14 +13,15 @@ from tarl_lint.model import Operand
 
 UNTRIED = 2  # named constants to try before a changed literal is accepted
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)  # m/s², as programs write it
-ROUNDED = 6e-4  # relative error of 3.14
+ROUNDED = 6e-4  # relative error of 3.14 as π, with some room
 
 
 class Oddness(IntEnum):
     """How unusual a change reads, from the plainest to the oddest.
 
-    `NAMED` scales a named constant, `INNER` a literal, `VARIABLE` a name that stands for several constants, so that the
-    repair writes a new factor beside it. `OFFSET` adds a number or flips a sign. `NATURE` changes a constant of nature.
+    `NAMED` scales a named constant, `INNER` a literal. `VARIABLE` scales a name that stands for several constants, so
+    the repair writes a new factor next to it. `OFFSET` adds a number or flips a sign. `NATURE` changes a constant of
+    nature.
     """
 
     NAMED = 0
@@ -38,10 +39,10 @@ def oddness(mutations: Iterable[Mutation]) -> Oddness:
 def plainer(
     odd: Oddness, gains: Mapping[Unit, Mapping[float, float]], units: Sequence[Unit], promising: float
 ) -> list[Unit]:
-    """Return the units whose change is plainer than the candidate found, best gain first.
+    """Return the units whose change reads plainer than that of the candidate found, best gain first.
 
-    Units that gain at least `promising` are worth refining. Untried units come next, the plainest first: all of them
-    if the candidate scales a variable or is an offset, the first `UNTRIED` named constants if it changes a literal.
+    Units that gain at least `promising` come first. Untried units follow, plainest first. If the candidate scales a
+    variable or is an offset, all untried units follow. If it changes a literal, only `UNTRIED` named constants follow.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
@@ -71,7 +72,7 @@ def writing(operand: Operand) -> Oddness:
 
 
 def edges(guard: Guard) -> tuple[str, ...]:
-    """Return the sensors at whose thresholds a repair under this guard begins abruptly."""
+    """Return the sensors with a threshold in this guard, at which the repair sets in abruptly."""
     return tuple(
         one.sensor.name
         for one in guard.conjuncts

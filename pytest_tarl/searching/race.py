@@ -1,4 +1,4 @@
-"""Race candidates on common seeds, so that their gains can be compared pair by pair."""
+"""Race candidates: run them on the same seeds and compare their gains seed by seed."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from pytest_tarl.searching.units import Unit
 CONFIDENCE = (
     0.95  # confidence of an approximate interval that decides what to run next, not whether a repair holds
 )
-LEAST = 3  # common seeds before one arm can be behind another
-FINEST = 1.1  # two factors with a smaller ratio are not refined further
+LEAST = 3  # minimum number of common seeds for calling one arm behind another
+FINEST = 1.1  # stop refining between two factors when their ratio is below this
 
 Gains = Mapping[int, float]  # seed → gain over the unmutated run of that seed
 
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """A unit with a factor, under a guard."""
+    """A unit (operands mutated together), its factor, and the guard (condition) under which it applies."""
 
     unit: Unit
     factor: float
@@ -76,7 +76,7 @@ class Race:
         return [arm for arm in ranked if not behind(self.gains[arm], self.gains[ranked[0]])]
 
     def around(self, arm: Arm) -> list[Arm]:
-        """Return the arms between this one and its neighbours of the same unit, on a log scale."""
+        """Return new arms of the same unit, halfway (on a log scale) to the next smaller and next larger factor."""
         tried = sorted(
             one.factor
             for one in self.gains

@@ -1,4 +1,4 @@
-"""The full ranking: the possible gain at every site, and how certain the order is.
+"""The full ranking: the possible gain at every site (statement with constants), and the certainty of the order.
 
 Every operand runs once with every factor; the best factors of each site are refined, and then the sites race on common
 seeds.
@@ -26,9 +26,9 @@ SEEDS = 8  # common seeds of the final race
 class Certainty:
     """How certain it is that the first site is ahead of all others.
 
-    `by` is the approximate interval of its lead over the second site in gain, measured on `seeds` common seeds; None if
-    these are too few. `level` other sites cannot be distinguished from it and `ahead` sites gain significantly more.
-    `gaining` is the number of sites that gain at all.
+    `by` is an approximate confidence interval for the lead in gain over the second site, on `seeds` common seeds. It is
+    None if these are too few. `level` is the number of other sites that cannot be distinguished from the first, `ahead`
+    the number of sites that gain significantly more. `gaining` is the number of sites that gain at all.
     """
 
     gaining: int
@@ -65,7 +65,7 @@ class Ranking:
         return arm_effects(self.race)
 
     def certainty(self, first: str) -> Certainty | None:
-        """Return how certain it is that this site id is the first, None if the site has not run."""
+        """Return how certain it is that the site with this id leads, None if the site has not run."""
         arms = {str(site): arm for site, arm in self._best().items()}
         if first not in arms:
             return None
@@ -116,7 +116,7 @@ class Ranking:
             self.race.run(field, seeds)
 
     def _best(self) -> Mapping[SiteId, Arm]:
-        """Return the best arm of every site; arms with more seeds come first, as one seed may be luck."""
+        """Return the best arm of every site; arms that ran on more seeds win, because a single seed may be luck."""
         best: dict[SiteId, Arm] = {}
         for arm in self.race.gains:
             site = arm.unit.operands[0].site

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import sqrt
 
-OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
-FINEST = 1.1  # two factors with a smaller ratio are not refined further ...
-ALMOST = 0.9  # ... unless one gains this share of the loss; its window may be narrower, down to ...
-NARROWEST = 1.02  # ... this ratio ...
-PROMISING = 0.4  # ... or gains this share of the loss, and both neighbours at most ...
-SHARP = 0.5  # ... this share of its gain: a peak that ends between them
+OUTWARD = 2.3  # if the outermost factor is the best, the next one is larger (or smaller) by this ratio
+FINEST = 1.1  # stop refining between two factors when their ratio is below this
+ALMOST = 0.9  # a factor that gains this share of the loss is refined down to the ratio `NARROWEST`
+NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
+PROMISING = 0.4  # a factor that gains this share of the loss is also refined to `NARROWEST`, if ...
+SHARP = 0.5  # ... both neighbours gain at most this share of its gain
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
-    """Return the factors to try next, at most two, with the sign of the best; none if nothing gains.
+    """Return at most two factors to try next, with the sign of the best factor; none if no factor gains.
 
-    `by_factor` are the gains of a constant, `wanted` is the gain that restores the reward.
+    `by_factor` maps each tried factor to its gain; `wanted` is the gain that restores the designed reward.
     """
     factor = max(by_factor, key=by_factor.__getitem__)
     sign = -1.0 if factor < 0 else 1.0
@@ -35,7 +35,7 @@ def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:
 def _narrow(
     gains: Mapping[float, float], factor: float, neighbours: tuple[float, float], wanted: float
 ) -> bool:
-    """Return whether the window of good values may be narrower than the distance to the neighbours."""
+    """Return whether the range of good factors may be narrower than the distance to the neighbouring factors."""
     most = gains[factor]
     if most >= ALMOST * wanted:
         return True

@@ -16,7 +16,7 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-MANY = 40  # units; up to this number a sweep takes them one by one
+MANY = 40  # more units than this are screened; up to this number the sweep alone is shorter
 BLOCK = 20  # units per sweep after a screening
 AT_ONCE = 4  # units mutated per run
 RUNS = 6.0  # number of runs, as a multiple of the square root of the number of units
@@ -26,7 +26,7 @@ RIDGE = 1.0
 def screened(
     together: ForwardSelection, guard: Guard, generator: np.random.Generator
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
-    """Yield candidates that hold by chance; return all units, best main effect first."""
+    """Yield candidates that happen to hold during the screening; return all units, best main effect first."""
     units = together.units
     drawn = [_drawn(units, generator) for _ in range(ceil(RUNS * sqrt(len(units))))]
     joints = [Joint(tuple((units[i], NEAR[turn]) for i, turn in one), guard) for one in drawn]
@@ -65,7 +65,7 @@ def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
 
 
 def worth_screening(units: Sequence[Unit]) -> bool:
-    """Return whether screening first is shorter than a sweep over all units."""
+    """Return whether screening before the sweep takes fewer episodes than a sweep over all units."""
     return len(units) > MANY
 
 

@@ -1,5 +1,6 @@
-"""Shared by all searches: candidates, trials in the drifted world, and the rule that confirms a candidate.
+"""What all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
+A mission is one episode of the test. A candidate holds on a seed if its mission there earns about as much as designed.
 A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
 """
 
@@ -21,9 +22,9 @@ Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
-CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold ...
-HARD = 2  # ... of which at most this many are chosen because other candidates fell short on them
-FAR = 0.6  # share of the wanted gain that releases the reserve of episodes
+CONFIRMATIONS = 5  # further seeds on which a promising candidate must also earn enough ...
+HARD = 2  # ... starting with at most this many seeds on which other candidates earned too little
+FAR = 0.6  # a candidate that gains this share of the wanted gain releases the reserve of episodes
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -53,13 +54,13 @@ class Pair:
 class Goal:
     """The target of a search.
 
-    - `pairs`: episodes that lost reward in the drifted world.
+    - `pairs`: episodes of the unrepaired program that lost reward in the drifted world.
     - `near`: the total reward from which a candidate is worth confirming.
     - `enough`: the mean total reward that confirms a candidate.
-    - `online`: the mean total reward of all episodes in the drifted world, including those that lost nothing.
-    - `passing`: a failed mission is never near, because ending early can earn more than carrying on.
-    - `harder`: for each seed, how much less than the mean its mission earns in the designed world, where known.
-    - `controls`: episodes in the drifted world that lost nothing.
+    - `online`: the mean total reward of all drifted episodes, including those without loss.
+    - `passing`: whether a failed mission never counts as near, because ending early can earn more than carrying on.
+    - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
+    - `controls`: drifted episodes without loss.
     """
 
     pairs: tuple[Pair, ...]
@@ -69,12 +70,12 @@ class Goal:
     passing: bool = False
     harder: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
-    ranged: bool = False  # missions vary in size, so a mission may fail because of its size
+    ranged: bool = False  # the drift's size varies by episode, so a mission may fail because of its size
     steps: float | None = None  # mean length of a designed mission, if known
 
     @property
     def wanted(self) -> float:
-        """Return the gain per episode that a repair must bring on the episodes that lost."""
+        """Return the gain per episode that a repair must bring on the losing episodes (`pairs`)."""
         if not self.pairs:
             return max(self.enough - self.online, 0.0)
         lost = fmean(pair.total for pair in self.pairs)
@@ -106,28 +107,32 @@ def lost_nothing(_: Candidate) -> bool:
 class Trials:
     """Run candidates in the drifted world, each seed once, and keep the outcomes.
 
-    `beside` counts episodes of the same budget that run in the designed world. `foresee` receives the episodes that
-    are likely to be requested next.
+    `beside` counts the episodes that ran in the designed world; they use the same budget. `foresee` receives the
+    episodes that are likely to be requested next.
     """
 
     run: Callable[[Candidate, int], Outcome]
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    reserve: int = 0  # episodes beyond the budget, released once a candidate has gained `FAR` ...
-    worth: Goal | None = None  # ... of the gain that this goal wants
+    reserve: int = 0  # extra episodes, added to the budget once a candidate has gained `FAR` ...
+    worth: Goal | None = None  # ... of the gain wanted by this goal
     loses: Callable[[Candidate], bool] = (
-        lost_nothing  # whether the candidate loses missions that rejected ones lost
+        lost_nothing  # whether a candidate loses the missions that rejected candidates lost
     )
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
-    misses: Counter[int] = field(default_factory=Counter)  # seed → candidates that fell short on it
+    misses: Counter[int] = field(
+        default_factory=Counter
+    )  # seed → number of candidates that earned too little on it
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
     _course: dict[int, tuple[float, ...]] = field(
         default_factory=dict
     )  # rewards of designed missions, by seed
-    _short: list[dict[int, float]] = field(default_factory=list)  # for each weak candidate: seed → total
+    _short: list[dict[int, float]] = field(
+        default_factory=list
+    )  # totals of candidates that fell short, by seed
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
         """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""
@@ -145,9 +150,9 @@ class Trials:
         self.foresee([one for one in wanted if one not in self._known][:left])
 
     def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
-        """Return how far a candidate's missions are from the designed ones, 0 if that cannot be known.
+        """Return the mean deviation of a candidate's missions from the designed ones (see `course`), 0 if unknown.
 
-        Charges the designed missions, each once. Raises BudgetSpentError and RepairError.
+        Each designed mission that runs is charged to the budget once. Raises BudgetSpentError and RepairError.
         """
         found = [deviation(self(candidate, seed).rewards, self._designed(seed)) for seed in seeds]
         return fmean(found) if self.design is not None else 0.0
@@ -166,14 +171,14 @@ class Trials:
         self.beside += 1
 
     def gain(self, candidate: Candidate, pairs: Iterable[Pair]) -> float:
-        """Return a candidate's mean gain over the unmutated runs of the seeds on which it has run (at least one)."""
+        """Return a candidate's mean gain over the unmutated runs, on all seeds on which it ran (at least one)."""
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
 
     def moved(self, candidate: Candidate, pairs: Iterable[Pair]) -> bool:
         """Return whether a candidate changed the reward or the length of any episode that it ran.
 
-        In a world that rewards the end only, a mission that fails in another way earns the same.
+        The length counts because a reward paid only at the end is the same for all missions that fail.
         """
         known = ((self._known.get((candidate, pair.seed)), pair) for pair in pairs)
         return any(
@@ -187,13 +192,13 @@ class Trials:
         return [one.steps for one in known if one is not None and one.steps is not None]
 
     def same_as(self, candidate: Candidate, other: Candidate) -> int:
-        """Return on how many common seeds two candidates had the same outcome; 0 if they differed on any."""
+        """Return the number of common seeds if two candidates had equal outcomes on all of them, else 0."""
         mine, its = self._outcomes(candidate), self._outcomes(other)
         both = mine.keys() & its.keys()
         return len(both) if all(mine[seed] == its[seed] for seed in both) else 0
 
     def _outcomes(self, candidate: Candidate) -> dict[int, tuple[float, bool, int | None]]:
-        """Return the known outcomes of the candidate's changes, wherever in the source these are written."""
+        """Return the known outcomes of all candidates with the same changes, at any place in the source."""
         changes, guard = candidate.changes, candidate.guard
         return {
             seed: (run.total, run.passed, run.steps)
@@ -202,14 +207,14 @@ class Trials:
         }
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
-        """Store a candidate that nearly reached the goal on every seed but earned too little on average."""
+        """Store a candidate that was near the goal on every seed but earned too little on average."""
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Return whether a candidate will probably earn too little, judged by earlier candidates that did.
+        """Return whether a candidate will probably earn too little, estimated from earlier candidates that did.
 
-        The estimate uses an earlier candidate as a control variate: its mean total plus the mean difference between the
-        two on their common seeds, of which there must be at least `PAIRED`.
+        The estimate uses an earlier candidate as a control variate: its mean total, plus the mean difference between
+        the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
         """
         totals = self._totals(candidate, pairs)
         for other in self._short:
@@ -236,7 +241,7 @@ class Trials:
             raise BudgetSpentError
 
     def _come_far(self, goal: Goal) -> bool:
-        """Return whether a candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
+        """Return whether any candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
         before = {pair.seed: pair.total for pair in goal.pairs}
         gains: dict[Candidate, list[float]] = {}
         for (candidate, seed), outcome in self._known.items() if self.reserve else ():
@@ -258,10 +263,10 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Return whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
 
-    The first seeds are those on which other candidates fell short. Stop early at the first failed mission if missions
-    succeed in the designed world (unless they vary in size), at the second seed that falls short, as soon as the
-    candidate does no better than one that earned too little, and before all that if it loses the missions that
-    rejected candidates lost in their acceptance tests.
+    The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
+    that rejected candidates lost in their acceptance tests. It is also rejected at the first failed mission, if
+    missions succeed in the designed world and the drift's size does not vary. The other reasons are a second seed with
+    too little reward, and a low estimate of the candidate's mean total (`falls_short`).
     """
     if trials.loses(candidate):
         return False
@@ -285,7 +290,7 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 
 
 def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
-    """Return the seeds for confirming: up to `HARD` on which most others fell short, then those after `first`."""
+    """Return the confirmation seeds: up to `HARD` on which most candidates fell short, then those after `first`."""
     others = [goal.pairs[(first + i) % len(goal.pairs)].seed for i in range(1, len(goal.pairs))]
     missed = [seed for seed in others if trials.misses[seed]]
     hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]
@@ -303,14 +308,14 @@ class Strategy(Protocol):
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
-    """Return the gain of a mutation; the value is a factor if the constant is known only at run time."""
+    """Return the gain of a mutation with its new value, or its factor if the constant is known only at run time."""
     constant = mutation.operand.value
     known = None if constant is None else float(constant)
     return OperandEffect(mutation.operand.code, known, effective_value(mutation), gain, factor=known is None)
 
 
 def effective_value(mutation: Mutation) -> float:
-    """Return the value of the use under the mutation; a factor if the constant is known only at run time."""
+    """Return the operand's value under the mutation, or the factor if the constant is known only at run time."""
     if mutation.place is not None:
         return float(redefinition(mutation))
     if mutation.form is not None:

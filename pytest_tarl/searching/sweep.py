@@ -1,8 +1,8 @@
 """Sweep and confirm, the default search: try one factor on all operands, then the next factor.
 
-Each run is paired with the unmutated run of the same seed. A candidate with nearly the designed reward is confirmed
-on further seeds. Results steer the search: a larger step is tried only where the smaller one did not lose, best gain
-first. If no single operand suffices, the search combines those that gained.
+Each run is paired with the unmutated run of the same seed. A candidate that earns nearly the designed reward is tried
+on further seeds. Results steer the search: larger steps are tried only on operands whose smaller step did not lose,
+those with the best gain first. If no single operand suffices, the search combines those that gained.
 """
 
 from __future__ import annotations
@@ -33,32 +33,37 @@ if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
-LEADING = (
-    3  # best units that get larger steps before the next guard, which starts with their best factors ...
-)
+LEADING = 3  # best units that get larger steps before the next guard is tried ...
 HINT = 0.005  # ... if they gained at least this share of the loss
 FLIP = -1.0  # flips the sign
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
-FINE = (*FINER, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
-BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)  # for named constants, if these found nothing either
+FINE = (*FINER, 1.1, 0.91)  # for operands that change the reward but gain nothing with larger steps
+BETWEEN_FINE = (
+    1.16,
+    0.86,
+    1.05,
+    0.95,
+    1.35,
+    0.74,
+)  # for named constants, if the `FINE` steps gain nothing either
 LAST = (10.0, 0.05)
-FLIPPED = 3  # units that gained from a smaller value and are tried with the other sign
+FLIPPED = 3  # number of units to try with the other sign, because a smaller value gained
 REFINEMENTS = 3  # consecutive refinements of one operand while it gains `PROMISING` ...
-REFINED = 8  # ... and at most this many refining runs per operand
-PLAINER_ROUNDS = 2  # refinements of each constant that is plainer than the candidate found ...
-PLAINER = 12  # ... and runs after which the search for plainer ones ends
-SLACK = 0.1  # loss to tolerate on the way to larger steps, as a share of the loss to repair
+REFINED = 8  # ... and maximum number of refining runs per operand
+PLAINER_ROUNDS = 2  # refinements of each constant whose change reads plainer than the candidate found ...
+PLAINER = 12  # ... and maximum number of runs for all of them
+SLACK = 0.1  # a smaller step may lose this share of the loss to repair before larger steps are skipped
 
 
 class Sweep:
     """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
-    The first two guards are used throughout (the second is the second opinion), the others only at the end. With
-    `proposed` the operands' values are proposals that the program does not contain yet, so they are first tried
-    unchanged; where such a change is idle, a factor that makes it `weaker` is left out. Only parameters of one change
-    are then combined. If a search for structural changes follows, the last steps, which are tried on every operand
-    whatever it has shown so far, are limited to the nearest ones of named constants.
+    The first two guards are used throughout, the others only at the end. With `proposed`, the operands are parameters
+    of a change that the program does not contain yet. They are first tried with their own values. If the change has no
+    effect, factors that make it `weaker` are skipped. Only parameters of the same change are combined. The last steps
+    of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of these steps
+    are tried, on named constants.
     """
 
     def __init__(
@@ -94,9 +99,11 @@ class Sweep:
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
-        self._refused: set[tuple[Unit, Guard]] = set()  # yielded as confirmed, then refused by the caller
-        self._compared = False  # whether other constants were compared by the course of missions
-        self._replaced: set[Unit] = set()  # units in place of which gentler ones were tried
+        self._refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
+        self._compared = (
+            False  # whether rival constants were already compared by the course of their missions
+        )
+        self._replaced: set[Unit] = set()  # units for which gentler ones were already tried
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
 
@@ -144,15 +151,15 @@ class Sweep:
         return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
 
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
-        """Try each unit larger and smaller, then in smaller steps if it lost both ways, and combine the best.
+        """Increase and decrease each unit, then try smaller steps if both lost, and combine the best units.
 
-        While no gain is large enough to build upon, the `LEADING` best units get larger steps at once.
+        Until a gain exceeds the slack, the `LEADING` best units get larger steps at once.
         """
         moving = self._gains.moving(block)
         yield from self._carried_over(guard)
         if self.proposed:
             yield from self._all(1.0, guard, moving)
-            for factor in NEAR:  # first where the proposal was too weak to change anything
+            for factor in NEAR:  # first the proposals that were too weak to have an effect
                 idle = [unit for unit in moving if self._gains.idle(unit)]
                 yield from self._all(factor, guard, idle) if idle else ()
         for factor in (FLIP, *NEAR) if self.proposed else NEAR:
@@ -164,7 +171,7 @@ class Sweep:
         yield from self._leaders_together(guard)
 
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the best units of other guards under this one, because the other guards may be too narrow."""
+        """Try the best units of other guards under this guard, because those guards may be too narrow."""
         pair = self._turn % len(self.goal.pairs)
         for unit, factor in self._gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
             yield from self._try(unit, guard, factor, pair)
@@ -183,16 +190,16 @@ class Sweep:
         yield from self._refine(pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try operands that take part in no flow, such as the period of a timer, after those in flows."""
+        """Try operands outside all data flows, such as the period of a timer."""
         new = [unit for unit in late if unit not in self.units]
         self.units = (*self.units, *new)
         for guard in guards if new else ():
             yield from self._near_ones(new, guard)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try smaller steps where both near factors lost: the operand matters and its best value is close by.
+        """Try smaller steps on operands for which both near factors lost: their best values must be close.
 
-        Where these lose as well and nothing else gained, go on with `FINER` steps.
+        If the smaller steps lose as well and nothing else gained, try the `FINER` steps.
         """
         lost = self._gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
@@ -202,9 +209,9 @@ class Sweep:
             yield from self._all(factor, guard, still)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps on operands that move the reward and were not refined: their window may be narrow.
+        """Try small steps on operands that change the reward and were not refined: few of their values may be good.
 
-        If nothing gains, go on with the steps between these for named constants.
+        If no step gains, try the steps between these on named constants.
         """
         for factor in (*FINE, *BETWEEN_FINE):
             if factor in BETWEEN_FINE and self._gains.anything():
@@ -252,10 +259,11 @@ class Sweep:
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
 
-        If the candidate changes a literal, named constants also get larger steps, as small ones may have no effect.
+        If the candidate changes a literal, named constants also get larger steps, because small steps may have no
+        effect.
         """
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
-        # In place of an offset, refused units are refined once more.
+        # If the candidate is an offset, also refine units that were refused before.
         before = set(self._refused if odd is Oddness.OFFSET else ())
         others = [one for one in self.units if one != unit]
         gains = self._gains.under(guard)
@@ -264,7 +272,9 @@ class Sweep:
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
             if not self._gains.of(other, guard) and ALWAYS in self.guards:
-                held = ALWAYS  # the condition cannot be written there, for example in a helper
+                held = (
+                    ALWAYS  # the condition cannot be written at this place, for example in a helper function
+                )
                 for factor in NEAR:
                     yield from self._try(other, held, factor, pair)
             yield from self._closer(other, held, before, pair)
@@ -277,14 +287,14 @@ class Sweep:
                     yield from self._closer(other, guard, before, pair)
 
     def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """Try the calls of the function whose returned value a candidate changes, as few of them as suffice."""
+        """If a candidate changes a function's return value, try to change only as few of its calls as suffice."""
         calls = calls_of(unit, self.units)
         if len(calls) > 1:
             joint = Joint(tuple((call, factor) for call in calls), found.guard)
             yield from self._joining({}).fewest(joint)
 
     def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """If missions go in another way than designed, try named constants in small steps first."""
+        """If the candidate's missions take another course than designed, try named constants in small steps first."""
         if unit in self._replaced or not another_way(found, self.trials, self.goal):
             return
         self._replaced.add(unit)
@@ -295,7 +305,7 @@ class Sweep:
                     yield from self._try(other, found.guard, step, pair)
 
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield another constant first if missions go much more as designed with it: it is nearer to the cause."""
+        """Yield a rival constant first if its missions are much closer to the designed ones, hence to the cause."""
         seeds = [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
         if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
             return
@@ -318,7 +328,7 @@ class Sweep:
                 return
 
     def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
-        """Return how far missions are from the designed ones, 0 if that cannot be known."""
+        """Return the deviation of a candidate's missions from the designed ones, 0 if it is unknown."""
         try:
             return self.trials.deviation(candidate, seeds)
         except RepairError:
@@ -348,9 +358,9 @@ class Sweep:
             return None
 
     def _refine(self, pair: int) -> Iterator[Candidate]:
-        """Refine the best operand as long as it comes closer to the wanted gain.
+        """Refine the best operand while its gain approaches the wanted gain.
 
-        Tiny gains are not refined: a mission that fails a little later says nothing about the right value.
+        Tiny gains are not refined, because a mission that fails slightly later does not indicate the right value.
         """
         for _ in range(REFINEMENTS):
             open_to = [
@@ -369,8 +379,8 @@ class Sweep:
                 return
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
-        """Try an operand between its best factor and that factor's neighbours, on a log scale."""
-        # The sign of a constant is wrong or right; only a proposed value may need another size with the other sign.
+        """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
+        # A negative factor corrects the sign and needs no refinement, except for proposed values.
         gains = {one: gain for one, gain in self._gains.of(*best).items() if one > 0 or self.proposed}
         steps = between(gains, self.goal.wanted)
         self._expect([(*best, one) for one in steps], pair)
@@ -379,7 +389,7 @@ class Sweep:
             yield from self._try(*best, one, pair)
 
     def _adjusting(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
-        """Move the fixed parameters of a proposal, such as a sensor's usual value, once the proposal gains much."""
+        """Vary the fixed parameters of a proposal, such as a sensor's usual value, if the proposal gains much."""
         gains = self._gains.of(unit, guard)
         factor = max(gains, key=gains.__getitem__)
         given = self.given(unit.operands[0]) if self.proposed else ()
@@ -408,7 +418,7 @@ class Sweep:
         yield from joining.candidates(Joint(((unit, factor),), guard))
 
     def _jointly(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Search the constants jointly that change missions most, from the best points so far."""
+        """Jointly search the constants that change missions most, starting at the best points so far."""
         if self.generator is None or self.proposed:
             return
         guard = max(chief, key=lambda one: max((gain for gain, _ in self._gains.leaders(one)), default=0.0))
@@ -424,7 +434,7 @@ class Sweep:
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
 
-        Refused operands are refined further only after this, so combinations come before near-duplicates of them.
+        This runs before refused operands are refined further, so combinations come before near-duplicates.
         """
         self._refused -= {tried for tried in self._refused if tried[1] == guard}
         leaders = self._gains.leaders(guard)

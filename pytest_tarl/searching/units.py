@@ -1,4 +1,4 @@
-"""Units of a search: an operand, or all uses of one constant within a statement."""
+"""Units of a search: one operand (a use of a constant), or all uses of one constant within a statement."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NEAR = (2.2, 0.4)  # the first factors to try on every unit
 class Unit:
     """Operands that are mutated together: `max(-LIMIT, min(LIMIT, x))` has one limit, used twice.
 
-    With a chart, a factor is a step on its scale.
+    With a chart (another scale for the constant), a factor is a step on that scale.
     """
 
     operands: tuple[Operand, ...]
@@ -31,7 +31,7 @@ class Unit:
 
 
 def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
-    """Group uses of one constant, and literal limits that are symmetric about zero; keep the order."""
+    """Group the uses of one constant and pairs of literal limits such as -2 and 2; keep the order."""
     groups: list[list[Operand]] = []
     for operand in operands:
         alike = next((group for group in groups if _alike(group[0], operand)), None)
@@ -43,7 +43,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """After each unit whose constant has a chart, add one that moves on the chart; for a zero, it is the only unit."""
+    """Add a unit on the chart after each unit whose constant has one; for a zero it replaces the plain unit."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])
@@ -80,7 +80,7 @@ def _same_constant(unit: Unit, other: Unit) -> bool:
 def best_effects(
     gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
 ) -> dict[str, list[OperandEffect]]:
-    """Return, for each site id, the gain of each operand at its best factor; ties go to the factor tried first."""
+    """Return for each site id the gain of each operand at its best factor; on ties, the factor tried first wins."""
     best: dict[Operand, OperandEffect] = {}
     for unit, gains in gained:
         tried = [factor for factor in gains if unit.mutations(mutate, factor)]

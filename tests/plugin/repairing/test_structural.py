@@ -130,7 +130,7 @@ def prepared(pytester: pytest.Pytester, case: str) -> None:
 
 
 REPAIRED = [
-    ("sign", ("turn the sign of",)),
+    ("sign", ("change the sign of",)),
     ("limit", ("limit", "at most", "smooth")),
     ("integral", ("the sum of",)),
 ]
