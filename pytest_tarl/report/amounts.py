@@ -62,6 +62,6 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def deviations(effect: float) -> str:
-    """Format an effect size; beyond 100 standard deviations, show no digits, since they are meaningless."""
+    """Format an effect size; beyond 100 standard deviations, `over 100`, since digits are meaningless."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"

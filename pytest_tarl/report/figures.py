@@ -52,7 +52,7 @@ def _covered(comparison: Comparison, dimension: int) -> float:
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return the utilities of both worlds and their difference, by site and axis position; None if no cell was visited."""
+    """Return both worlds' utilities and their difference, by site and axis position; None without a visited cell."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
