@@ -48,7 +48,7 @@ class NodeCode:
         return bool(self._plan.get(file))
 
     def compile(self, path: Path) -> CodeType:
-        """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""
+        """Compile a file that records its sites. Raise SyntaxError and OSError, as an import does."""
         file = path.resolve()
         data, text, positions = self._text(file)
         parts = (data, sorted(positions.items()), self._publishes, self._inline, _transform_digest())

@@ -66,7 +66,7 @@ class Worker:
     def greet(self) -> None:
         """Send the first message and wait until the worker has prepared its test.
 
-        Raises TarlError if the worker cannot prepare it, WorkerDiedError if it dies.
+        Raise TarlError if the worker cannot prepare it, WorkerDiedError if it dies.
         """
         greeting = self.ask(self._post.first)
         if greeting != protocol.READY:

@@ -81,7 +81,7 @@ class QoSOverridingOptions:
 def overridden(node: Any, kind: str, topic: str, profile: QoSProfile, options: Any) -> QoSProfile:
     """Return the profile of a publisher or subscription (`kind`) after its parameters, which are declared.
 
-    Raises InvalidQosOverridesError for an invalid value, and if the options' callback refuses the profile.
+    Raise InvalidQosOverridesError for an invalid value, and if the options' callback refuses the profile.
     """
     if options is None:
         return profile

@@ -101,7 +101,7 @@ class Client(Introspected):
     def call_async(self, request: Any) -> Future:
         """Send a request; the future is done once an executor has handled the response.
 
-        Raises TypeError for a request of another type.
+        Raise TypeError for a request of another type.
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
