@@ -356,6 +356,8 @@ class Comparison:
     changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between worlds
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`
     formulas: tuple[FormulaRow, ...] = ()
-    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # sizes of a drift with ranges, by its parts
+    sizes: Mapping[str, Sizes] = field(
+        default_factory=dict
+    )  # sizes drawn from a drift's ranges, by dictionary key
     purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
     permanent: bool = False  # whether the world has changed for good

@@ -88,7 +88,7 @@ class StandinFinder:
             inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
             hidden = {
                 key for key in inner if f"{name}.{key}" in STANDINS
-            }  # modules of ours named like a submodule
+            }  # modules of this package with the name of a stand-in's submodule
             module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):

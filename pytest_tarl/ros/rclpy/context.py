@@ -49,7 +49,7 @@ class Context:
     def shutdown(self) -> None:
         """Shut ROS down.
 
-        Raise RuntimeError if it is not up, RCLError if the node was ended from outside.
+        Raise RuntimeError if it is not initialised, RCLError if the node was ended from outside.
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")

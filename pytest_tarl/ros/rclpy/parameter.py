@@ -63,7 +63,7 @@ def _named_values(section: Any, above: str) -> dict[str, Any]:
 
 
 class ParameterType(IntEnum):
-    """The types of parameters with the numbers of rcl_interfaces/ParameterType."""
+    """The types of parameters, with the numbers of rcl_interfaces/ParameterType."""
 
     def __str__(self) -> str:
         return str(int(self))

@@ -182,7 +182,7 @@ class Buffer(BufferInterface):
 
 
 def nanoseconds_of(time: Any) -> int:
-    """Return an instant or a span of either generation, or float seconds, in nanoseconds."""
+    """Convert a time or duration of either ROS generation, or float seconds, to nanoseconds."""
     if hasattr(time, "to_nsec"):
         return int(time.to_nsec())
     if hasattr(time, "nanoseconds"):
