@@ -57,7 +57,7 @@ class Guardian:
     def watch(self) -> None:
         """Wait for the end of the test's process; runs in a thread.
 
-        The end of stdin is no sign: forks may keep it open.
+        Forked children of the test may keep stdin open, so its end does not suffice.
         """
         try:
             wait_for_end_of_parent()

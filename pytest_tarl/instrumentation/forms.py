@@ -57,7 +57,7 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
 def start_of(node: ast.expr | ast.stmt) -> Where:
     """Return the start of the part of `node` that runs first, as a range of length 0.
 
-    The length is 0 because CPython gives a method call that spans several lines the position of its attribute's end.
+    The length is 0 for a reason: if a method call spans several lines, CPython places it at the end of its attribute.
     """
     return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
 

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def silent(rclpy: Any, context: Any, subscriptions: Sequence[Any]) -> list[Any]:
-    """Return the subscriptions without a waiting message. Do not take any message."""
+    """Return the subscriptions without a waiting message. Messages stay in their queues."""
     make = rclpy.impl.implementation_singleton.rclpy_implementation.WaitSet
     with ExitStack() as open_:
         for one in (*(subscription.handle for subscription in subscriptions), context.handle):

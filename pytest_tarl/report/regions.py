@@ -11,7 +11,7 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-ORDERS = 24  # tried orders of merging by sensor; all orders if there are up to four sensors
+ORDERS = 24  # number of sensor orders to try when merging bins; covers all orders of four sensors
 NAMED = 3  # places named before "and 2 more"
 
 

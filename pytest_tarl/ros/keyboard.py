@@ -182,7 +182,7 @@ def own_terminal() -> Terminal | None:
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
     """Split the streams of a `select`.
 
-    Return those that are the node's terminal, the others, and the terminal or None.
+    Return the streams that are the node's terminal, all other streams, and the terminal (None if not among them).
     """
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]

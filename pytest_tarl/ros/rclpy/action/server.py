@@ -36,7 +36,7 @@ async def _result_of(function: Callable[..., Any], *args: Any) -> Any:
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute the goal at once."""
+    """Execute the goal immediately."""
     goal_handle.execute()
 
 
