@@ -27,7 +27,7 @@ def missing_extra(what: str) -> str | None:
 
 
 def missing_server(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `lsp`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `lsp`, or None if it is installed."""
     return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
 
 
@@ -39,12 +39,12 @@ def missing_fleet(what: str) -> str | None:
 
 
 def missing_stress(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `stress`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `stress`, or None if it is installed."""
     return _sentence(what, [name for name in STRESS if find_spec(name) is None], "stress")
 
 
 def missing_sobol(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `sobol`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `sobol`, or None if it is installed."""
     return _sentence(what, [name for name in SOBOL if find_spec(name) is None], "sobol")
 
 
