@@ -1,4 +1,4 @@
-"""Record the utility of robot code in simulation, locate what breaks it in another world, and repair it."""
+"""Record the utility of robot code in simulation, locate the code that fails in another world, and repair it."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import public names on first use: every pytest run loads this package, few use it."""
+    """Import a public name on first use: every pytest run loads this package, but few runs use it."""
     if name in _HOMES:
         from pytest_tarl.extras import missing_extra
 

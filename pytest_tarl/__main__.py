@@ -1,4 +1,4 @@
-"""Run `python -m pytest_tarl` as the command `tarl`, for robots where `tarl` is not on the PATH."""
+"""Make `python -m pytest_tarl` equivalent to the command `tarl`, for robots where `tarl` is not on the PATH."""
 
 from __future__ import annotations
 

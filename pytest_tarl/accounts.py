@@ -1,4 +1,4 @@
-"""Reports of one designated test in one mode, and comparisons that are still to be reported."""
+"""Reports of one designated test in one mode, and finished comparisons that are not reported yet."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.report.table import Row
 
 @dataclass(frozen=True)
 class Account:
-    """The report of a mode: summary lines, the test's failure, the patch to apply, and CI annotations."""
+    """The report of one test: summary lines, the reason for failure, the patch to apply, and CI annotations."""
 
     lines: tuple[str, ...]
     problem: str = ""
@@ -30,7 +30,7 @@ class Account:
 
 @dataclass(frozen=True)
 class Compared:
-    """A finished comparison, ready to be reported as it is or corrected over all tests."""
+    """A finished comparison. It can be reported as it is, or after correction for the other tests of the run."""
 
     name: str  # base name of the files to write
     root: Path
@@ -41,11 +41,11 @@ class Compared:
     interrupted: bool = False
 
     def noted(self, note: str) -> Compared:
-        """Return it with a further note."""
+        """Return this comparison with an additional note before the others."""
         return replace(self, comparison=replace(self.comparison, notes=(note, *self.comparison.notes)))
 
     def told(self) -> Account:
-        """Write result, sample and page, and return the report."""
+        """Write the JSON result, the sample and the report page; return the report."""
         comparison = self.comparison
         kept = keep(comparison, self.online, self.episodes, self.root, self.name)
         lines = terminal.lines(comparison, width=self.width, root=self.root, page=kept.page)
@@ -67,6 +67,6 @@ class Compared:
 
 
 def jointly(compared: Sequence[Compared], alpha: float) -> list[Compared]:
-    """Return the runs with verdicts corrected over all of them."""
+    """Return the comparisons with their verdicts corrected for multiple testing at level `alpha`."""
     judged = corrected([one.comparison for one in compared], alpha)
     return [replace(one, comparison=comparison) for one, comparison in zip(compared, judged, strict=True)]

@@ -1,4 +1,4 @@
-"""The analysis of a test's nodes, and what it says to instrument."""
+"""Analyse the data flow of a test's nodes to find the statements to instrument."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from tarl_lint.api import Analysis, analyse
 
 
 def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
-    """Analyse the nodes of a test in a folder; files are named relative to `root`.
+    """Analyse the nodes of the test in `folder`; the result names files relative to `root`.
 
-    Raise AnalysisError if a node cannot be analysed, or if nothing flows through the nodes.
+    Raise AnalysisError if a node cannot be analysed, or if no data flows from a subscription to a publish call.
     """
     paths = [(folder / node).resolve() for node in designation.nodes]
     for path, node in zip(paths, designation.nodes, strict=True):
@@ -37,7 +37,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
 
 
 def instruments(sites: Plan, root: Path) -> Instruments:
-    """Return what to instrument."""
+    """Return the positions to instrument in each file, as absolute paths."""
     return Instruments({root / path: at for path, at in sites.positions.items()}, sites.publishes)
 
 

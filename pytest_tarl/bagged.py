@@ -19,11 +19,11 @@ from pytest_tarl.seeds import episode_seeds
 
 @dataclass(frozen=True)
 class BaggedMissions:
-    """A rollout in which each seed stands for a bag, replayed in place of the test's world."""
+    """A rollout that replays bags in place of the test's world; `bags` maps each seed to a bag."""
 
     rollout: Rollout
     bags: Mapping[int, Path]
-    notes: tuple[str, ...] = ()  # for each bag that is left out, the reason
+    notes: tuple[str, ...] = ()  # one per skipped bag, with the reason
 
     @property
     def workers(self) -> int:
@@ -35,12 +35,15 @@ class BaggedMissions:
         return self.rollout(replace(plan, bag=self.bags[plan.seed]))
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Start replaying a mission without waiting for it."""
+        """Start the replay of one mission; do not wait for its result."""
         return self.rollout.begin(replace(plan, bag=self.bags[plan.seed]))
 
 
 def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
-    """Return the bags as episodes. Raise LogError or SettingsError if none can be compared."""
+    """Return a rollout of all bags that can be compared.
+
+    Raise LogError if there is none, SettingsError if the test cannot judge bags.
+    """
     check(designation)
     taking_part: list[Path] = []
     notes: list[str] = []
@@ -62,7 +65,7 @@ def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options
 
 
 def misfit(bag: Bag, fixture: Fixture) -> str:
-    """Return why a bag cannot be compared with the recording, without a full stop; empty if it can."""
+    """Return the reason why a bag cannot be compared, without a full stop; empty if it can be compared."""
     held = {absolute(topic): one for topic, one in bag.channels.items()}
     for sensor in fixture.sensors:
         if sensor.topic is None:

@@ -1,8 +1,10 @@
-"""Repair a node at the boundary that a stress run found and beyond, and show how far the boundary moved.
+"""Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far it moved.
 
-The episodes of search and acceptance draw the directions of a confirmed failure from there to the ends of their ranges;
-all others are nominal. If nothing is accepted, a part of these ranges next to the boundary is tried. An accepted repair
-must also hold over the whole declared space on fresh draws, and must not bring any boundary nearer.
+A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
+direction of the failure takes values from this point to the end of its range; other directions stay nominal. If no
+repair is accepted there, the search tries a smaller region next to the boundary. An accepted repair is also run on
+fresh draws from the whole declared space. It is withheld if it loses reward or successes there, or if any boundary
+comes nearer to the nominal point.
 """
 
 from __future__ import annotations
@@ -37,14 +39,14 @@ from tarl_lint.api import Analysis
 DIRECTIONS, COMBINATIONS = (
     2,
     1,
-)  # maximum number of failures to repair, nearest first: along single directions, and in several
+)  # most failures to repair, nearest first: in one direction, in several directions
 DRAWS = 60  # fresh draws from the whole space
-CONFIDENCE = 0.95  # confidence that a repair reported to lose over the space does lose
+CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses
 
 
 @dataclass(frozen=True)
 class Job:
-    """The stressed test, and what a repair needs of it; `request` has an instrumented rollout."""
+    """The stressed test and the inputs of a repair; the rollout of `request` is instrumented."""
 
     request: Request
     analysis: Analysis
@@ -58,7 +60,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Placed:
-    """Run the episodes of a space at points that `place` chooses by seed, with changed files."""
+    """A rollout that runs episodes of a space at the point `place(seed)`, with the files of `overlay` replaced."""
 
     rollout: Rollout
     drift: str
@@ -87,7 +89,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Fixed:
-    """What an accepted repair changes: margins, and outcomes over the space without and with it."""
+    """The effect of an accepted repair: changed margins, and outcomes over the space before and after it."""
 
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
@@ -96,7 +98,7 @@ class Fixed:
 
     @property
     def loses(self) -> str:
-        """Return why the repair is withheld; else empty."""
+        """Return the reason to withhold the repair; empty if there is none."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} came nearer"
@@ -111,13 +113,13 @@ class Fixed:
 
     @property
     def moved(self) -> tuple[Moved, ...]:
-        """Return the boundaries before and after, the combination first."""
+        """Return each boundary before and after the repair; a combination of directions comes first."""
         first = () if self.combination is None else (self.combination,)
         return (*first, *(_moved(row) for row in self.rows))
 
     @property
     def draws(self) -> Draws:
-        """Return the outcomes over the space as numbers."""
+        """Summarise the outcomes over the space: successes and mean rewards before and after the repair."""
         passed = [sum(one.passed for one in world) for world in (self.before, self.after)]
         earned = [sum(one.total for one in world) / len(world) for world in (self.before, self.after)]
         surely = rate(passed[1], len(self.after), CONFIDENCE).low
@@ -126,7 +128,7 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Told:
-    """The searches for a repair, the lines on them, and the patch."""
+    """The searches for a repair, the lines that report them, and the patch."""
 
     lines: tuple[str, ...]
     patch: Path | None = None
@@ -136,7 +138,7 @@ class Told:
 
 
 def repair_boundary(job: Job, found: Stress) -> Told:
-    """Repair at the nearest failure that can be repaired. Raise RepairError or RecordingError."""
+    """Try to repair the failures, nearest first, until a repair is accepted. Raise RepairError or RecordingError."""
     attempts: list[Attempt] = []
     for failed in chosen(found.failures):
         for region in regions(found.space, failed):
@@ -152,7 +154,7 @@ def repair_boundary(job: Job, found: Stress) -> Told:
 
 
 def chosen(failures: Sequence[Failure]) -> list[Failure]:
-    """Return the failures to repair, the nearest first."""
+    """Return the failures to repair, nearest first."""
     single = [one for one in failures if len(one.names) == 1][:DIRECTIONS]
     several = [one for one in failures if len(one.names) > 1][:COMBINATIONS]
     return [one for one in failures if one in (*single, *several)]
@@ -167,7 +169,7 @@ def _told(
     overlay: Mapping[Path, str],
     attempts: list[Attempt],
 ) -> Told:
-    """Examine an accepted repair; its patch stays if this is interrupted, and goes if it loses."""
+    """Examine an accepted repair. Delete its patch if the repair loses; keep it on Ctrl-C."""
     patch = job.root / accepted.patch
     attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:
@@ -193,7 +195,7 @@ def _finished(
 
 
 def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, str], str]:
-    """Compare and repair in a region; return an accepted repair and its changed files, or why there is none."""
+    """Compare and repair in a region. Return the repair, its changed files, and the reason if none is accepted."""
     request = job.request
     drift, world = request.drift, region.drift
 
@@ -236,7 +238,7 @@ def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, st
 
 
 def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, str]) -> Fixed:
-    """Stress the repaired node along single directions and the failure, and run it over the space on fresh draws."""
+    """Stress the repaired node along each direction and towards the failure, and on fresh draws from the space."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
     again = replace(request, rollout=patched, source=None)
@@ -250,7 +252,7 @@ def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, s
 
 
 def _combination(again: Request, space: Space, failed: Failure) -> Moved:
-    """Return how far the repair moves the boundary on the ray through a failing combination."""
+    """Return the boundary before and after the repair, on the ray from the nominal point through the failure."""
     curve = along(again, outwards(space, failed))
     length = curve.ray.length
     name = " and ".join(failed.names)
@@ -275,7 +277,7 @@ def _moved(row: Row) -> Moved:
 
 
 def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]:
-    """Return the outcomes of fresh draws from the whole space."""
+    """Return the outcomes of DRAWS points of the whole space; every call uses the same points and seeds."""
     request = job.request
     plans = (
         EpisodePlan(seed, request.drift, point=drawn_point(space, request.drift, seed))

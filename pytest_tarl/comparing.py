@@ -37,17 +37,19 @@ from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.settling import within
 
-Tables = tuple[Floats, Floats]  # utility of one list, designed and deployed, each (cells, sites)
+Tables = tuple[
+    Floats, Floats
+]  # utilities of one taint list: designed, deployed; each of shape (cells, sites)
 
 
 @dataclass(frozen=True)
 class Online:
-    """The result of a comparison, the deployed-world sample behind it, and the paper's tables of that sample."""
+    """The result of a comparison, the sample from the deployed world, and the Sarsa tables of that sample."""
 
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    looks: tuple[tuple[int, float], ...] = ()  # episodes and uncorrected p-value of the loss at each look
+    looks: tuple[tuple[int, float], ...] = ()  # at each look: episodes, uncorrected p-value of the loss
     decided: bool = False  # whether the verdict is certain at the last look
 
 
@@ -65,8 +67,8 @@ def run_online(
 ) -> Online:
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
-    `changeable` holds the ids of sites with an operand, if known: these rank before other sites. With a `stage`, the
-    comparison ends after it, and a later call may continue it.
+    `changeable` holds the ids of the sites with an operand that a repair can change, if known: they rank before other
+    sites. With a `stage`, the comparison ends after that stage, and a later call may continue the comparison.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
@@ -120,13 +122,13 @@ def run_online(
 
 
 def _formulas(designation: Designation, offline: Sample, online: Sample) -> tuple[FormulaRow, ...]:
-    """Return the designation's formulas with their results in both worlds."""
+    """Return the results of the marker's formulas in both worlds."""
     texts = [one.text for one in designation.requirements.formulas]
     return judgements.rows(texts, {"offline": offline.judgements, "online": online.judgements})
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Return the tables; if sensors are left out, the designed one takes its values from similar cells."""
+    """Return the tables, with designed values taken from cells that differ only in the sensors `without`."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -134,7 +136,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return the ranges of a drift and the sizes that the seeds' episodes drew from them."""
+    """Return each range of a drift with the number that each episode drew from it; `drawn_by` holds the seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -175,7 +177,7 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the learning rule of the recording. Raise FixtureError if the options name another one."""
+    """Return the recording's learning rule. Raise FixtureError if it is unknown or the options name another one."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
             f"The recording of {fixture.test} holds a table learned by {fixture.learner!r}, which this version of "
@@ -191,7 +193,7 @@ def _learner(fixture: Fixture, options: Options) -> str:
 
 @dataclass
 class _Watch:
-    """Compare after each planned number of episodes, and stop the run once the verdict is certain."""
+    """Stopping rule: compare at each planned look, and stop the run once the verdict is certain."""
 
     offline: Sample
     designation: Designation
@@ -220,7 +222,7 @@ class _Watch:
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
-    """Return, per recorded list, each site's index in the current node; -1 for a site that no longer exists."""
+    """Return the current number of every recorded site, by taint list; -1 for a site that no longer exists."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
 
@@ -234,7 +236,10 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
 
 
 def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[Tables]:
-    """Return the batch solutions of both worlds per list, shape (cells, sites); both samples share their cells."""
+    """Return the batch solutions of both worlds per taint list, each of shape (cells, sites).
+
+    Both samples must have the same cells.
+    """
     cells, tiles = len(offline.cells), tiled(offline.cells, sensors)
     return [
         (tiled_batch(before, cells, scale, tiles), tiled_batch(after, cells, scale, tiles))
@@ -245,7 +250,7 @@ def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -
 def _learned_tables(
     fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
 ) -> list[Tables]:
-    """Return the learned tables of both worlds per list over the same cells, shape (cells, sites)."""
+    """Return the learned tables of both worlds per taint list, shape (cells, sites), with the rows of `cells`."""
     return [
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
         for before, after in zip(fixture.sarsa, learned, strict=True)
@@ -255,7 +260,7 @@ def _learned_tables(
 def _compared(
     lists: Sequence[TaintList], tables: Sequence[tuple[Floats, Floats]], rows: Ints
 ) -> tuple[ListComparison, ...]:
-    """Return each list that still has sites, with its tables and their sums over the rows of the region."""
+    """Return each taint list that still has sites, with its tables and their sums over `rows`."""
     return tuple(
         ListComparison(one, before, after, localize.slices(one, before, after, rows))
         for one, (before, after) in zip(lists, tables, strict=True)
@@ -264,7 +269,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Move the rows of a table to the positions of their cells in `cells`; other rows are NaN."""
+    """Return the table with one row per cell of `cells`, taken by cell from `rows`; NaN for cells not in `rows`."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table

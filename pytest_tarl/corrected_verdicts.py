@@ -14,7 +14,7 @@ from pytest_tarl.model import Comparison, Region, Verdict
 
 
 def corrected(comparisons: Sequence[Comparison], alpha: float) -> list[Comparison]:
-    """Return the comparisons of one run with p-values and verdicts corrected by Holm's method."""
+    """Return the comparisons of one run; Holm's method corrects their p-values and verdicts."""
     verdicts = drift.corrected([one.verdict for one in comparisons], alpha)
     return [
         _with_verdict(one, verdict, len(comparisons), alpha)
@@ -49,6 +49,6 @@ def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]
 
 
 def _detectable(comparison: Comparison, alpha: float) -> float:
-    """Return the loss detectable at the first, strictest step of the correction."""
+    """Return the detectable loss per episode at the first step of the correction, which is the strictest."""
     offline, online = (np.array(comparison.totals[world]) for world in ("offline", "online"))
     return max(comparison.verdict.tolerance, detectable_loss(offline, online, alpha))

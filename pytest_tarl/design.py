@@ -1,7 +1,7 @@
-"""The designed world of a test: as its author wrote it, or with permanent drifts recorded as part of it.
+"""The designed world of a test: the world as its author wrote it, plus any permanent drifts that were adopted.
 
-The recording names these drifts, so everyone who has the recording runs the same world. Plain test runs read it,
-too, so this module does not import numpy.
+The recording stores the names of these drifts, so all users of a recording run the same world. Plain test runs also
+read the recording, so this module does not import numpy.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from pytest_tarl.spaces import Fault, Point, Space
 
 AS_WRITTEN = "none"  # the drift name that records the world as its author wrote it
 _HEADER = "header.npy"
-_PREFIX = 10  # bytes of a version 1 .npy file up to the end of its header length
-_LARGEST = 100_000_000  # bytes of a header; 10,000 statements take 3 MB, so this only rejects damaged files
+_PREFIX = 10  # bytes of a version 1 .npy file before its header
+_LARGEST = 100_000_000  # bytes of a header; 10,000 statements take 3 MB: more is damage
 
 
 def fixture_path(root: Path, test: str) -> Path:
@@ -31,19 +31,19 @@ def fixture_path(root: Path, test: str) -> Path:
 
 
 def adopted(path: Path) -> tuple[str, ...]:
-    """Return the permanent drifts of a recording; empty if there is no readable recording."""
+    """Return the names of the permanent drifts in a recording; empty if there is no readable recording."""
     try:
         with ZipFile(path) as archive:
             content = archive.read(_HEADER) if archive.getinfo(_HEADER).file_size <= _LARGEST else b""
         start = _PREFIX + int.from_bytes(content[8:_PREFIX], "little")
         names = json.loads(content[start:]).get("design", ())
         return tuple(map(str, names)) if isinstance(names, list) else ()
-    except Exception:  # zip and JSON can be damaged in many ways; loading the recording reports which
+    except Exception:  # a damaged zip or JSON; loading the recording later reports it
         return ()
 
 
 def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Drift]) -> tuple[str, ...]:
-    """Return the drifts of the design after a recording under the drift `name`; None keeps the design."""
+    """Return the design's drifts after a recording with the drift `name`; with None, they stay unchanged."""
     if name is None:
         return design
     if name == AS_WRITTEN and name not in drifts:
@@ -59,10 +59,11 @@ def value(
     seed: int,
     point: Point | None = None,
 ) -> Any:
-    """Return the value of `tarl_drift` in a seed's episode: the design, changed by the scenario; None without either.
+    """Return the value of `tarl_drift` in an episode: the design, changed by the scenario; None if both are empty.
 
-    The design holds the nominal values of all spaces. A scenario that is a space has the values of `point`, or of one
-    that the episode draws. Raise SettingsError if the marker no longer declares a drift of the design.
+    The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`;
+    without `point`, the seed determines a random point. Raise SettingsError if the design has a drift that the marker
+    no longer declares.
     """
     gone = next((name for name in design if name not in drifts), None)
     nominal = [one.world(one.nominal) for one in spaces(drifts).values()]
@@ -86,7 +87,7 @@ def spaces(drifts: Mapping[str, Drift]) -> Mapping[str, Space]:
 def faults(
     drifts: Mapping[str, Drift], scenario: str | None, seed: int, point: Point | None = None
 ) -> Mapping[str, tuple[Fault, float]]:
-    """Return the faults of a seed's episode and their sizes, by direction; none in the design."""
+    """Return the faults of an episode with their sizes, by direction; the design has no faults."""
     space = spaces(drifts).get(scenario or "")
     if space is None or scenario is None:
         return {}
@@ -94,7 +95,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift that a scenario replaces because the two do not combine; empty if there is none."""
+    """Return the design's drift that the scenario replaces, since only dictionaries can be merged; else ""."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

@@ -1,4 +1,4 @@
-"""The checked arguments of a test's marker. Frozen, without pytest."""
+"""The checked arguments of a test's marker, as a frozen dataclass; this module does not import pytest."""
 
 from __future__ import annotations
 
@@ -33,28 +33,26 @@ class Designation:
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = (
-        None  # confidence level at which to show min_success, however many episodes that takes
-    )
+    confidence: float | None = None  # record until min_success is decided at this confidence level
     total_range: tuple[float, float] | None = None  # bounds on every episode's total reward
     tolerance: float | None = None
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
-        None  # computes the reward of steps for which a log has none
+        None  # computes the rewards that a log lacks
     )
     monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # computes the rewards of a bag's missions; or a class of such functions
+        None  # computes the reward in a bag's mission; or a class with that function
     )
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict
-    )  # direction of a space → ends of the range, or the options, within which the guarantee must hold
+    )  # direction of a space → limits of the range, or options, where the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 
 def designation(
     where: str, positional: Sequence[Any], arguments: Mapping[str, Any], said: Said = NOTHING_SAID
 ) -> Designation:
-    """Check a marker's arguments; `said` holds the formulas and signals named in the test's body.
+    """Check a marker's arguments and return them; `said` holds the formulas and signals of the test's body.
 
     Raise SettingsError naming the argument and how to fix it.
     """

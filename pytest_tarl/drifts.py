@@ -1,4 +1,4 @@
-"""Values of drift scenarios: a plain value, a range or options from which each episode draws, a dictionary, a space."""
+"""Values of drift scenarios: a plain value, a range, options, a dictionary or a space. Episodes draw from ranges."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.schedules import Profile, profile
 from pytest_tarl.spaces import Choice, Fault, Point, Space, Span
 
-_FIRST = object()  # the default of Drift.choice: its first option is nominal
+_FIRST = object()  # default of Drift.choice: the first option is nominal
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Drift:
     def range(
         cls, low: float, high: float, *, nominal: float | None = None, permanent: bool = False
     ) -> Drift:
-        """Return a drift whose size varies between episodes; a range of a space needs its nominal value.
+        """Return a drift whose size varies between episodes. Within a space, the range also needs a nominal value.
 
         Raise SettingsError for an invalid range.
         """
@@ -36,7 +36,7 @@ class Drift:
 
     @classmethod
     def step(cls, low: float, high: float, *, nominal: float, at: float) -> Drift:
-        """Return a drift that begins at a moment, in s: the world gets a function of time.
+        """Return a drift that begins at the time `at`, in s; the test receives it as a function of time.
 
         Raise SettingsError for an invalid range or moment.
         """
@@ -44,7 +44,7 @@ class Drift:
 
     @classmethod
     def ramp(cls, low: float, high: float, *, nominal: float, at: float, over: float) -> Drift:
-        """Return a drift that grows from a moment on, until `over` seconds later: the world gets a function of time.
+        """Return a drift that grows from the time `at` for `over` seconds; the test receives it as a function of time.
 
         Raise SettingsError for an invalid range, moment or duration.
         """
@@ -52,7 +52,7 @@ class Drift:
 
     @classmethod
     def burst(cls, low: float, high: float, *, nominal: float, at: float, lasts: float) -> Drift:
-        """Return a drift that begins at a moment and ends after `lasts` seconds: the world gets a function of time.
+        """Return a drift that begins at the time `at` and lasts `lasts` seconds; the test receives a function of time.
 
         Raise SettingsError for an invalid range, moment or duration.
         """
@@ -66,18 +66,18 @@ class Drift:
 
     @classmethod
     def choice(cls, *options: Any, nominal: Any = _FIRST, permanent: bool = False) -> Drift:
-        """Return a drift that is one of the options in each episode; the first one is nominal unless stated.
+        """Return a drift that takes one of the options in each episode; the first option is nominal by default.
 
-        Raise SettingsError for fewer than two options, or a nominal value that is none of them.
+        Raise SettingsError for fewer than two options, or if the nominal value is not an option.
         """
         usual = options[0] if options and nominal is _FIRST else nominal
         return cls(spaces.choice(options, usual), permanent)
 
     @classmethod
     def space(cls, **directions: Drift | Fault) -> Drift:
-        """Return a drift that may change in several directions, each a range with a nominal value, a choice or a fault.
+        """Return a drift with several directions; each is a range with a nominal value, a choice or a fault.
 
-        Raise SettingsError for another direction, or a range without a nominal value.
+        Raise SettingsError for a direction of another kind, or a range without a nominal value.
         """
         parts = {name: one.value if isinstance(one, Drift) else one for name, one in directions.items()}
         lasting = [name for name, one in directions.items() if isinstance(one, Drift) and one.permanent]
@@ -90,7 +90,7 @@ class Drift:
 
     @property
     def spans(self) -> Mapping[str, Span]:
-        """Return the ranges by the name of their part, "" for the whole value."""
+        """Return the ranges by dictionary key; the key is "" if the whole value is a range."""
         return dict(_spans(self.value, ""))
 
 
@@ -120,9 +120,9 @@ def drift(where: str, name: str, value: Any) -> Drift:
 
 
 def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
-    """Return the value of the scenario `name` for the episode of a seed; each range is replaced by a drawn number.
+    """Return the value of the scenario `name` in the seed's episode, with a drawn number in place of each range.
 
-    A space has the values of `point`, or of a drawn one.
+    A space takes the values of `point`, or of a drawn point if it is None.
     """
     if isinstance(whole.value, Space):
         return whole.value.world(drawn_point(whole.value, name, seed) if point is None else point)
@@ -135,7 +135,7 @@ def drawn_point(space: Space, name: str, seed: int) -> Point:
 
 
 def sizes(whole: Drift, name: str, seed: int) -> Mapping[str, float]:
-    """Return the number that a seed's episode draws from each range, by the name of its part."""
+    """Return the numbers that a seed's episode draws from the ranges, by dictionary key."""
     return {part: _draw(span, _stream(name, part), seed) for part, span in whole.spans.items()}
 
 

@@ -59,7 +59,7 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
-        self._faults = NO_FAULTS if replay is not None else faults  # a bag already has its faults
+        self._faults = NO_FAULTS if replay is not None else faults  # recorded messages contain them
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -78,7 +78,7 @@ class Tarl:
         self._open.enter_context(imports)
 
     def rng(self, name: str) -> np.random.Generator:
-        """Return this episode's random stream of that name; later calls return the same stream, which continues."""
+        """Return the episode's random generator of that name. All calls with the same name return the same object."""
         if name not in self._streams:
             self._streams[name] = seeds.generator(self.seed, name)
         return self._streams[name]
@@ -101,12 +101,12 @@ class Tarl:
 
     @property
     def bus(self) -> Bus:
-        """The topics as seen by the simulated world: `publish` to the nodes, read `latest` from them."""
+        """The topics from the side of the simulated world: `publish` to the nodes, and read their `latest` messages."""
         return self.ros.bus
 
     @property
     def judged(self) -> tuple[Judged, ...]:
-        """The results of the formulas, once the episode is concluded."""
+        """The results of the formulas; available after `conclude`."""
         return self._formulas.judged
 
     @property
@@ -126,10 +126,10 @@ class Tarl:
     ) -> None:
         """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if it fails.
 
-        `entry` names the function that an entry point in `setup.py` calls: `entry="main"` for
-        `driver = robot.driver:main`. `argv` is its command line, remappings included; `parameters` are added to
-        those of all nodes. Other parameters come from the launch file of the workspace that starts the script:
-        from `launch` if given, or from none with `launch=False`.
+        `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
+        `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all
+        nodes of the episode. Further parameters come from the launch file `launch`; by default, from the launch file
+        of the workspace that starts the script; with `launch=False`, from none.
         """
         self.drives_ros = True
         self._starter.start(script, name, argv, parameters or {}, entry, launch)
@@ -146,10 +146,10 @@ class Tarl:
         """Start the Python nodes of a launch file, with their names, namespaces, remappings and parameters.
 
         `file` is a path relative to the test's folder, the name of a launch file in the workspace, or `package/name`.
-        `arguments` are its launch arguments, `only` the names of the nodes to start. A function in `replace` stands
-        for the node of that name; it is called with a `StandIn`, by which it publishes and subscribes under the names
-        in the node's code. Nodes that are neither Python nor replaced are named in a note. `parameters` are added to
-        those of all nodes and take precedence.
+        `arguments` are its launch arguments, and `only` holds the names of the nodes to start. `replace` maps the name
+        of a node to a function that runs in its place. The function receives a `StandIn`, which publishes and
+        subscribes under the topic names in the node's code. A note names the nodes that are neither Python nor
+        replaced. `parameters` apply to all nodes and take precedence over those of the launch file.
 
         Raise SettingsError for an unknown file, argument or node, NodeError if a node fails.
         """
@@ -169,20 +169,22 @@ class Tarl:
         timeout: float = 60.0,
         patience: float = 10.0,
     ) -> Simulator:
-        """Start a simulator, a program on a real ROS, as the world of this episode; call it before `start`.
+        """Start a simulator that uses a real ROS as the world of this episode; call this before `start`.
 
-        Nodes receive what the simulator publishes, and the simulator receives what they publish. `tarl.step` runs both.
+        Nodes receive what the simulator publishes, and the simulator receives what they publish. `tarl.step`
+        runs both.
 
         Args:
-            command: The program, run in the test's folder. It gets TARL_SEED, and a ROS domain or master of its own.
+            command: The program, run in the test's folder. Its environment sets TARL_SEED and a private ROS domain
+                or master.
             ready: Topics that the simulator publishes or subscribes to once it is ready.
-            clock: The topic of its time; the nodes' clocks show it.
-            step: The service that runs it for one step. Without it, the simulator runs in its own time.
-            reset: The service that resets it between episodes. Without it, each episode starts it anew.
-            every_step: Topics that it publishes in each step; a step has ended once all of them have come.
+            clock: The topic on which it publishes its time; the nodes' clocks show this time.
+            step: The service that runs the simulator for one step. Without it, the simulator runs at its own pace.
+            reset: The service that resets the simulator between episodes. Without it, each episode starts a new one.
+            every_step: Topics that it publishes in each step; a step ends once a message has arrived on each of them.
             environment: Further environment variables.
-            timeout: Seconds of real time for it to become ready.
-            patience: Seconds of real time without an answer or progress of its clock, after which it hangs.
+            timeout: Maximum real time until the simulator is ready, in s.
+            patience: Real time in s without an answer or progress of its clock after which it counts as hung.
 
         Raises:
             SettingsError: The arguments are invalid, no rclpy or rospy is installed, or a node is already running.
@@ -241,7 +243,7 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Report a message delivered to the node, for a test that delivers messages itself.
+        """Report a message that the test delivered to the node itself, so that sensors and signals read it.
 
         Raise SettingsError if the topic is not a string.
         """
@@ -271,7 +273,10 @@ class Tarl:
         self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
-        """Give the reward of this simulation step, once per step; named parts are summed and reported separately.
+        """Set the reward of this simulation step; call it once per step.
+
+        Named parts are summed, and the report also shows each part.
+
 
         Raise SettingsError for a value that is not a finite number.
         """
@@ -290,19 +295,19 @@ class Tarl:
         self._rewards += 1
 
     def at_end(self, call: Callable[[], object]) -> None:
-        """Call a function when the episode is over, however it ended; the last one first."""
+        """Register a function to call at the end of the episode, even after an error; last registered, first called."""
         self._open.callback(call)
 
     def conclude(self, ended: BaseException | None) -> None:
-        """Evaluate the formulas after the body, which raised `ended` or None. Raise RequirementError for a violation.
+        """Evaluate the formulas after the body; `ended` is its exception. Raise RequirementError for a violation.
 
-        If the body itself failed, its own error is reported instead.
+        If the body itself failed, do not raise: pytest reports the body's error.
         """
         whole = ended is None or (self._replay is not None and self._replay.done)
         self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
-        """Return the trace, with rewards computed from the formulas under reward="robustness"."""
+        """Return the trace. With the marker's `reward="robustness"`, the formulas replace its rewards."""
         rewards = self._formulas.rewards()
         if rewards is None:
             return trace
@@ -315,7 +320,7 @@ class Tarl:
         self._open.close()
 
     def notes(self) -> tuple[str, ...]:
-        """Return notes for the user on an episode that counts; complete once it is closed."""
+        """Return notes for the user on a usable episode; they are complete only after `close`."""
         late = self._ros.shutdown_errors if self._ros is not None else ()
         ended = [f"{error} The node was being shut down, so the episode still counts." for error in late]
         missing = [
@@ -341,7 +346,7 @@ class Tarl:
                 "tarl.reward(world.monitor())."
             )
         if self._faults.active:
-            return None  # faults may silence sensors and nodes
+            return None  # declared faults may silence sensors and nodes
         problem = self._situation.problem() or self._unmet()
         if problem is not None:
             return problem
@@ -354,7 +359,7 @@ class Tarl:
         return None
 
     def _unmet(self) -> SettingsError | None:
-        """Return why a declared fault has no topic or node; None if all have."""
+        """Return the error of a declared fault whose topic or node never occurred; None if there is none."""
         if self._ros is None:
             return None
         try:

@@ -12,7 +12,7 @@ class SettingsError(TarlError):
 
 
 class FixtureError(TarlError):
-    """A recording is missing, damaged, of another test or format; `what` is the message without the advice."""
+    """A recording is missing, damaged, or of another test or format. `what` is the message without its advice."""
 
     def __init__(self, what: str, advice: str = "") -> None:
         super().__init__(f"{what} {advice}".rstrip())
@@ -40,23 +40,23 @@ class RequirementError(AssertionError):
 
 
 class LogError(TarlError):
-    """A node cannot be observed, or the log of its missions cannot be read."""
+    """A node cannot be observed, or a mission log cannot be read."""
 
 
 class FleetError(TarlError):
-    """A fleet's data set cannot be read or written, or holds files that are damaged or of another format."""
+    """A fleet's data set cannot be read or written, or its files are damaged or have another format."""
 
 
 class MonitorError(TarlError):
-    """Missions cannot be watched: the watch's state is damaged, in use, or belongs to another watch."""
+    """`tarl watch` cannot run: its state file is damaged, in use, or belongs to another watch."""
 
 
 class NodeError(TarlError):
-    """A node never waits, or raised an exception."""
+    """A node raised an exception or never waited."""
 
 
 class StuckNodeError(NodeError):
-    """A node computed without ever waiting. Each such episode takes seconds, so the run stops at the first."""
+    """A node ran without ever waiting. Such an episode takes seconds, so the run stops at the first one."""
 
 
 class UnsupportedApiError(TarlError):
@@ -64,7 +64,7 @@ class UnsupportedApiError(TarlError):
 
 
 class UnsupportedModuleError(UnsupportedApiError, ModuleNotFoundError):
-    """A node imports a ROS module that the in-process ROS does not implement; it may do without."""
+    """A node imports a ROS module that the in-process ROS does not implement. The node may catch this ImportError."""
 
 
 class RepairError(TarlError):
@@ -72,7 +72,7 @@ class RepairError(TarlError):
 
 
 class StaleTextError(TarlError):
-    """A candidate was written to a file, but the previous text ran."""
+    """A candidate repair replaced a file's text, but the episode ran the previous text."""
 
 
 class SearchError(TarlError):
@@ -84,6 +84,6 @@ class RefusedError(TarlError):
 
 
 def first_line(error: BaseException | None) -> str:
-    """Return the first line of what an error says, or the name of its class if it says nothing, as timeouts do."""
+    """Return the first line of an error's message; the name of its class if the message is empty."""
     text = str(error).strip()
     return text.splitlines()[0] if text else type(error).__name__

@@ -1,4 +1,4 @@
-"""Packages that the plugin and the commands need beyond the linter, and messages if they are not installed."""
+"""Packages that the plugin and the commands need in addition to the linter, and messages if they are missing."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ def missing_packages() -> list[str]:
 
 
 def missing_extra(what: str) -> str | None:
-    """Return a sentence on what `what` needs in this environment, or None if everything is installed."""
+    """Return a sentence that names the packages `what` lacks here, or None if everything is installed."""
     return _sentence(what, missing_packages(), "pytest") or no_lock(what)
 
 
 def missing_server(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `lsp`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `lsp`, or None if it is installed."""
     return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
 
 
 def missing_fleet(what: str) -> str | None:
-    """Return a sentence on what `what` needs of the extra `fleet`, or None if everything is installed."""
+    """Return a sentence that names the packages of the extra `fleet` that `what` lacks, or None if all are there."""
     return missing_extra(what) or _sentence(
         what, [name for name in FLEET if find_spec(name) is None], "fleet"
     )
 
 
 def missing_stress(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `stress`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `stress`, or None if it is installed."""
     return _sentence(what, [name for name in STRESS if find_spec(name) is None], "stress")
 
 
 def missing_sobol(what: str) -> str | None:
-    """Return a sentence that `what` needs the extra `sobol`, or None if it is installed."""
+    """Return a hint that `what` needs the extra `sobol`, or None if it is installed."""
     return _sentence(what, [name for name in SOBOL if find_spec(name) is None], "sobol")
 
 
 def install_command(extra: str) -> str:
-    """Return the command that installs an extra, from the source tree that this tarl was installed from, if any."""
+    """Return the command that installs an extra: from the local source tree if tarl was installed from one."""
     origin = _source_tree()
     if origin is None:
         return f'pip install "tarl[{extra}]"'
@@ -58,13 +58,13 @@ def install_command(extra: str) -> str:
 
 
 def _source_tree() -> tuple[str, bool] | None:
-    """Return the local folder that pip installed tarl from, and whether the install is editable (PEP 610)."""
+    """Return the local folder from which pip installed tarl, and whether the install is editable (PEP 610)."""
     try:
         record = json.loads(distribution("tarl").read_text("direct_url.json") or "{}")
         url = urlsplit(record["url"])
         editable = bool(record["dir_info"].get("editable"))
     except (PackageNotFoundError, ValueError, KeyError, TypeError):
-        return None  # from an index, an archive or a repository
+        return None  # installed from an index, an archive or a repository
     return (url2pathname(url.path), editable) if url.scheme == "file" else None
 
 
@@ -78,9 +78,9 @@ def _sentence(what: str, missing: list[str], extra: str) -> str | None:
 def no_lock(what: str) -> str | None:
     """Return a sentence if Python runs without its global interpreter lock (3.13t, 3.14t), else None.
 
-    Recording relies on the lock: one thread appends events while another removes them.
+    Recording needs the lock, since one thread appends events while another removes them.
     """
-    enabled = getattr(sys, "_is_gil_enabled", None)  # from 3.13 on
+    enabled = getattr(sys, "_is_gil_enabled", None)  # exists from Python 3.13 on
     if enabled is None or enabled():
         return None
     return f"{what} needs the global interpreter lock, which is off in this Python: set PYTHON_GIL=1 and run it again."

@@ -15,7 +15,7 @@ DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
 def advice_on(problem: OSError) -> str:
-    """Return advice for a file that cannot be written."""
+    """Return advice to the user on a file that cannot be written."""
     if problem.errno in FULL:
         return "the disk or your quota is full: free some space and run the command again."
     if problem.errno == errno.EFBIG:
@@ -31,7 +31,7 @@ def advice_on(problem: OSError) -> str:
 
 
 def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
-    """Return one sentence with advice for each reason why files below `root` were not written."""
+    """Return one sentence per reason why files below `root` were not written; each ends with advice."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for path, problem in failed.items():
         shown = path.relative_to(root).as_posix()
@@ -40,7 +40,7 @@ def unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
 
 
 def check_writable(path: Path) -> None:
-    """Check that a file can be written later, leaving nothing behind. Raise OSError if it cannot."""
+    """Raise OSError if a file cannot be written. Remove everything that the check itself creates."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     made = [folder for folder in path.parents if not folder.exists()]  # the innermost first
@@ -51,7 +51,7 @@ def check_writable(path: Path) -> None:
         Path(name).unlink()
     finally:
         for folder in made:
-            with suppress(OSError):  # another run wrote there, or the folder was not made
+            with suppress(OSError):  # another run uses the folder, or it was not created
                 folder.rmdir()
 
 
@@ -63,7 +63,7 @@ def slug(text: str) -> str:
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a temporary file beside `path` and rename it, making folders as needed. Raise OSError on failure.
 
-    Write directly to a device or a pipe, which a rename would replace.
+    Write directly to a device or a pipe, because a rename would replace it by a file.
     """
     if path.exists() and not path.is_file():
         path.write_bytes(content)

@@ -1,4 +1,4 @@
-"""Numbers that users give: finite, and no truth values."""
+"""Check numbers from users: they must be finite and must not be booleans."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.sensors import as_number
 
 
 def finite_number(value: Any) -> float | None:
-    """Return a finite real number or numpy scalar as a float; None for a truth value or anything else."""
+    """Return a finite real number or numpy scalar as a float; None for a boolean or any other value."""
     dtype = getattr(value, "dtype", None)
     if isinstance(value, bool) or getattr(dtype, "kind", "") == "b":
         return None

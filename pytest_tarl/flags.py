@@ -1,4 +1,4 @@
-"""The flags that TARL adds to pytest: names, types, which of them start a TARL run, and hints for misspelt ones."""
+"""The flags that TARL adds to pytest: names, types, whether a flag starts a TARL run, and hints for misspelt flags."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PREFIX = "--tarl-"
 
 
 class Flag(NamedTuple):
-    """A command line flag; a switch if it has no `metavar`."""
+    """A command line flag; without a `metavar` it takes no value."""
 
     name: str
     help: str
@@ -22,7 +22,7 @@ class Flag(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Return the name used by `options.options`."""
+        """Return the flag's key in the values passed to `options.options`."""
         return self.name.removeprefix(PREFIX)
 
     @property
@@ -31,7 +31,7 @@ class Flag(NamedTuple):
         return False if self.metavar is None else self.default
 
     def declaration(self) -> dict[str, Any]:
-        """Return the arguments for argparse."""
+        """Return the keyword arguments of argparse's `add_argument`."""
         if self.metavar is None:
             return {"action": "store_true", "help": self.help}
         if self.many:
@@ -165,7 +165,7 @@ FLAGS = (
 
 
 def misspelt(unknown: Iterable[str]) -> str | None:
-    """Return a sentence on the first of the unknown arguments that looks like a flag of TARL, None where none does."""
+    """Return a hint on the first unknown argument that resembles a flag of TARL; None if none does."""
     for word in unknown:
         name = word.partition("=")[0]
         if name.startswith(PREFIX):

@@ -1,4 +1,4 @@
-"""Records in a file that only grows: each with its length and a checksum, so that an incomplete one is recognised.
+"""Records of an append-only file: each has a length and a checksum, so that readers recognise incomplete records.
 
 A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes.
 """
@@ -11,16 +11,16 @@ from typing import BinaryIO
 
 _HEAD = struct.Struct("<II")
 HEAD = _HEAD.size  # bytes before a record's payload
-unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
+unpack_head = _HEAD.unpack_from  # (buffer, offset) → length and checksum of the payload
 
 
 def framed(payload: bytes) -> bytes:
-    """Return the bytes of a record in the file."""
+    """Return a payload as a record: header and payload."""
     return _HEAD.pack(len(payload), zlib.crc32(payload)) + payload
 
 
 def next_payload(file: BinaryIO, largest: int) -> bytes | None:
-    """Return the payload of the record at the file's position, None if it is incomplete or over `largest` bytes."""
+    """Read a record and return its payload; None if it is incomplete, damaged or longer than `largest` bytes."""
     head = file.read(HEAD)
     if len(head) < HEAD:
         return None

@@ -1,4 +1,4 @@
-"""Query the memory that this process may still use, on systems that report it."""
+"""Query the memory that this process may still use; only some systems report it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 _MEMINFO = Path("/proc/meminfo")  # Linux
 _OWN_GROUPS = Path("/proc/self/cgroup")
 _GROUPS = Path("/sys/fs/cgroup")
-_FILES = {  # limit, usage and the statistic of cached files that the kernel may drop, by version of control groups
+_FILES = {  # by cgroup version: limit, usage, and the statistic of droppable file cache
     1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
     2: ("memory.max", "memory.current", "inactive_file"),
 }
@@ -18,7 +18,7 @@ _FILES = {  # limit, usage and the statistic of cached files that the kernel may
 def available() -> int | None:
     """Return the bytes available without swapping; None if the system does not report it.
 
-    In a container, the result is at most the unused part of the container's limit.
+    In a container, the result does not exceed the unused part of the container's limit.
     """
     found = [one for one in (_of_machine(), *_of_groups()) if one is not None]
     return max(0, min(found)) if found else None
@@ -33,7 +33,7 @@ def _of_machine() -> int | None:
 
 
 def _of_groups() -> Iterator[int | None]:
-    """Yield the unused bytes of each control group of this process with a limit, innermost first."""
+    """Yield the unused bytes of each control group (cgroup) of this process, innermost first; None without a limit."""
     try:
         lines = _OWN_GROUPS.read_text().splitlines()
     except OSError:
@@ -51,7 +51,7 @@ def _of_groups() -> Iterator[int | None]:
 
 
 def _left(folder: Path, limit: str, usage: str, droppable: str) -> int | None:
-    """Return the bytes that a group's limit leaves; None without a limit."""
+    """Return the unused bytes of a control group; None if it has no limit."""
     try:
         most, used = int((folder / limit).read_text()), int((folder / usage).read_text())
         found = re.search(rf"^{droppable} (\d+)$", (folder / "memory.stat").read_text(), re.MULTILINE)

@@ -1,7 +1,7 @@
-"""End a node that holds the interpreter in a C loop, where no Python thread runs any more.
+"""End the process if a node holds the interpreter lock in a C loop, so that no Python thread can run.
 
-A timer counts the CPU time of the process and is re-armed as long as Python threads run. When it expires,
-faulthandler writes the stack of every thread to pytest's original standard error, and SIGVTALRM ends the process.
+A timer measures the CPU time of the process. Python code re-arms it regularly. If it expires, faulthandler writes the
+stack of every thread to pytest's original standard error, and SIGVTALRM ends the process.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _registered = False
 
 
 def prepare() -> None:
-    """Save the process's standard error before pytest captures it."""
+    """Duplicate the descriptor of standard error before pytest captures it."""
     global _stderr
     if _stderr is None:
         with suppress(OSError):  # no standard error, as under pythonw
@@ -24,7 +24,7 @@ def prepare() -> None:
 
 
 def allow(seconds: float) -> None:
-    """Limit the CPU time of the process from now on, in seconds; 0 for no limit."""
+    """Let the process use this many seconds of CPU time from now on; 0 means no limit."""
     if SIGNAL is not None and (_registered or (seconds and _register())):
         signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
 

@@ -1,4 +1,4 @@
-"""Advice for a test module that imports ROS where none is installed."""
+"""Advice for a test module that imports ROS although no ROS is installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The flags of TARL as options of an ini file: `--tarl-alpha=0.01` is `tarl_alpha = 0.01`. The command line wins."""
+"""The flags of TARL as ini options: `--tarl-alpha=0.01` is `tarl_alpha = 0.01`. The command line takes precedence."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair", "stress")
-# Options of some modes only: runs in other modes ignore them in the ini file
+# Options that only some modes use: runs in other modes ignore their ini values
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online", "stress"),
     "resume": ("record", "online", "stress"),
@@ -70,7 +70,7 @@ def value_of(config: pytest.Config, key: str) -> Any:
 
 
 def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
-    """Return the value of every flag by its key, and the flags that the ini file sets.
+    """Return the value of every flag by its key, and the keys of the flags that the ini file sets.
 
     Raise SettingsError for an invalid value.
     """
@@ -105,5 +105,5 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
 
 
 def _resolved(config: pytest.Config, flag: Flag, value: Any) -> Any:
-    """Resolve a file's path against the folder of the ini file."""
+    """Resolve a path in an ini file relative to the folder of that file."""
     return str(config.rootpath / value) if flag.metavar == "FILE" else value

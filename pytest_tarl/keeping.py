@@ -17,7 +17,7 @@ from pytest_tarl.report import json_result
 
 @dataclass(frozen=True)
 class Kept:
-    """The page if it was written, and lines on missing packages and unwritten files."""
+    """The path of the page if it was written, and lines that name missing packages and unwritten files."""
 
     page: Path | None
     missing: tuple[str, ...]
@@ -25,7 +25,7 @@ class Kept:
 
 
 def keep(comparison: Comparison, online: Online, episodes: Mapping[str, int], root: Path, name: str) -> Kept:
-    """Write all files of a run below `root`; the verdict does not depend on them, so a full disk never hides it."""
+    """Write all files of a comparison below `root`; report a write error as a line, so the verdict is kept."""
     folder = root / ".tarl"
     result, recording, page = (
         folder / where / f"{name}{ending}"
@@ -66,7 +66,7 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
 
 
 def by_hand(repair: Repair | None) -> list[str]:
-    """Return the lines of an accepted patch that could not be written to a file."""
+    """Return an accepted patch as lines to print if it could not be written to a file; else nothing."""
     if repair is None or not repair.accepted or repair.patch:
         return []
     told = (
@@ -77,7 +77,7 @@ def by_hand(repair: Repair | None) -> list[str]:
 
 
 def as_fixture(comparison: Comparison, online: Online) -> Fixture:
-    """Return the deployed-world sample in the format of a recording, for later inspection."""
+    """Return the sample of the deployed world in the format of a recording, so that `tarl show` can read it."""
     return Fixture(
         test=comparison.test,
         seed=comparison.seed,

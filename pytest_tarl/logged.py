@@ -1,4 +1,4 @@
-"""`--tarl-log FILE`: compare missions that a robot has run with the recording of a test."""
+"""`--tarl-log FILE`: compare logged missions of a robot with the recording of a test."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.sensors import binning_digest
 
-FEWEST = 2  # fewest missions that can be compared
+FEWEST = 2  # minimum number of missions for a comparison
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
 _COLUMNS = {"site": "int32", "flow": "float64", "cell": "int32", "step": "int32", "thread": "int32"}
 
 
 @dataclass
 class Mission:
-    """A mission while its chunks are being read; `time` is its start in seconds since 1970."""
+    """A mission of a log, stored as chunks of consecutive steps; `time` is its start in seconds since 1970."""
 
     sites: Sequence[str]
     time: float = 0.0
@@ -41,7 +41,7 @@ class Mission:
 
 
 def missions(path: Path, fixture: Fixture) -> list[Mission]:
-    """Read all missions of a log and of its rotated parts, including unfinished ones.
+    """Read all missions, including unfinished ones, from a log and its rotated files.
 
     Raise LogError if the log does not belong to the recording.
     """
@@ -64,7 +64,7 @@ def missions(path: Path, fixture: Fixture) -> list[Mission]:
 
 
 class LoggedMissions:
-    """A rollout that already happened: the n-th episode is the n-th finished mission of the log."""
+    """A rollout that returns logged missions: episode n is the n-th finished mission of the log."""
 
     def __init__(
         self,
@@ -80,7 +80,7 @@ class LoggedMissions:
         self._judged = judged
         self.count = len(whole)
         self.workers = 1
-        self.notes = notes  # on the missions that were left out
+        self.notes = notes  # name the skipped missions
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Return the mission whose index is the plan's seed."""
@@ -132,7 +132,7 @@ def trace(
     judge: Judge | None,
     by_formulas: Sequence[float] | None = None,
 ) -> Trace:
-    """Join the chunks of a mission; leave out sites that the node no longer has."""
+    """Join the chunks of a mission to a trace, without the sites that the node no longer has."""
     here = np.array([number.get(site, -1) for site in mission.sites] or [-1], np.int32)
     cells = tuple(tuple(cell) for cell in mission.chunks[-1]["cells"])
     parts: list[dict[str, Any]] = []
@@ -168,7 +168,7 @@ def trace(
 
 
 def _judged(reward: Floats, mission: Mission, fixture: Fixture, judge: Judge | None) -> Floats:
-    """Return the rewards, shape (steps,); compute missing ones from the sensors before and after the step."""
+    """Return the rewards, shape (steps,). Compute missing rewards from the sensors before and after each step."""
     if not np.isnan(reward).any():
         return reward
     if judge is None:

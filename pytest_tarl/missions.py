@@ -49,7 +49,7 @@ IGNORED = (
 
 @dataclass(frozen=True)
 class Other:
-    """Another designated test of the run."""
+    """Another test of the run that has the marker `tarl` ("designated")."""
 
     test: str
     folder: Path
@@ -59,7 +59,7 @@ class Other:
 
 @dataclass(frozen=True)
 class Mission:
-    """A designated test, its location, and how to run it."""
+    """A designated test (one with the marker `tarl`), its location, and how to run it."""
 
     test: str
     folder: Path
@@ -70,13 +70,13 @@ class Mission:
     drift: str | None
     width: int
     progress: Progress
-    tell: Tell  # prints a sentence at once if there is a terminal
+    tell: Tell  # prints a sentence immediately on a terminal
     others: tuple[Other, ...] = ()
-    stage: Stage | None = None  # the part of the comparison to run, if it shares episodes with others
+    stage: Stage | None = None  # part of the comparison to run under --tarl-total
     node: str = ""  # pytest's node id, with the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
-        """Run the mode. A comparison returns its result unreported: call `told` to write and report it.
+        """Run the mode and return its report. A comparison returns Compared instead: call its `told` to report it.
 
         Raise TarlError if the test cannot be recorded or compared.
         """
@@ -101,7 +101,7 @@ class Mission:
 
     @property
     def target(self) -> str:
-        """Return the test as the argument of pytest that records it, for the folder where pytest was started."""
+        """Return the pytest argument that selects this test, relative to the folder where pytest was started."""
         return self._from_start(self.test)
 
     def _from_start(self, node: str) -> str:
@@ -114,7 +114,7 @@ class Mission:
         return self.root / ".tarl"
 
     def interrupted(self, done: int, total: int, kept: str) -> str:
-        """Return one line on what an interrupted run left on disk; `kept` is a sentence on its episodes."""
+        """Return a line on an interrupted run and its recording; `kept` is a sentence on the kept episodes."""
         if self.options.mode != "record":
             return f"Interrupted in episode {done + 1} of {total}. {kept}".rstrip()
         path = self.fixture_path
@@ -125,7 +125,7 @@ class Mission:
         return analysed(self.designation, self.folder, self.root)
 
     def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
-        """Return the sensors with bins: those of the recording, or learned from separate episodes."""
+        """Return the sensors with their bins: from the recording, or learned from separate episodes."""
         asked = self.designation.sensors
         if fixture is not None:
             return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})
@@ -138,7 +138,7 @@ class Mission:
 
     @property
     def _recorded_drift(self) -> str | None:
-        """Return the drift to record under. Raise SettingsError unless the marker declares it permanent."""
+        """Return the drift of the recorded world. Raise SettingsError if the marker does not declare it permanent."""
         name = self.options.drift if self.options.mode == "record" else None
         if name is None or (name == AS_WRITTEN and name not in self.designation.drifts):
             return name
@@ -152,7 +152,7 @@ class Mission:
         return name
 
     def _silent(self, analysis: Analysis) -> Iterator[str]:
-        """Return notes on the nodes' files in which nothing is recorded."""
+        """Yield a note for each node file without any recorded statement."""
         files = [(self.folder / node).resolve() for node in self.designation.nodes]
         return silent_files(files, analysis, self.root.resolve())
 
@@ -179,11 +179,11 @@ class Mission:
         return Account((*lines, *(f"  {note}" for note in notes)))
 
     def _test_side(self) -> Digests:
-        """Return the digests of the test's modules."""
+        """Return the digests of the definitions in the test's modules."""
         return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
 
     def _adopted(self, sites: Plan) -> Iterator[str]:
-        """Return lines on the new design, and on other tests of the node that still have the old one."""
+        """Yield lines that name the new design, and other tests of the node that still have the old design."""
         design = fixtures.load(self.fixture_path).design
         if not design:
             return
@@ -285,7 +285,7 @@ class Mission:
         return Account((*found.lines, *told.lines, *unwritten), found.problem, told.patch, told.interrupted)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
-        """Return a note if a scenario replaces the design instead of changing it."""
+        """Yield a note if a scenario replaces the design's drift because the two cannot be merged."""
         lost = replaced(self.designation.drifts, fixture.design, self.drift)
         if lost:
             yield (
@@ -310,7 +310,7 @@ class Mission:
         return found
 
     def _not_run(self, found: Repair | None) -> Iterator[str]:
-        """Return notes on recorded tests of a repaired file that this run did not collect and hence not check."""
+        """Yield a note for each recorded test of a repaired file for which this run did not check the repair."""
         if found is None or not found.accepted:
             return
         run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}
@@ -338,13 +338,13 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        with suppress(OSError, UnicodeDecodeError):  # writing the other files reports the same problem
+        with suppress(OSError, UnicodeDecodeError):  # an error with the other files is reported
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())
 
 
 def _changeable(analysis: Analysis) -> set[str]:
-    """Return the ids of the sites with an operand."""
+    """Return the ids of the sites with an operand that a repair can change."""
     return {str(step.site) for step in analysis.sites if analysis.operands(step.site)}
 
 

@@ -1,4 +1,4 @@
-"""The values passed between the stages of the plugin: frozen, no pytest, no numpy at import."""
+"""The values passed between the stages of the plugin, as frozen dataclasses. This module imports no pytest or numpy."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ Reason = Literal[
 
 @dataclass(frozen=True, slots=True)
 class SitePlace:
-    """The current place of a site: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
+    """A site, which is a statement to record: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
 
     id: str
     path: str
@@ -54,7 +54,7 @@ class SitePlace:
 
 @dataclass(frozen=True, slots=True)
 class TaintList:
-    """The sites of one (source topic, sink topic) pair in order; a site's index is its *n* in this list."""
+    """The sites between one source and one sink topic, in order; a site's index is its *n* in the paper."""
 
     source: str
     sink: str
@@ -68,7 +68,7 @@ class TaintList:
 
 @dataclass(frozen=True, slots=True)
 class Conjunct:
-    """One condition of a guard: `low <= sensor <= high`. Either end may be infinite; equal ends select a category."""
+    """One condition of a guard: `low <= sensor <= high`. Both ends may be infinite; equal ends select one category."""
 
     sensor: Sensor
     low: float
@@ -77,17 +77,17 @@ class Conjunct:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """The condition of a mutation: the conjunction of at most two conjuncts; always true if there are none."""
+    """The condition under which a mutation applies: at most two conjuncts joined by `and`; always true if empty."""
 
     conjuncts: tuple[Conjunct, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The region of a difference: cells that deployed episodes visited, and which of them the recording lacks.
+    """Where the worlds differ, as cells that deployed episodes visited; `novel` holds those that the recording lacks.
 
-    `left` are recorded cells that deployed episodes avoid. If all deployed cells are new, `without` are the indices
-    of the sensors left out so that cells can be compared.
+    `left` holds recorded cells that deployed episodes avoid. If all deployed cells are new, the comparison ignores some
+    sensors so that cells match; `without` holds the indices of these sensors.
     """
 
     cells: tuple[Cell, ...] = ()
@@ -98,9 +98,9 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """One-sided bounds of a quantity, each at the stated confidence; infinite if there are too few episodes.
+    """A lower and an upper bound, each at the stated confidence by itself; infinite if there are too few episodes.
 
-    `exact` is true if they have the stated coverage for every distribution (learning/bounds.py).
+    `exact` is true if the bounds have this coverage for every distribution (learning/bounds.py).
     """
 
     low: float
@@ -113,11 +113,11 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Guarantee:
-    """Bounds on future episodes of a world, from `passed` successes in `episodes` episodes; each holds separately.
+    """Bounds on future episodes of a world, given `passed` successes in `episodes` episodes. Each holds separately.
 
-    At least 1 - `share` of the episodes earn `quantile` or more. It is None if there are fewer than `needed` episodes,
-    or if their number depended on their results (`needed` is 0). `varied` is false if all episodes are equal: then
-    they sample one world only.
+    At least 1 - `share` of the future episodes earn `quantile` or more. `quantile` is None if there are fewer than
+    `needed` episodes, or if their number depended on their results; `needed` is 0 in that case. `varied` is false if
+    all episodes are equal, because equal episodes sample only one world.
     """
 
     episodes: int
@@ -177,12 +177,12 @@ class OperandEffect:
     value: float | None
     best: float
     effect: float
-    factor: bool = False  # `best` multiplies the use instead of replacing it
+    factor: bool = False  # `best` is a factor on the operand, not its new value
 
 
 @dataclass(frozen=True, slots=True)
 class Culprit:
-    """A ranked site. `method` is `slices` if no operand of it was simulated."""
+    """A ranked site. `method` is `slices` if none of its operands was changed in a simulation."""
 
     site: SitePlace
     score: float
@@ -192,21 +192,21 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand: its place, its text, and the value that it takes under the guard, or the factor on it."""
+    """One repaired operand. Where the guard holds, `value` replaces it, or multiplies it if `factor` is true."""
 
     path: str
     line: int
     code: str
     value: float
     factor: bool = False
-    what: str = ""  # description of a change of structure
+    what: str = ""  # description, if the edit changes the structure instead of an operand
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
     """A promising candidate and its outcome; `reason` is empty for the accepted one.
 
-    `mean` is its reward per episode over `episodes`; `fresh` ones were not used to choose it.
+    `mean` is its mean reward in `episodes` episodes. `fresh` says that these episodes were not used to choose it.
     """
 
     what: str
@@ -218,7 +218,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but is not a repair: reward gained per episode over the unchanged program, on fresh seeds.
+    """A change that helps but was not accepted; `gain` is its reward per episode over the unchanged code, fresh seeds.
 
     `low` and `designed_low` are lower bounds; `patch` is a path below the root.
     """
@@ -236,9 +236,9 @@ class Partial:
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """The result of the search. `guard` is the Python condition of the patch; `diff` is empty unless accepted.
+    """The result of the search. `guard` is the Python condition of the patch; `diff` is empty if none was accepted.
 
-    `mean` is the reward per episode of the rejected candidate over `episodes`; `history` lists the attempts in order.
+    `mean` is the mean reward of the rejected candidate in `episodes` episodes; `history` lists the attempts in order.
     """
 
     accepted: bool
@@ -255,7 +255,7 @@ class Repair:
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """An interval of a drift's range; `part` names the range in a dictionary, else it is empty."""
+    """An interval of a drift's range. `part` is the key of the range in a dictionary of drifts, else ""."""
 
     part: str
     low: float
@@ -268,7 +268,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """A range and the numbers drawn from it, by world, aligned with the totals."""
+    """A drift's range, and the numbers drawn from it by world, one per episode in the order of the totals."""
 
     part: str
     low: float
@@ -295,7 +295,7 @@ class SearchTrace:
 
 @dataclass(frozen=True)
 class ListComparison:
-    """One taint list in both worlds. Arrays have shape (cells, sites); NaN for cells never visited."""
+    """One taint list in both worlds. Matrices have shape (cells, sites), with NaN in the rows of unvisited cells."""
 
     taint_list: TaintList
     offline: Matrix
@@ -305,9 +305,9 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: mean and least robustness, and the numbers of episodes that judged it and violated it.
+    """A formula in one world: its mean and least robustness, and how many episodes evaluated and violated it.
 
-    `first` is the earliest time of a violation in an episode, in s.
+    `first` is the time of the earliest violation in s, from the start of its episode.
     """
 
     robustness: float
@@ -319,7 +319,7 @@ class FormulaWorld:
 
 @dataclass(frozen=True)
 class FormulaRow:
-    """The results of a formula by world: offline, online, repaired, nominal_repaired."""
+    """The results of a formula, by world: offline, online, repaired, nominal_repaired."""
 
     formula: str
     worlds: Mapping[str, FormulaWorld]
@@ -346,16 +346,18 @@ class Comparison:
     ranking: str = ""  # confidence in the order of the culprits
     parts: Mapping[str, tuple[float, float]] = field(
         default_factory=dict
-    )  # part → mean, designed and deployed
+    )  # part of the reward → means: designed, deployed
     lost: Mapping[str, tuple[Cell, ...]] = field(
         default_factory=dict
-    )  # part → cells where deployed earns less
-    target: str = ""  # the test as the argument of pytest that records it
-    node: str = ""  # the same for a comparison, if the test has parameters besides its scenario
+    )  # part of the reward → cells where the deployed world earns less
+    target: str = ""  # the pytest argument that records this test
+    node: str = ""  # the one that compares it, if it has other parameters
     flags: tuple[str, ...] = ()  # non-default options of the run
-    changes: Mapping[Cell, float] = field(default_factory=dict)  # difference between the worlds, by cell
+    changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between worlds
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`
     formulas: tuple[FormulaRow, ...] = ()
-    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # sizes of a drift with ranges, by its parts
+    sizes: Mapping[str, Sizes] = field(
+        default_factory=dict
+    )  # sizes drawn from a drift's ranges, by dictionary key
     purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
-    permanent: bool = False  # whether the drift is permanent, so that the designed world is the old one
+    permanent: bool = False  # whether the world has changed for good

@@ -1,7 +1,7 @@
 """Detect changes in a test's modules: its file, modules it imports from below the root, and conftest files.
 
-World, reward and helpers determine a recording as much as the node does. Each definition has a digest that ignores
-comments, layout and docstrings; marker arguments, other tests and data files are left out.
+The simulated world, the reward and the helpers of a test affect a recording as much as the node does. Each definition
+has a digest that ignores comments, layout and docstrings. Marker arguments, other tests and data files have none.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from pathlib import Path
 
 DIGITS = 12  # hexadecimal digits of a digest
 SHOWN = 3  # maximum number of files in a message, and of definitions per file
-REST = ""  # the key of statements outside definitions
+REST = ""  # key of the digest of all statements outside definitions
 
 Digests = Mapping[str, Mapping[str, str]]  # file, relative to the root → definition → digest
 
 
 def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[str, str]]:
-    """Return the digests of a test, given by node id. Skip files that cannot be read or parsed."""
+    """Return the digests for a test, which is given by its node id. Skip files that cannot be read or parsed."""
     name, *parts = test.partition("[")[0].split("::")
     found: dict[str, dict[str, str]] = {}
     first = (root / name).resolve()
@@ -30,9 +30,9 @@ def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[st
 
 
 def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[tuple[Path, ast.Module]]:
-    """Yield a test's file, the modules it imports from below the root, and its conftest files, each with its tree.
+    """Yield a test's file, the modules that it imports from below the root, and its conftest files, with their trees.
 
-    Skip `nodes`, and files that cannot be read or parsed.
+    Skip the files in `nodes` and files that cannot be read or parsed.
     """
     waiting = [first, *_conftests(first.parent, root.resolve())]
     seen = {path.resolve() for path in nodes}
@@ -50,7 +50,7 @@ def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[t
 
 
 def changes(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield the changes of each file; nothing if the recording has no digests, as from older versions."""
+    """Yield the changes of each file. Yield nothing if an older version made the recording: it has no digests."""
     if not before:
         return
     for path in sorted({*before, *after}):
@@ -84,7 +84,7 @@ def _conftests(folder: Path, root: Path) -> list[Path]:
 
 
 def _imported(tree: ast.Module, path: Path, root: Path) -> list[Path]:
-    """Return the candidate files of all imports in a module; they need not exist."""
+    """Return the files that the imports of a module may refer to; some of them may not exist."""
     package = path.parent
     while (package / "__init__.py").exists() and package != root:
         package = package.parent
@@ -112,7 +112,7 @@ def _files(base: Path, module: str) -> Iterator[Path]:
 
 
 def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, str]:
-    """Return the digest of every definition; `test` holds the class and function names of the test in its own file."""
+    """Return the digest of every definition. In the test's own file, `test` holds its function and class names."""
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             node.decorator_list = [one for one in node.decorator_list if not _marks(one)]
@@ -133,7 +133,7 @@ def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, st
 
 
 def _named(statement: ast.stmt) -> Iterator[tuple[str, str]]:
-    """Yield the definitions of a statement with their text; methods are separate definitions."""
+    """Yield each definition in a statement with its source text; methods are separate definitions."""
     if isinstance(statement, (ast.Import, ast.ImportFrom)) or (
         isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
     ):

@@ -1,4 +1,4 @@
-"""The checked options of a run. Frozen, without pytest."""
+"""The checked options of a run, as a frozen dataclass; this module does not import pytest."""
 
 from __future__ import annotations
 
@@ -37,29 +37,29 @@ class Options:
     mode: Mode = "plain"
     seed: int = 0
     drift: str | None = None
-    episodes: int | None = None  # overrides the marker when recording, 40 when comparing
+    episodes: int | None = None  # default: the marker's when recording, 40 when comparing
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
-    localize: str = "repair"  # what ends the search: an accepted repair, or the ranking of all sites
+    localize: str = "repair"  # end of the search: an accepted repair, or a ranking of all sites
     budget: int = 300  # limit of a search, in episodes
     seconds: float | None = None  # limit of a search in seconds, instead of episodes
     edit: str = "auto"  # where to write an unconditional repair of a named constant
-    structure: bool = True  # whether to change the structure if no constant suffices
+    structure: bool = True  # whether to edit other code if changed constants do not suffice
     strict: bool = False
     utility: str = "batch"
     workers: int = 1  # parallel episodes; each has its own process if there are several
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
     looks: int | None = None  # maximum number of interim looks at the verdict
-    log: Path | None = None  # missions of a robot, instead of simulated ones
+    log: Path | None = None  # log of a robot's missions to compare
     holm: bool = False  # whether to correct verdicts over all tests of the run
     comparisons: int = 1  # number of comparisons to correct for
-    bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
+    bags: tuple[Path, ...] = ()  # recorded missions to compare
     stress_budget: int = 1000  # limit of a stress run, in episodes
-    stress_seconds: float | None = None  # or in seconds
+    stress_seconds: float | None = None  # limit of a stress run in seconds, instead of episodes
     stress_repair: bool = False  # whether a stress run repairs at the boundary
     total: int | None = None  # episodes that all comparisons of the run share
-    resume: bool = False  # whether to take the finished episodes of an interrupted run
+    resume: bool = False  # whether to reuse the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
     LOOKS = 3
@@ -68,13 +68,13 @@ class Options:
     def most_looks(self) -> int:
         """Return the maximum number of looks at the verdict.
 
-        One before a repair, which needs the whole region, and under a correction, whose p-values must be smaller than
-        those at which a run may end early.
+        It is 1 if a repair follows, which needs all episodes to find the region. It is also 1 with --tarl-holm, because
+        the correction needs smaller p-values than those at which a run may stop early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     def alone(self, episodes: int) -> Options:
-        """Return the options that run one comparison of a shared total by itself, with as many episodes."""
+        """Return the options for a separate run of one comparison, with the number of episodes that it got."""
         return replace(self, total=None, looks=None, episodes=episodes)
 
     @property
@@ -108,7 +108,7 @@ def options(given: Mapping[str, Any]) -> Options:
     _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
-        if not re.fullmatch(r"[\w.]+:\w+", name):  # the session imports a user's optimiser
+        if not re.fullmatch(r"[\w.]+:\w+", name):  # a user's search, imported later
             _known("--tarl-search", name, (*SEARCHES, "module:factory"))
     localize = given["localize"] or "repair"
     _known("--tarl-localize", localize, RANKINGS)
@@ -157,7 +157,7 @@ def options(given: Mapping[str, Any]) -> Options:
 
 
 def _check_total(given: Mapping[str, Any]) -> None:
-    """Raise SettingsError for a shared total that is out of range, or that other flags contradict."""
+    """Raise SettingsError if --tarl-total is too small or conflicts with another flag."""
     number_within("--tarl-total", "it", given["total"], int, FEWEST_SHARED, 10**6)
     if not given["online"]:
         raise SettingsError("--tarl-total needs --tarl-online: its comparisons share the episodes.")
@@ -208,7 +208,7 @@ def _check_modes(given: Mapping[str, Any]) -> None:
 
 
 def _check_stress(given: Mapping[str, Any]) -> None:
-    """Raise SettingsError for flags of other modes beside --tarl-stress."""
+    """Raise SettingsError for flags that --tarl-stress does not support."""
     other = next((name for name in ("record", "online") if given[name]), None)
     if other is not None:
         raise SettingsError(
@@ -222,7 +222,7 @@ def _check_stress(given: Mapping[str, Any]) -> None:
 
 
 def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int, float | None]:
-    """Return the limit of a search in episodes or else in seconds: `300`, `90s`, `5min`, `1h`."""
+    """Parse the limit of a search into (episodes, seconds); texts are `300`, `90s`, `5min`, `1h`."""
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
     unit = found[2] if found else None
     if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
@@ -290,7 +290,7 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
 def number_within(
     where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float
 ) -> Any:
-    """Return the value if it is a number of that kind within the bounds. Raise SettingsError otherwise."""
+    """Return the value if it is a number of type `kind` within the bounds. Raise SettingsError otherwise."""
     takes = int if kind is int else (int, float)
     if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
         what = "a whole number" if kind is int else "a number"

@@ -63,7 +63,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture
 def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
-    """Random numbers, in-process ROS, sensors and reward of an episode."""
+    """The interface of a test to its episode: random numbers, ROS, sensors and reward."""
     _require_extra("The fixture `tarl`")
     from pytest_tarl.repeating import opened
 
@@ -73,7 +73,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The value of this episode's drift scenario; without one, the permanent drift of the design, or None."""
+    """The drift value of this episode: the scenario's, else that of the design's permanent drift, else None."""
     _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.repeating import drift_value
 
@@ -99,7 +99,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Keep the error of an episode, and show a user's mistake as a sentence."""
+    """Keep the error of an episode, and show errors for users without a traceback."""
     report = yield
     if (
         call.excinfo is not None
@@ -124,7 +124,7 @@ def pytest_runtest_makereport(
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Show a user's mistake as a sentence, and add advice where a test module imports a ROS that is not installed."""
+    """Show errors for users without a traceback; add advice if a test module imports a ROS that is not installed."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
     if call is not None and call.excinfo is not None and _ours(call.excinfo.value):
@@ -147,11 +147,11 @@ def _require_extra(what: str) -> None:
 def _ours(error: BaseException) -> bool:
     return (
         type(error).__module__ == "pytest_tarl.errors"
-    )  # compare names: a plain run must not import our modules
+    )  # compare names: a plain run must not import the module of the class
 
 
 def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
-    """Return the text of a TARL error, preceded by the innermost line of the user's code."""
+    """Return the text of a TARL error after the place of the innermost call in the user's code."""
     ours = Path(__file__).parent
     lines = [entry for entry in excinfo.traceback if ours not in Path(entry.path).parents]
     if not lines:
@@ -184,7 +184,7 @@ def _options(config: pytest.Config) -> Options:
 
 
 def _look_for_plugged(config: pytest.Config, options: Options) -> None:
-    """Import a user's searches before the episodes of a comparison run. Raise SettingsError if one is missing."""
+    """Import a user's searches before any episode runs. Raise SettingsError if one cannot be found."""
     named = [name for name in options.searches if ":" in name and options.mode == "repair"]
     if named:
         from pytest_tarl.searching.ask_tell import factory

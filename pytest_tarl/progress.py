@@ -1,6 +1,6 @@
 """Show progress on a terminal: episodes done, their rate, and the time left.
 
-The line appears at once and changes at most ten times a second. The clock affects only the display.
+The line appears immediately and changes at most ten times per second. The clock affects only the display.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ProgressLine:
 
 
 def duration(seconds: float) -> str:
-    """Return a time in its two largest units: `8 s`, `3 min 20 s`, `2 h 5 min`."""
+    """Format a duration in its two largest units: `8 s`, `3 min 20 s`, `2 h 5 min`."""
     whole = max(0, round(seconds))
     if whole < 60:
         return f"{whole} s"

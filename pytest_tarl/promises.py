@@ -1,4 +1,4 @@
-"""The marker's `must_hold`: the part of each direction in which the guarantee must hold."""
+"""Check the marker's `must_hold`: for each direction of a space, the values for which the guarantee must hold."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.spaces import Choice, Space, Span, nominal
 def must_hold(where: str, value: Any, drifts: Mapping[str, Drift]) -> Mapping[str, tuple[Any, ...]]:
     """Return the limits by direction: two numbers for a range, options for a choice.
 
-    Raise SettingsError for a direction that no space has, or limits that are not of its kind.
+    Raise SettingsError for a direction that no space has, or for limits that do not fit the direction.
     """
     if not isinstance(value, Mapping):
         raise SettingsError(

@@ -43,7 +43,7 @@ Members = Sequence[Sequence[int]]
 
 PILOTS = 20  # episodes for learning bins
 
-FEW = 30  # with fewer episodes, a recording says which loss they can show
+FEW = 30  # below this many episodes, a note states the detectable loss
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or comparisons will report spurious differences."
@@ -52,9 +52,9 @@ NOT_REPRODUCIBLE = (
 
 @dataclass(frozen=True)
 class Recorded:
-    """The episodes of one world: the first one's trace, the statistics of all, message types by sensor topic.
+    """The episodes of one world: the trace of the first, the statistics of all, and message types by sensor topic.
 
-    `sarsa` holds a learner per taint list, updated in the order of the seeds by the rule `learner`.
+    `sarsa` holds one learner per taint list, updated in the order of the seeds; `learner` names their rule.
     """
 
     first: Trace
@@ -94,10 +94,10 @@ def record(
     drift: str | None = None,
     world: Digests | None = None,
 ) -> RecordResult:
-    """Run the episodes and write the recording, unless too many of them fail.
+    """Run the episodes and write the recording. Write nothing if too many episodes fail.
 
     `world` holds the digests of the test's modules. A `drift`, which must be permanent, becomes part of the design.
-    Problems of the previous recording are reported first. Raise FixtureError, before any episode, if the file cannot
+    If the previous recording cannot be read, say so first. Raise FixtureError before any episode if the file cannot
     be written.
     """
     old, broken = _previous(path)
@@ -138,7 +138,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; return a note if the result differs, with the spread if there is a simulator."""
+    """Run the first episode again; return a note if the result differs, with its spread if there is a simulator."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []
@@ -155,7 +155,7 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
 
 
 def detectable(totals: Floats) -> list[str]:
-    """Return a note on the loss that the same number of episodes can show, if they are few; shape (episodes,)."""
+    """For fewer than FEW episodes, return a note on the loss that a comparison can detect; `totals` is (episodes,)."""
     if not 1 < totals.size < FEW or not totals.std():
         return []
     loss = detectable_loss(totals, totals, SIGNIFICANT)
@@ -171,7 +171,7 @@ def detectable(totals: Floats) -> list[str]:
 
 
 def _refused(settling: Settling, recorded: Recorded) -> str:
-    """Return why no recording is written; empty if one is."""
+    """Return the reason not to write the recording; empty if there is none."""
     if settling.failing:
         return _unfinished(settling.failing, recorded.failures)
     unjudged = never_judged(recorded.sample.judgements)
@@ -181,7 +181,7 @@ def _refused(settling: Settling, recorded: Recorded) -> str:
 def read_values(
     rollout: Rollout, seed: int, progress: Progress, drift: str | None = None
 ) -> dict[str, list[float]]:
-    """Return the values of sensors with bins to learn, by sensor name, from episodes used for nothing else."""
+    """Run PILOTS separate episodes; return the values of the sensors whose bins must be learned, by sensor name."""
     read: dict[str, list[float]] = {}
     plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
     for done, episode in enumerate(in_order(rollout, plans)):
@@ -239,7 +239,7 @@ def run_episodes(
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
-    """Return the run. Raise RecordingError if it is neither a success nor a failed mission, or got stuck."""
+    """Return the run. Raise RecordingError if its node never waited, or if an error arose outside the mission."""
     if run.stuck:
         raise RecordingError(f"Stopped at an episode (seed {run.plan.seed}) that did not end: {run.failure}")
     if run.broken:
@@ -288,17 +288,17 @@ def _unjudged(formula: str, recorded: Sample) -> str:
 
 
 def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
-    """Return a note for every taint list none of whose sites was reached."""
+    """Return a note for every taint list without a reached site."""
     silent = [
         t.name
         for t, one in zip(plan.lists, recorded.lists, strict=True)
-        if not one.visits.state.any()  # state 0 is the start of every episode, so ignore it
+        if not one.visits.state.any()  # state 0 is the start of an episode, not a site
     ]
     return [f"no step of {name} was executed: does the test drive that part of the node?" for name in silent]
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording, or else why an existing one cannot be read."""
+    """Return the previous recording, or None; and the reason if it exists but cannot be read."""
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:

@@ -1,4 +1,4 @@
-"""Remarks on a comparison beside its verdict: lost sites, new situations, failures that the reward does not show."""
+"""Remarks that accompany a verdict: lost sites, new situations, failures that do not lower the reward."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from pytest_tarl.report.guarantees import percent
 from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.sensors import Sensor
 
-MOST_NAMED = 3  # lost sites named in a note
+MOST_NAMED = 3  # maximum number of lost sites named in a note
 
 
 def of_comparison(
     fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference, options: Options
 ) -> tuple[str, ...]:
-    """Return the remarks on two compared samples over the same cells."""
+    """Return all remarks on a comparison; both samples must have the same cells."""
     return (
         *unheard_of(offline, online, difference, fixture.sensors),
         *lost_sites(fixture, plan),
@@ -36,7 +36,7 @@ def of_comparison(
 
 
 def early(online: Sample, planned: int) -> tuple[str, ...]:
-    """Yield a remark if the run stopped early."""
+    """Return a remark if the run stopped early, because the verdict was certain."""
     if online.episodes == planned:
         return ()
     return (
@@ -45,7 +45,7 @@ def early(online: Sample, planned: int) -> tuple[str, ...]:
 
 
 def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Yield a remark on recorded sites that the node no longer has: only their slices are lost."""
+    """Return a remark on recorded sites that the node no longer has; the slices of all other sites are compared."""
     present = {place.id for place in plan.places}
     gone: dict[str, SitePlace] = {}
     for one in fixture.lists:
@@ -64,7 +64,7 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
 
 
 def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Describe recorded sites that moved to another line: they keep their slices."""
+    """Describe recorded sites that moved to another line; their slices are still compared."""
     now = {place.id: place for place in plan.places}
     moved = {
         f"`{site.code}` from line {site.line} to {now[site.id].line}": None
@@ -80,7 +80,7 @@ def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
 
 
 def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options) -> tuple[str, ...]:
-    """Yield a remark if more missions fail in the deployed world without a loss of reward."""
+    """Return a remark if more missions fail in the deployed world although the reward does not decrease."""
     before, after = (world.passed.astype(np.float64) for world in (offline, online))
     draws = seeds.generator(options.seed, "success")
     if verdict.result == "degraded" or before.mean() - after.mean() <= PASS_RATE_LOSS:
@@ -99,7 +99,7 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
 def unheard_of(
     offline: Sample, online: Sample, difference: Difference, sensors: Sequence[Sensor]
 ) -> Iterator[str]:
-    """Yield a remark if (nearly) every deployed situation is new, and on what was compared instead."""
+    """Yield a remark if nearly all deployed situations are new; it says what was compared instead."""
     if difference.verdict.result == "no difference" or not apart(offline, online):
         return
     names = [sensors[d].name for d in difference.region.without]
@@ -117,7 +117,7 @@ def unheard_of(
 
 
 def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
-    """Yield remarks on formulas that were not recorded, and on those that no mission was long enough to judge."""
+    """Return remarks on formulas missing in the recording, and on formulas for which every mission was too short."""
     if online.judgements is None:
         return ()
     recorded = offline.judgements.formulas if offline.judgements is not None else ()

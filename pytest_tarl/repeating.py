@@ -1,4 +1,4 @@
-"""Run the body of a test repeatedly as episodes, with fresh function-scoped fixtures each time.
+"""Run the body of a test repeatedly; each run is an episode with fresh function-scoped fixtures.
 
 An episode is pytest's own run of an item (setup, call, teardown, each with its report), except that the reports are
 not logged and only function-scoped fixtures are torn down: fixtures of wider scope live until the item is done.
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What to instrument in the nodes: by file, the position of every site, and the sites that publish."""
+    """What to instrument in the nodes: the positions of the sites (statements to record) by file, and which publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()
@@ -72,18 +72,18 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # edited files of which the previous text ran
-    simulator: bool = False  # whether an external simulator was its world
+    older: tuple[Path, ...] = ()  # edited files whose previous text ran
+    simulator: bool = False  # whether an external simulator was the episode's world
 
 
 EPISODE = pytest.StashKey[Episode]()
-LIMIT = pytest.StashKey[Any]()  # the settings of pytest-timeout for an item
-SIMULATORS = 3  # external simulators that an episode may lose, as workers
+LIMIT = pytest.StashKey[Any]()  # pytest-timeout's settings for an item
+SIMULATORS = 3  # runs of an episode whose simulator is lost, including the first
 INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # exceptions that end the whole run
 
 
 def designated(item: pytest.Item) -> Designation | None:
-    """Return the item's checked marker; None without one. Raise SettingsError for an invalid one."""
+    """Return the item's checked marker, or None if it has none. Raise SettingsError if the marker is invalid."""
     marker = item.get_closest_marker("tarl")
     if marker is None:
         return None
@@ -93,13 +93,13 @@ def designated(item: pytest.Item) -> Designation | None:
 
 
 def _first_paragraph(docstring: str | None) -> str:
-    """Return the first paragraph of a docstring in one line, empty without one."""
+    """Return the first paragraph of a docstring in one line; empty if there is no docstring."""
     return " ".join((docstring or "").strip().partition("\n\n")[0].split())
 
 
 @contextmanager
 def opened(item: pytest.Item) -> Iterator[Tarl]:
-    """Open the item's episode; afterwards close it and keep its trace."""
+    """Open the item's episode and yield the fixture; on exit, close the episode and keep its trace."""
     from pytest_tarl.episode import Tarl
     from pytest_tarl.instrumentation.datafiles import is_data, reading
     from pytest_tarl.instrumentation.importhook import NodeImports
@@ -149,7 +149,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
 
 
 def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[None]:
-    """Return a context in which parameters of launch files are read anew, if data files have another text."""
+    """Return a context that re-reads the parameters of launch files if the overlay replaces data files."""
     if not data:
         return nullcontext()
     from pytest_tarl.ros.launched import texts_replaced
@@ -158,7 +158,7 @@ def _launch_files_replaced(data: Mapping[Path, str]) -> AbstractContextManager[N
 
 
 def _faults(episode: Episode) -> Faults:
-    """Return the faults of the episode's drift, and those that its test declares."""
+    """Return all faults that the test declares, and the active ones of this episode."""
     from pytest_tarl import design
     from pytest_tarl.faults.installing import Faults
 
@@ -168,7 +168,7 @@ def _faults(episode: Episode) -> Faults:
 
 
 def _replay(episode: Episode) -> Replay | None:
-    """Return the recorded mission to replay in place of the world, or None."""
+    """Return the recorded mission that replaces the world, or None."""
     if episode.plan.bag is None:
         return None
     from pytest_tarl.bags.reading import opened as opened_bag
@@ -185,7 +185,7 @@ def _replay(episode: Episode) -> Replay | None:
 
 
 def drift_value(item: pytest.Item) -> Any:
-    """Return the value of the drift scenario of the item's episode; without one that of the design, or None."""
+    """Return the value of the drift scenario in the item's episode; without a scenario, the design's value or None."""
     from pytest_tarl import design
 
     episode = _episode(item)
@@ -195,7 +195,7 @@ def drift_value(item: pytest.Item) -> Any:
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:
-    """Keep the error that ended a phase; a user's mistake becomes a sentence in the report."""
+    """Keep the error that ended a phase; show errors for users in the report without a traceback."""
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:
@@ -205,7 +205,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
 
 
 def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
-    """Return the node's exception behind a NodeError, so that a debugger stops in the node."""
+    """Return the node's exception that caused a NodeError, so that a debugger stops in the node's code."""
     from pytest_tarl.ros.accounts import of_node
 
     cause = excinfo.value.__cause__
@@ -216,7 +216,7 @@ def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.Exceptio
 
 
 def _episode(item: pytest.Item) -> Episode:
-    """Return the episode prepared for the item, or a new one in a plain test run."""
+    """Return the episode that was prepared for the item; in a plain test run, create one."""
     if EPISODE in item.stash:
         return item.stash[EPISODE]
     marked = designated(item)
@@ -242,7 +242,7 @@ class ItemRollout:
         return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode; run it again if its simulator is lost, at most SIMULATORS times.
+        """Run one episode. If its simulator is lost, run it again, at most SIMULATORS times in total.
 
         Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C.
         """
@@ -254,7 +254,7 @@ class ItemRollout:
     def _once(self, plan: EpisodePlan) -> EpisodeRun:
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
-        self.item._report_sections.clear()  # do not collect and show the output of all episodes
+        self.item._report_sections.clear()  # else the output of all episodes would accumulate
         _forget_instance(self.item)
         try:
             # Passing the item's own parent as next item keeps all fixtures of wider scope.
@@ -274,7 +274,7 @@ def _forget_instance(item: pytest.Function) -> None:
 
 @dataclass(frozen=True)
 class BesideRollout(ItemRollout):
-    """Run episodes of another item during an item's run; fixtures that they do not share are set up again."""
+    """Run episodes of another item during an item's run. Fixtures that the items do not share are set up again."""
 
     at_work: pytest.Function
 
@@ -289,7 +289,10 @@ class BesideRollout(ItemRollout):
 
 
 def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
-    """Apply the limit of pytest-timeout to each episode instead of the item; None if an episode is running."""
+    """Apply the limit of pytest-timeout to each episode instead of the whole item.
+
+    Return None if an episode is running, so that pytest-timeout sets its timer.
+    """
     if EPISODE in item.stash:
         return None
     item.stash[LIMIT] = settings
@@ -312,10 +315,10 @@ def _limited(item: pytest.Function) -> Iterator[None]:
 
 @contextmanager
 def _heeding_interrupts() -> Iterator[None]:
-    """End the run on Ctrl-C even if a node catches KeyboardInterrupt, as many main functions do."""
+    """End the run on Ctrl-C even if a node catches KeyboardInterrupt, which many main functions do."""
     before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
-        yield  # keep ignoring SIGINT, as a background job does
+        yield  # SIGINT is ignored, as in a background job: keep that
         return
     seen = []
     passed_on = before
@@ -334,8 +337,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
-    """Tear down fixtures that the next item does not need, after the last episode."""
-    # Do not call pytest's hooks: the item itself was torn down after its last episode, perhaps in another process, and
+    """After the last episode, tear down the fixtures that the next item does not need."""
+    # Do not call pytest's hooks: the last episode already tore the item down, perhaps in another process, and
     # plugins expect one teardown per item.
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
@@ -378,20 +381,20 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
 
 
 def _timed_out(error: BaseException | None) -> bool:
-    """Return whether pytest-timeout ended the episode, which it does through `pytest.fail`."""
+    """Return whether pytest-timeout ended the episode; it calls `pytest.fail`."""
     return isinstance(error, pytest.fail.Exception) and str(error).startswith("Timeout (>")
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed under an xfail mark; it still counts as failed."""
+    """Return whether a mission failed under an xfail mark; it counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 
 def _surprise(report: pytest.TestReport) -> bool:
-    """Return whether a mission succeeded although a strict xfail mark expected a failure; nothing was raised."""
+    """Return whether a strict xfail mark made a successful mission fail; in this case the test raised no exception."""
     return report.when == "call" and isinstance(report.longrepr, str) and report.longrepr.startswith("[XPASS")
 
 
 def _reason(report: pytest.TestReport) -> str:
-    """Return why a test skipped itself."""
+    """Return the reason that a skipped test gave."""
     return str(report.longrepr[2]) if isinstance(report.longrepr, tuple) else report.longreprtext

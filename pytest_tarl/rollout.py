@@ -1,4 +1,4 @@
-"""The interface for running episodes: plans, results, and rollouts that turn one into the other."""
+"""The interface for running episodes: plans, their results, and rollouts, which run plans."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from typing import Protocol
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
-AHEAD = 2  # episodes per worker begun before their results are requested
-KEPT = 6  # begun episodes per worker kept while others are requested
+AHEAD = 2  # episodes per worker that start before their results are requested
+KEPT = 6  # started episodes per worker to keep while others are requested
 
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One run of the designated test. `overlay` replaces the text of files; `record` instruments the nodes.
+    """One planned run of a test. `overlay` maps files to replacement texts; `record` says to instrument the nodes.
 
-    With a `bag`, its recorded mission replaces the test's world. A `point` is one of the space `drift`; without it,
-    the episode draws one.
+    With a `bag`, its recorded mission replaces the test's world. If `drift` is a space, `point` is a point
+    of it; without `point`, the seed determines a random one.
     """
 
     seed: int
@@ -33,14 +33,14 @@ class EpisodePlan:
 
 @dataclass(frozen=True)
 class EpisodeRun:
-    """The result of an episode. `failure` is one line on why the test failed; `topics` maps topics to message types.
+    """The result of an episode. `failure` is one line on why the test failed; `topics` maps topics to types.
 
-    `crashed` is true if the node ended the episode early, `stuck` if it did so by never waiting. `notes` are further
-    notes for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
+    `crashed` is true if the node ended the episode early, `stuck` if the reason is that it never waited. `notes`
+    are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
 
-    `older` lists files of the overlay whose previous text ran: such an episode says nothing about the overlay.
+    `older` lists files of the overlay whose previous text ran; then the result is no evidence about the overlay.
 
-    `simulator` says that an external simulator was the world, which may give the same plan another result.
+    `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
     `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
@@ -67,10 +67,10 @@ class Pending(Protocol):
         """Return the result, waiting for it. Raise TarlError if the episode could not run."""
 
     def cancel(self) -> bool:
-        """Cancel the episode; return whether it will not run."""
+        """Cancel the episode if it has not started; return whether it was cancelled."""
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result as soon as there is one, perhaps in another thread; without one, never."""
+        """Call a function with the result once it exists, perhaps in another thread; never if there is an error."""
 
 
 class Rollout(Protocol):
@@ -107,14 +107,15 @@ class Deferred:
         self._calls.append(call)
 
     def cancel(self) -> bool:
-        """Cancel the episode, which has not run."""
+        """Return True: the episode has not started and is not run."""
         return True
 
 
 def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending]:
-    """Yield the episodes in the order of their plans; begin enough of them ahead to keep the workers busy.
+    """Yield the episodes in the order of their plans; start enough of them early to keep all workers busy.
 
-    The result does not depend on the number of workers. A caller that stops early wastes only the episodes begun ahead.
+    The result does not depend on the number of workers. A caller that stops early wastes only the
+    episodes already started.
     """
     ahead = AHEAD * rollout.workers if rollout.workers > 1 else 0
     begun: deque[Pending] = deque()
@@ -131,26 +132,26 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
 
 
 class Ahead:
-    """Begin foreseen episodes, so that workers stay busy while a result is evaluated.
+    """Start the episodes that a search will probably request, so that workers stay busy while it evaluates a result.
 
-    This is a pure prefetch: a requested episode has the same result whether begun before or not, and one that is never
-    requested costs only time. Keys identify episodes.
+    This is a pure prefetch: a requested episode has the same result whether or not it was started early, and an
+    episode that is never requested costs only time. Keys identify episodes.
     """
 
     def __init__(self, rollout: Rollout) -> None:
         self.rollout = rollout
         self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
         self._begun: dict[Hashable, Pending] = {}
-        self._lately: set[Hashable] = set()  # begun since the last forecast, and not requested yet
+        self._lately: set[Hashable] = set()  # started since the last forecast, not requested yet
 
     def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:
-        """Replace the forecast of the episodes to be requested next, in this order."""
+        """Set the new forecast: the episodes that will be requested next, in this order."""
         if self.rollout.workers > 1:
             self._foreseen, self._lately = iter(wanted), set()
             self._begin()
 
     def __call__(self, key: Hashable, plan: EpisodePlan) -> EpisodeRun:
-        """Run an episode, or wait for it if it was begun. Raise TarlError if it cannot run."""
+        """Run an episode, or wait for it if it has started. Raise TarlError if it cannot run."""
         pending = self._begun.pop(key, None) or self.rollout.begin(plan)
         self._lately.discard(key)
         self._begin()

@@ -16,12 +16,12 @@ from time import monotonic, sleep
 from pytest_tarl.errors import RecordingError
 
 _ATTEMPTS = 3
-_PATIENCE = 60.0  # s of wall time for a master to answer, on a busy machine
+_PATIENCE = 60.0  # s of wall time until a master must answer, for a busy machine
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 class Master:
-    """`rosmaster --core`, and environment variables that lead nodes to it. Stopped by `close`, or with this process."""
+    """A process `rosmaster --core` and the environment by which nodes find it. It ends with `close` or this process."""
 
     def __init__(self) -> None:
         self._open = ExitStack()
@@ -79,7 +79,7 @@ class Master:
 
     @property
     def variables(self) -> dict[str, str]:
-        """Return the environment variables that lead nodes to the master."""
+        """Return the environment variables by which nodes find the master."""
         return {
             "ROS_MASTER_URI": self.uri,
             "ROS_IP": "127.0.0.1",

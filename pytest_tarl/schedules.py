@@ -1,4 +1,4 @@
-"""Drifts over time: a size that begins, grows or passes at a moment of the episode."""
+"""Drifts over time: their size changes suddenly, gradually or temporarily during the episode."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Shape = Literal["step", "ramp", "burst"]
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """The course of a drift: from the moment `at`, in s. A ramp is over, and a burst ends, `lasts` seconds later."""
+    """The course of a drift, which begins at the time `at`, in s. `lasts` is the duration of a ramp or burst, in s."""
 
     shape: Shape
     at: float
     lasts: float = 0.0
 
     def share(self, time: float) -> float:
-        """Return the share of the drift's size at a time in s, from 0, nominal, to 1."""
+        """Return the share of the drift's size at a time in s: 0 is nominal, 1 the full size."""
         if time < self.at:
             return 0.0
         if self.shape == "ramp":
@@ -30,7 +30,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """The value of a drift over time, which a world gets: call it with the time in s, such as `tarl.now`."""
+    """The value of a drift over time. The test calls it with the time in s, such as `tarl.now`."""
 
     nominal: float
     size: float

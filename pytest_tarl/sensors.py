@@ -1,4 +1,4 @@
-"""Sensors: inputs of the node, binned into the cell that indexes all learned values."""
+"""Sensors: inputs of the node. Their bins form a cell, the index of all learned values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
-CALLED = "()"  # suffix of the stored name of a function that reads a sensor from a message
+CALLED = "()"  # suffix of a stored field that is the name of a function
 
 
 @dataclass(frozen=True)
@@ -24,16 +24,16 @@ class Sensor:
     """A declared input and its binning.
 
     With `topic` and `field` (dotted, or a function of the message), TARL reads it from the messages delivered to the
-    node. Without them, the test sets it by `tarl.observe(name=value)`. A guard of a repair can test it if it has a
-    dotted field, or if `expr` names a variable of the node that holds it, such as `self.heading`; otherwise it only
-    serves for diagnosis.
+    node. Without them, the test sets it by `tarl.observe(name=value)`. The condition of a repair (its guard) can test a
+    sensor that has a dotted field, or whose `expr` names a variable of the node with its value, such as `self.heading`.
+    Other sensors only serve for diagnosis.
 
-    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside.
-    `edges` does the same with bins of unequal width; `bins` alone learns the edges from recorded episodes, with about
-    as many values in each bin. An `angle` wraps around: its range, -π to π unless `low` and `high` differ, is a circle.
-    `categories` lists the values of a text sensor. Without any of these, it takes booleans and small integers as they
-    are. `tilings` keeps the utility in that many overlapping grids of tiles instead of bins, so that near values share
-    what they learn.
+    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at
+    either end for values outside. `edges` gives bins of unequal width. `bins` alone learns the edges from recorded
+    episodes, so that all bins hold about equally many values. An `angle` wraps around; its range is -π to π unless
+    `low` and `high` say otherwise. `categories` lists the values of a text sensor. Without any of these, the values are
+    booleans or small integers, and each has its own bin. `tilings` stores the utility in that many overlapping grids
+    of tiles instead of bins, so that near values share what they learn.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Sensor:
     edges: tuple[float, ...] = ()
     angle: bool = False
     tilings: int = 0
-    learned: int = 0  # number of bins requested, if the edges were learned
+    learned: int = 0  # number of requested bins if the edges were learned; else 0
     expr: str = ""
 
     def __post_init__(self) -> None:
@@ -110,7 +110,7 @@ class Sensor:
             raise SettingsError(
                 f"Sensor {self.name!r} needs low, high and bins together; or bins alone, to learn the edges."
             )
-        least = 0 if len(self.edges) == 1 else 1  # a single edge has only the two outer bins
+        least = 0 if len(self.edges) == 1 else 1  # a single edge makes only the two outer bins
         whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= least
         low, high = (as_number(end) for end in ends)
         finite = ends == (None, None) or (
@@ -132,7 +132,7 @@ class Sensor:
 
     def _check_categories(self) -> None:
         given: Any = self.categories
-        if isinstance(given, list):  # keep the sensor hashable
+        if isinstance(given, list):  # tuples keep the sensor hashable
             object.__setattr__(self, "categories", tuple(given))
         if not isinstance(given, list | tuple) or not all(isinstance(one, str) for one in given):
             raise SettingsError(
@@ -145,17 +145,17 @@ class Sensor:
 
     @property
     def numeric(self) -> bool:
-        """Return whether values are binned by intervals."""
+        """Return whether the bins are intervals of numbers."""
         return self.bins is not None
 
     @property
     def to_learn(self) -> bool:
-        """Return whether its bins must still be learned."""
+        """Return whether its bins are not learned yet."""
         return self.bins is not None and self.low is None
 
     @property
     def guardable(self) -> bool:
-        """Return whether a node can read it, so that a guard can test it."""
+        """Return whether the condition of a repair can read the sensor in the node."""
         return bool(self.expr or self.path)
 
     @property
@@ -174,7 +174,7 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of a numeric sensor's narrowest bin; for a single edge, the unit of its last decimal."""
+        """Return the width of the narrowest bin of a numeric sensor; for a single edge, its last decimal place."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
@@ -229,7 +229,7 @@ class Sensor:
     def interval(self, first: int, last: int) -> tuple[float, float]:
         """Return the interval covered by bins `first` to `last`; infinite beyond the outer bins.
 
-        For an angle, `last` may exceed the last bin; the interval then wraps, and its start exceeds its end.
+        For an angle, `last` may exceed the last bin: then the interval wraps around, and its start exceeds its end.
         """
         if self.bins is None or self.low is None or self.high is None:
             return float(first), float(last)
@@ -282,7 +282,7 @@ def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:
 
 
 def stored(sensor: Sensor) -> Sensor:
-    """Return the sensor in serialisable form: a function is stored by its name."""
+    """Return the sensor in serialisable form: its function, if any, becomes a name that ends with CALLED."""
     if not callable(sensor.field):
         return sensor
     return replace(
@@ -291,13 +291,13 @@ def stored(sensor: Sensor) -> Sensor:
 
 
 def binning_digest(sensors: Iterable[Sensor]) -> str:
-    """Return a short digest of the sensors' inputs and bins: with equal digests, cells are comparable."""
+    """Return a short digest of the sensors' inputs and bins. Equal digests mean that cells are comparable."""
     text = json.dumps([asdict(stored(sensor)) for sensor in sensors], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def declared(sensor: Sensor) -> Sensor:
-    """Return the sensor as in the marker, without learned bins."""
+    """Return the sensor as the marker declares it, without learned edges."""
     plain = stored(sensor)
     return (
         replace(plain, edges=(), low=None, high=None, bins=plain.learned, learned=0)
@@ -307,7 +307,7 @@ def declared(sensor: Sensor) -> Sensor:
 
 
 def with_edges(sensors: Iterable[Sensor], learned: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
-    """Set the learned edges, given by name, of the sensors that have bins to learn."""
+    """Return the sensors with the learned edges; `learned` maps sensor names to edges."""
     return tuple(
         replace(sensor, bins=None, edges=learned[sensor.name], learned=sensor.bins or 0)
         if sensor.to_learn and sensor.name in learned

@@ -1,4 +1,4 @@
-"""A pytest run with TARL's flags: select tests, run each in its mode, and report at the end."""
+"""A pytest run with TARL's flags: select tests, run each one in the selected mode, and report at the end."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from pytest_tarl.rollout import Rollout
     from pytest_tarl.sharing import SharedEpisodes
 
-PLAIN_WIDTH = 80  # columns if there is no terminal, as under `-p no:terminal`
+PLAIN_WIDTH = 80  # columns without a terminal reporter (`-p no:terminal`)
 
 UNMARKED = (
     "NOTHING WAS RUN: no collected test has the marker. With TARL's flags, pytest runs only tests with "
@@ -67,14 +67,14 @@ class TarlSession:
         self.config = config
         self.options = options
         self._summary = Summary()
-        self._ended: list[_Ended] = []  # tests that have run but are not reported yet
+        self._ended: list[_Ended] = []  # finished tests that are not reported yet
         self._designated: tuple[pytest.Item, ...] = ()
-        self._unmarked = False  # whether tests were collected, but none with the marker
+        self._unmarked = False  # whether all collected tests lack the marker
         self._resumable: ResumableRun | None = None
         self._shared: SharedEpisodes | None = None  # with --tarl-total
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """Parametrize by drift scenario: `test_delivers[mud]`; `[online]` without one."""
+        """Parametrize tests by drift scenario: `test_delivers[mud]`, or `[online]` if the marker has no drifts."""
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is None or self.options.mode == "record":
             return
@@ -83,7 +83,7 @@ class TarlSession:
             list(drifts) if isinstance(drifts, Mapping) else []
         )  # an invalid marker is reported when the test runs
         if self.options.log is not None or self.options.bags:
-            names = []  # the world of recorded missions has no drift name
+            names = []  # logs and bags are not named after a drift
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":
@@ -112,7 +112,7 @@ class TarlSession:
             items[:] = marked
 
     def _sharing(self, total: int, marked: Sequence[pytest.Item]) -> SharedEpisodes | None:
-        """Return the episodes that the recorded tests share. Raise UsageError if the total is too small for them."""
+        """Return the plan for --tarl-total. Raise UsageError if the total is too small for the recorded tests."""
         from pytest_tarl.design import fixture_path
         from pytest_tarl.sharing import SharedEpisodes, shortage
 
@@ -125,7 +125,7 @@ class TarlSession:
         return SharedEpisodes(total, len(recorded), self.options.most_looks)
 
     def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
-        """Return the items with a space. Raise UsageError if there is none, or if the search is not installed."""
+        """Return the items with a drift space. Raise UsageError if there is none, or if a needed package is missing."""
         sentence = missing_stress("--tarl-stress")
         if sentence is not None:
             raise pytest.UsageError(sentence)
@@ -138,7 +138,10 @@ class TarlSession:
         return found
 
     def _chosen(self, item: pytest.Item) -> bool:
-        """Return whether an item has the selected scenario, or would have it with the fixture `tarl_drift`."""
+        """Return whether the selected scenario includes an item.
+
+        That is an item of the scenario, or one whose marker declares it but which does not use `tarl_drift`.
+        """
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":
             return declared or self.options.drift == AS_WRITTEN
@@ -156,9 +159,9 @@ class TarlSession:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a designated test in the selected mode, as one test with one report per phase.
+        """Run a designated test (one with the marker `tarl`) in the selected mode, with one report per phase.
 
-        Raise KeyboardInterrupt after the reports of a test that Ctrl-C ended.
+        If Ctrl-C ended the test, raise KeyboardInterrupt after its reports.
         """
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
@@ -173,11 +176,14 @@ class TarlSession:
         if nextitem is None or not together:
             self._tell()
         if call.excinfo is None and getattr(call.result, "interrupted", False):
-            raise KeyboardInterrupt  # results so far are reported; no further test starts
+            raise KeyboardInterrupt  # the results are reported; start no further test
         return True
 
     def _tell(self) -> None:
-        """Log the tests that have run; with --tarl-holm and --tarl-total, only once all of them have."""
+        """Report the finished tests to pytest.
+
+        With --tarl-holm and --tarl-total, wait until all tests have finished.
+        """
         from pytest_tarl.accounts import Compared, jointly
 
         ended, self._ended = self._ended, []
@@ -192,7 +198,10 @@ class TarlSession:
             one.log()
 
     def _share(self, shared: SharedEpisodes) -> None:
-        """Continue undecided comparisons with the rest of the shared episodes, and conclude all of them."""
+        """Spend the remaining shared episodes on undecided comparisons.
+
+        Then replace all comparisons by their reports.
+        """
         from pytest_tarl.accounts import Compared
 
         while (chosen := shared.following([one.outcome for one in self._ended])) is not None:
@@ -208,7 +217,7 @@ class TarlSession:
         return None if item.get_closest_marker("tarl") is None else defer_limit(item, settings)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Collect the reports of the tests, also from xdist's workers."""
+        """Collect the reports of all tests, including those from xdist's workers."""
         self._summary.collect(report)
 
     def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
@@ -216,12 +225,12 @@ class TarlSession:
         self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Remove the kept episodes of tests that are finished, unless the run was interrupted."""
+        """Delete the stored episodes of finished tests, unless the run was interrupted."""
         if self._resumable is not None:
             self._resumable.ended(exitstatus)
 
     def pytest_unconfigure(self) -> None:
-        """End the output with the commands that apply the patches, or with a warning that nothing was compared."""
+        """Print the commands that apply the patches, or a warning that nothing was compared, as the last output."""
         if not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
@@ -234,7 +243,7 @@ class TarlSession:
         self._summary.patches.clear()
 
     def _joined(self) -> Joined:
-        """Return the merge of the run's patches."""
+        """Merge the patches of all tests in the run."""
         from pytest_tarl.repairing.merge_patches import joined
 
         patches = tuple(map(Path, self._summary.patches))
@@ -276,7 +285,7 @@ class TarlSession:
         kept = self._resumable.test(item, marked, self.options, self._say)
         try:
             with ExitStack() as opened:
-                if stage is None:  # else it may continue
+                if stage is None:  # otherwise, the comparison may continue
                     opened.callback(kept.close)
 
                 def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
@@ -301,7 +310,10 @@ class TarlSession:
     def _rollout(
         self, item: pytest.Function, marked: Designation, instruments: Instruments, opened: ExitStack
     ) -> Rollout:
-        """Return what runs the episodes: this process, or workers that end with the test."""
+        """Return the rollout of a test, which runs episodes in this process or in workers.
+
+        Workers end with the test.
+        """
         if self.options.workers == 1 and self.options.cluster is None:
             return ItemRollout(item, marked, instruments)
         from pytest_tarl.workers import executor
@@ -309,7 +321,7 @@ class TarlSession:
         return opened.enter_context(executor.opened(item, instruments, marked.sensors, self.options))
 
     def _others(self, item: pytest.Function) -> tuple[Other, ...]:
-        """Return the other designated tests of the run, each once regardless of its drifts."""
+        """Return the other designated tests of the run; a test with several drifts appears once."""
         from pytest_tarl.missions import Other
 
         found: dict[str, Other] = {}
@@ -329,7 +341,7 @@ class TarlSession:
         return self.config.pluginmanager.has_plugin("terminalreporter")
 
     def _say(self, sentence: str) -> None:
-        """Print a sentence before the episodes; a worker of xdist has no terminal and reports it at the end."""
+        """Print a sentence before the episodes run. A worker of xdist has no terminal and reports it at the end."""
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter.ensure_newline()
@@ -360,7 +372,7 @@ class _Ended:
         return self.call.result if self.call.excinfo is None else None
 
     def proceed(self, run: Callable[[pytest.Function, Stage], object], stage: Stage) -> None:
-        """Run a further stage of the comparison, whose result replaces the one so far."""
+        """Run a further stage of the comparison; its result replaces the previous one."""
         call = pytest.CallInfo.from_call(lambda: run(self.item, stage), when="call", reraise=INTERRUPTS)
         call.start, call.duration = self.call.start, self.call.duration + call.duration
         self.call = call
@@ -401,7 +413,7 @@ class _Ended:
 
 
 def _of_all_tests(options: Options) -> bool:
-    """Return whether tests are reported only once all of them have run."""
+    """Return whether the reports must wait until all tests have run."""
     return options.holm or options.total is not None
 
 
@@ -422,7 +434,7 @@ def _is_space(drift: object) -> bool:
 
 
 def _has_space(item: pytest.Item) -> bool:
-    """Return whether an item's scenario is a space, or would be if it took the fixture."""
+    """Return whether an item's scenario is a space, or its marker declares one but it lacks the fixture."""
     marker = item.get_closest_marker("tarl")
     drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
     if not isinstance(drifts, Mapping):
@@ -437,7 +449,7 @@ def _takes(item: pytest.Item, fixture: str) -> bool:
 
 
 def _how_to_take(item: pytest.Function) -> str:
-    """Say how a test takes the fixture; methods of unittest.TestCase have no arguments."""
+    """Describe how a test requests the fixture; methods of unittest.TestCase cannot have fixture arguments."""
     if item.cls is None or not issubclass(item.cls, TestCase):
         return "take it as an argument"
     return (

@@ -1,4 +1,4 @@
-"""Decide the number of recorded episodes: a fixed one, or until `min_success` is decided at a confidence."""
+"""Decide when a recording ends: after a fixed number of episodes, or once it shows whether `min_success` holds."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 from pytest_tarl.report.guarantees import percent
 
-ENOUGH_FAILURES = 5  # failures after which a recording stops if min_success can no longer be reached
-MOST = 20_000  # maximum number of episodes for reaching a confidence
+ENOUGH_FAILURES = 5  # fewest failures after which a recording stops early
+MOST = 20_000  # maximum number of episodes if a confidence is required
 
 
 @dataclass
 class Settling:
-    """Stopping rule, called after every episode. At least `asked` episodes run unless too many fail."""
+    """Stopping rule, called after every episode. Unless too many episodes fail, at least `asked` episodes run."""
 
     designation: Designation
     asked: int
@@ -33,7 +33,10 @@ class Settling:
         return self.asked if self.designation.confidence is None else max(MOST, self.asked)
 
     def __call__(self, samples: Sequence[Sample]) -> bool:
-        """Add the newest sample; return whether to stop. Raise RecordingError if its total is out of range."""
+        """Add the newest sample and return whether to stop.
+
+        Raise RecordingError if its total reward is out of range.
+        """
         within(samples[-1], self.designation.total_range)
         self.episodes, self.passed = len(samples), self.passed + int(samples[-1].passed.all())
         if self.designation.confidence is None:
@@ -42,7 +45,7 @@ class Settling:
 
     @property
     def failing(self) -> str:
-        """Return a sentence if too many episodes failed, with their number; else an empty string."""
+        """Return a sentence with the number of failed episodes if too many failed; else ""."""
         least, failed = self.designation.min_success, self.episodes - self.passed
         if self.designation.confidence is None:
             stopped = (
@@ -86,7 +89,7 @@ class Settling:
 
 
 def within(sample: Sample, declared: tuple[float, float] | None) -> None:
-    """Raise RecordingError if a total lies outside the range that the marker declares."""
+    """Raise RecordingError if the total reward of an episode lies outside the marker's `total_range`."""
     if declared is None:
         return
     for seed, total in zip(sample.seeds, sample.total.tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""`--tarl-total`: the comparisons of a run share its episodes; those that are undecided continue with the rest."""
+"""`--tarl-total`: all comparisons of a run share its episodes. Undecided comparisons continue with the rest."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.report.shares import Share, sentence
 
 
 def shortage(total: int, comparisons: int) -> str:
-    """Return a sentence if a total is too small for as many comparisons; empty if it suffices."""
+    """Return a sentence if `total` episodes are too few for this number of comparisons; else ""."""
     if total >= FEWEST * comparisons:
         return ""
     return (
@@ -24,7 +24,10 @@ def shortage(total: int, comparisons: int) -> str:
 
 @dataclass(frozen=True)
 class SharedEpisodes:
-    """The episodes of a run, and the number of comparisons that share them, each with at most `most_looks` looks."""
+    """How comparisons share the episodes of a run.
+
+    A look is one test of the verdict. A comparison has at most `most_looks`.
+    """
 
     total: int
     comparisons: int
@@ -32,23 +35,23 @@ class SharedEpisodes:
 
     @cached_property
     def looks(self) -> tuple[Look, ...]:
-        """Return the looks of every comparison, set before the first episode."""
+        """Return the looks of every comparison; they are the same for all and fixed before the first episode."""
         return schedule(self.total, self.comparisons, self.most_looks)
 
     @property
     def first(self) -> Stage:
-        """Return the stage with which every comparison begins."""
+        """Return the first stage of every comparison, which ends at its first look."""
         return Stage(self.looks, self.looks[0].episodes)
 
     def following(self, outcomes: Sequence[object]) -> tuple[int, Stage] | None:
-        """Return which comparison continues, by its place among the outcomes of the tests, and its next stage."""
+        """Return the index of the outcome whose comparison continues, and its next stage; None if none continues."""
         standings = [_standing(one) for one in outcomes]
         number = chosen(standings, self.looks, self._left(outcomes))
         look = next_look(standings[number], self.looks) if number is not None else None
         return None if number is None or look is None else (number, Stage(self.looks, look.episodes))
 
     def notes(self, outcomes: Sequence[object]) -> list[str]:
-        """Return for each comparison how many of the episodes it got and why; empty for other outcomes."""
+        """Return a note for each comparison on how many episodes it got and why; "" for other outcomes."""
         return [
             self._note(one, self._left(outcomes)) if isinstance(one, Compared) else "" for one in outcomes
         ]
@@ -64,7 +67,7 @@ class SharedEpisodes:
 
 
 def _standing(outcome: object) -> Standing:
-    """Return how far a comparison is; a test without a comparison counts as decided."""
+    """Return the progress of a comparison; a test without a comparison counts as decided."""
     if not isinstance(outcome, Compared):
         return Standing(0, decided=True)
     episodes, p_loss = outcome.online.looks[-1]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Situation:
-    """The current bins of the sensors, each held until its next message; passes each new cell to the recorder."""
+    """The current bins of the sensors, which together form a cell. Each new cell is passed to the recorder."""
 
     def __init__(
         self,
@@ -26,9 +26,9 @@ class Situation:
         formulas: EpisodeFormulas,
         recorder: Recorder,
     ) -> None:
-        self.topics: dict[str, str] = {}  # topic → message type, of received topics
+        self.topics: dict[str, str] = {}  # topic with a message → message type
         self.values: dict[str, list[float]] = {}  # values of sensors with bins to learn
-        self.known = False  # whether all sensors ever had a value
+        self.known = False  # whether all sensors have had a value at the same time
         self._sensors = sensors
         self._requirements = requirements
         self._formulas = formulas
@@ -77,7 +77,7 @@ class Situation:
             self._latch()
 
     def problem(self) -> RecordingError | None:
-        """Return why the episode has no usable cell; None if it has one."""
+        """Return the error of an episode without a usable cell; None if it has one."""
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             return RecordingError(_silence(silent[0]))
@@ -91,8 +91,8 @@ class Situation:
     def _check_unused(self, name: str, known: Sequence[str]) -> None:
         """Raise SettingsError for a name that seems to be misspelled.
 
-        A test with formulas may observe additional names. A name counts as misspelled if it is close to a declared name
-        that is never observed.
+        A test with formulas may observe additional names. A name counts as misspelled if it resembles a declared name
+        and the test never observes that declared name.
         """
         said = self._requirements.said
         close = difflib.get_close_matches(name, known, 1)

@@ -1,4 +1,4 @@
-"""Spaces of drifts: the directions in which a world can change, each with a nominal value.
+"""Spaces of drifts: the directions in which a world can change. Each direction has a nominal value.
 
 A point of a space holds one number per direction, by name: the value of a range, or the index of an option.
 """
@@ -23,7 +23,7 @@ DIRECTIONS = "Drift.range(…, nominal=…), Drift.choice(…), or a fault such 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A closed range of numbers, from which each episode draws uniformly; in a space, with its nominal number.
+    """A closed range of numbers, from which each episode draws uniformly. In a space, it has a nominal number.
 
     With a profile, the drawn number is the size of a drift over time.
     """
@@ -36,14 +36,17 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A few options, from which each episode draws one; `usual` is the index of the nominal one."""
+    """A set of options, from which each episode draws one; `usual` is the index of the nominal option."""
 
     options: tuple[Any, ...]
     usual: int = 0
 
 
 class Fault(Protocol):
-    """A fault of the nodes' messages or processes. `extent` bounds its size; the nominal size means no fault."""
+    """A fault of the nodes' messages or processes.
+
+    `extent` holds its possible sizes; at the nominal size, there is no fault.
+    """
 
     @property
     def extent(self) -> Span | Choice:
@@ -58,7 +61,10 @@ class Fault(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """All combinations of the directions' values; directions that are not faults are parts of the test's world."""
+    """All combinations of the values of directions and faults.
+
+    `directions` change the test's world, `faults` the nodes.
+    """
 
     directions: Mapping[str, Span | Choice]
     faults: Mapping[str, Fault]
@@ -74,7 +80,7 @@ class Space:
         return {name: nominal(extent) for name, extent in self.extents.items()}
 
     def world(self, point: Point) -> dict[str, Any]:
-        """Return the values that the test's world gets at a point: the dictionary `tarl_drift`."""
+        """Return the value of `tarl_drift` at a point, as a dictionary by direction."""
         return {name: world_value(extent, point[name]) for name, extent in self.directions.items()}
 
     def active(self, point: Point) -> Mapping[str, tuple[Fault, float]]:
@@ -87,19 +93,19 @@ class Space:
 
 
 def nominal(extent: Span | Choice) -> float:
-    """Return the nominal number of a direction of a space, the index of the nominal option for a choice."""
+    """Return the nominal number of a direction; for a choice, the index of the nominal option."""
     if isinstance(extent, Choice):
         return float(extent.usual)
     return extent.low if extent.nominal is None else extent.nominal
 
 
 def value_of(extent: Span | Choice, number: float) -> Any:
-    """Return the value for which a number of a point stands."""
+    """Return the value that a coordinate of a point represents: an option of a choice, or the number itself."""
     return extent.options[int(number)] if isinstance(extent, Choice) else number
 
 
 def world_value(extent: Span | Choice, number: float) -> Any:
-    """Return what a test's world gets for a number of a point: a Schedule for a drift over time."""
+    """Return the value in `tarl_drift` for a coordinate of a point; a drift over time becomes a Schedule."""
     if isinstance(extent, Span) and extent.profile is not None:
         return Schedule(nominal(extent), number, extent.profile)
     return value_of(extent, number)
@@ -135,7 +141,7 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
 
 
 def _equal(option: Any, usual: Any) -> bool:
-    """Return whether two options are equal; False if they cannot say, as arrays, whose comparison is an array."""
+    """Return whether two options are equal; False if the comparison fails or gives no truth value, as for arrays."""
     try:
         return bool(option == usual)
     except (ValueError, TypeError):
@@ -143,7 +149,7 @@ def _equal(option: Any, usual: Any) -> bool:
 
 
 def space(parts: Mapping[str, Any]) -> Space:
-    """Return a space of checked directions: ranges, choices and faults. Raise SettingsError for others."""
+    """Return a space of checked ranges, choices and faults. Raise SettingsError for any other direction."""
     if not parts:
         raise SettingsError(f"Drift.space() has no direction: name at least one, each {DIRECTIONS}.")
     directions: dict[str, Span | Choice] = {}

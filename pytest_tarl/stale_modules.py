@@ -1,4 +1,4 @@
-"""Find modules and functions that outlive an edit of their source, so that the old text would run."""
+"""Find modules and functions that would run old code after an edit of their source."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
 
 def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
-    """Return the named modules that reference a module to be dropped, or its contents, directly or through others.
+    """Return the modules in `among` that refer to a module in `gone` or its contents, directly or through others.
 
-    They are reloaded as well where possible, which is for Python sources that are not tests.
+    The result holds only modules that can be imported again: Python source files that are not tests.
     """
     going = {id(module): module for module in gone}
     left = [name for name in among if _renewable(sys.modules.get(name))]
@@ -39,7 +39,7 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
 
 
 def outlived(files: Collection[Path]) -> list[Path]:
-    """Return the files with functions created before the edit that are still referenced."""
+    """Return the files with functions that still exist in memory, and hence still run the text before the edit."""
     wanted = {str(file): file for file in files}
     gc.collect()
     codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
@@ -47,21 +47,24 @@ def outlived(files: Collection[Path]) -> list[Path]:
 
 
 def of_tests(file: Path) -> bool:
-    """Return whether a file is one that pytest imports itself."""
+    """Return whether pytest itself imports this file: a test module or conftest.py."""
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
 
 
 class _Imports:
-    """The dotted names imported anywhere in a module; a constant taken from a module keeps no reference to it.
+    """The dotted names imported anywhere in a module. They reveal imported constants, which refer to no module.
 
-    Imports in functions count, because a function called at module level may return such a constant.
+    Imports inside functions count, because a function called at module level may return such a constant.
     """
 
     def __init__(self, module: ModuleType) -> None:
         self._spec: ModuleSpec = module.__dict__["__spec__"]
 
     def any_of(self, names: Collection[str]) -> bool:
-        """Return whether the module imports one of the names. Only code that uses its last part is decoded."""
+        """Return whether the module imports one of the names.
+
+        For speed, decode only code that uses a name's last part.
+        """
         last = {name.rpartition(".")[2] for name in names}
         return any(
             not last.isdisjoint(one.rpartition(".")[2] for one in code.co_names)
@@ -71,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may import; cached values between instructions may look like an import."""
+        """The module's code objects that may contain an import. Inline caches in bytecode may look like one."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 
@@ -84,7 +87,7 @@ def _nested(code: CodeType) -> Iterator[CodeType]:
 
 
 def _imported_by(code: CodeType, spec: ModuleSpec) -> Iterator[str]:
-    before: deque[object] = deque((None, None), 2)  # level and names of the current import
+    before: deque[object] = deque((None, None), 2)  # arguments before IMPORT_NAME: level, names
     for one in dis.get_instructions(code):
         if one.opname == "IMPORT_NAME":
             level, taken = before

@@ -1,4 +1,4 @@
-"""Start the nodes of an episode: single files, and those of a launch file."""
+"""Start the nodes of an episode: single files, and the nodes of launch files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Starter:
-    """Starts nodes in the ROS of one episode, which `ros` returns."""
+    """Start nodes in the ROS of one episode; the function `ros` returns that ROS."""
 
     def __init__(self, folder: Path, imports: NodeImports, ros: Callable[[], Ros]) -> None:
         self._folder = folder
@@ -36,7 +36,7 @@ class Starter:
         entry: str | None,
         launch: str | Literal[False] | None,
     ) -> None:
-        """Start a file, with the parameters that a launch file gives it.
+        """Start a file with the parameters of its launch file.
 
         Raise SettingsError if there is no such file.
         """
@@ -60,7 +60,7 @@ class Starter:
         replaced: Mapping[str, Replacement],
         parameters: Mapping[str, Any],
     ) -> None:
-        """Call the functions that replace nodes of a launch file, then start its Python nodes in their order."""
+        """Call the functions that replace nodes of a launch file, then start its Python nodes in file order."""
         from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
         from pytest_tarl.ros.stand_in import StandIn
 
@@ -98,7 +98,7 @@ def _check_names(only: Sequence[str] | None) -> None:
 
 
 def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str]) -> list[str]:
-    """Return one note that names the nodes that are neither Python nor replaced."""
+    """Return a note with the names of all nodes that are neither Python nor replaced."""
     from pytest_tarl.ros.launch_plan import named
 
     foreign = [one for one in chosen if one.path is None and not named(one, replaced)]
@@ -114,9 +114,9 @@ def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str])
 
 
 def node_files(nodes: Sequence[str], folder: Path, where: str) -> tuple[str, ...]:
-    """Return the node files of a marker, with each launch file replaced by the Python programs that it starts.
+    """Return the node files of a marker. Each launch file is expanded to the Python programs that it starts.
 
-    Raises SettingsError, which begins with `where`, for an unknown launch file, and for one without Python nodes.
+    Raise SettingsError for a launch file that is unknown or has no Python nodes; `where` begins the message.
     """
     from tarl_lint.workspace.launch_lookup import is_launch_name
 

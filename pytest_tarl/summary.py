@@ -1,4 +1,4 @@
-"""Carry the reports of tests, also from other processes, to the terminal summary."""
+"""Pass the reports of tests to the terminal summary, also from other processes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from pytest_tarl.accounts import Account
 
-ACCOUNT = "tarl_account"  # attribute of a report; plain values, so that xdist carries it
+ACCOUNT = "tarl_account"  # attribute of a report; plain values, which xdist can send
 
 
 def attach(report: pytest.TestReport, account: Account) -> None:
-    """Attach an account to a test's report."""
+    """Attach TARL's report of a test (an account) to pytest's report of it."""
     told = {
         "lines": [printable(line) for line in account.lines],
         "patch": str(account.patch or ""),
@@ -38,7 +38,7 @@ class Summary:
         self.patches: list[str] = []  # paths of patches that repair the tests
 
     def collect(self, report: pytest.TestReport) -> None:
-        """Take the account from a report, once."""
+        """Collect the account of a report; ignore one that was collected before."""
         told = getattr(report, ACCOUNT, None)
         if told and told not in self._told:
             self._told.append(told)

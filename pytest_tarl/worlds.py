@@ -1,4 +1,4 @@
-"""Simulators that many people have, as the world of a test: a Gymnasium environment whose agent is the node."""
+"""Adapters that use common simulators as the world of a test: Gymnasium environments, with the node as the agent."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LARGEST_SEED = 2**31  # exclusive; environments of every version take such seeds
 
 
 class GymnasiumWorld:
-    """A Gymnasium environment: observations go to one topic, actions come from another, one pair in each step.
+    """A Gymnasium environment: each step publishes an observation and takes the latest action.
 
     Attributes: `observation`, `reward` (of the last step), `terminated`, `truncated`, `info`, as Gymnasium names them.
     """
@@ -34,17 +34,18 @@ class GymnasiumWorld:
         dt: float | None = None,
         options: Mapping[str, Any] | None = None,
     ) -> None:
-        """Reset the environment with a seed of the episode, and close it at the episode's end.
+        """Reset the environment with a seed from the episode; close the environment when the episode ends.
 
         Args:
             tarl: The fixture of the test.
             environment: A Gymnasium environment, or the id of a registered one.
             observations: The topic that observations are published on.
-            observe: Return the message of an observation.
+            observe: A function that converts an observation to a message.
             actions: The topic that the node publishes actions on.
-            act: Return the action of a message. A number outside of a Box is clipped, as an actuator saturates.
+            act: A function that converts a message to an action. Numbers outside a Box are clipped, as actuators
+                saturate.
             idle: The action before the node's first message.
-            dt: The time of a step in s; without it, the environment's own `dt` or `tau`.
+            dt: The duration of a step in s; by default, the environment's own `dt` or `tau`.
             options: The options of the environment's `reset`.
 
         Raises:
@@ -83,7 +84,7 @@ class GymnasiumWorld:
         return self.reward
 
     def _action(self, asked: Any, topic: str) -> Any:
-        """Return the action in the form of the environment's space. Raise SettingsError if it has none."""
+        """Convert an action to the form of the environment's action space. Raise SettingsError if it does not fit."""
         import numpy as np
 
         space = self._environment.action_space
@@ -114,7 +115,7 @@ def _made(name: str) -> Any:
 
 
 def _time_step(environment: Any) -> float:
-    """Return the time step that an environment names. Raise SettingsError if it names none."""
+    """Return the environment's time step `dt` or `tau`, in s. Raise SettingsError if it has neither."""
     inner = environment.unwrapped
     for name in ("dt", "tau"):
         value = getattr(inner, name, None)

@@ -1,4 +1,4 @@
-"""`tarl apply` and `tarl revert`: apply and undo patches, in all files or none."""
+"""`tarl apply` and `tarl revert`: apply and undo patches, in all files or in none."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
     """Undo patches and return the lines to print. Raise RefusedError if one is not applied or its lines were edited."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
-    if any(target.done for target in targets):  # not reached by an interrupted `tarl apply`
+    if any(target.done for target in targets):  # files that an interrupted `tarl apply` did not reach
         targets = [target for target in targets if not (len(target.parts) == 1 and target.as_searched)]
     contents: dict[Path, bytes] = {}
     told: list[str] = []
@@ -67,7 +67,7 @@ def _halfway(targets: Sequence[Target]) -> set[Path]:
 
 
 def _changed(target: Target, force: bool) -> bytes:
-    """Return a file's content with all patches applied. Raise RefusedError unless this is the tested text."""
+    """Return a file's content with all patches applied. Raise RefusedError if the result is not the tested text."""
     if target.as_searched:
         for patch, file in target.parts:
             tested(target, patch, file, target.content)
@@ -98,7 +98,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the text that a patch was tested on if the content is that text with other patches applied."""
+    """Return the text that the patch was tested on, if `content` is that text plus other patches."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:
@@ -165,7 +165,7 @@ def _write(targets: Sequence[Target], contents: Mapping[Path, bytes]) -> None:
 
 
 def _again(patches: Sequence[Patch]) -> list[str]:
-    """Return the commands that compare the tests again."""
+    """Return the commands that repeat the comparisons of the tests."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("again"))
     return [f"again: {_move(patches)}{command}" for command in commands]
 
@@ -177,7 +177,7 @@ def _move(patches: Sequence[Patch]) -> str:
 
 
 def _recording(patches: Sequence[Patch], targets: Sequence[Target]) -> list[str]:
-    """Return the lines on making a permanent drift the design: record again, and commit it with the patch."""
+    """Return advice for a permanent drift: record it as the new design, and commit the recording with the patch."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("record"))
     if not commands:
         return []

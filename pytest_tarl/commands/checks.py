@@ -1,4 +1,4 @@
-"""Checks before a patch is applied: it is the tested one, loses no uncommitted change, and compiles."""
+"""Checks before a patch is applied: its result is the tested text and compiles, and no uncommitted change is lost."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.patching.reading import Patch
 
 
 def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> None:
-    """Raise RefusedError unless a patch produces the tested text, which its header identifies by git blob id."""
+    """Raise RefusedError if the patched text is not the tested one, whose git blob id is in the patch's header."""
     if file.exact(content) is None:
         raise RefusedError(
             f"{patch.name} does not produce the tested text of {target.shown}: the patch was edited or damaged. "
@@ -25,7 +25,7 @@ def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> Non
 
 
 def sealed(patch: Patch) -> None:
-    """Raise RefusedError if a patch has no digest, so that edits of it cannot be detected."""
+    """Raise RefusedError if a patch has no digest, because edits of it could not be detected."""
     if not patch.sealed:
         raise RefusedError(
             f"{patch.name} has no digest, so it cannot be verified on a changed file: restore the text that it was "
@@ -34,7 +34,7 @@ def sealed(patch: Patch) -> None:
 
 
 def clean(targets: Sequence[Target]) -> Iterator[str]:
-    """Yield notes on what could not be checked. Raise RefusedError if a file has uncommitted changes."""
+    """Raise RefusedError if a file has uncommitted changes. Yield notes on files that cannot be checked."""
     for target in targets:
         if not any((folder / ".git").exists() for folder in target.path.parents):
             yield f"note:  {target.shown} is not in a git repository, so uncommitted changes cannot be detected"
@@ -50,7 +50,7 @@ def clean(targets: Sequence[Target]) -> Iterator[str]:
 
 
 def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
-    """Yield a note on each recording that is missing. Raise RefusedError if one was recorded again."""
+    """Raise RefusedError if a recording has changed since the repair. Yield a note on each missing recording."""
     for patch in patches:
         for told in patch.told("fixture"):
             digest, _, name = told.partition(" ")
@@ -74,7 +74,7 @@ def _there(path: Path, root: Path) -> bool:
 
 
 def whole(patches: Sequence[Patch]) -> None:
-    """Raise RefusedError where a patch is a partial repair."""
+    """Raise RefusedError if a patch is a partial repair."""
     for patch in patches:
         for told in patch.told("partial"):
             raise RefusedError(

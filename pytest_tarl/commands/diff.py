@@ -30,16 +30,16 @@ class FixtureDiff:
     gone: tuple[SitePlace, ...]
     new: tuple[SitePlace, ...]
     moved: tuple[Moved, ...]
-    cells: tuple[int, int, int]  # only in A, in both, only in B
+    cells: tuple[int, int, int]  # number of cells: only in A, in both, only in B
     same_sensors: bool
 
     def worse(self, alpha: float, most: float = 0.0) -> bool:
-        """Return whether B earns significantly less, and less by more than `most` per episode."""
+        """Return whether B earns significantly less than A, by more than `most` per episode."""
         return self.loss > most and self.p_loss < alpha
 
     @property
     def changed(self) -> bool:
-        """Return whether a site was edited, added or removed, or the sensors differ."""
+        """Return whether any site was edited, added or removed, or the sensors differ."""
         return bool(self.gone or self.new) or not self.same_sensors
 
 
@@ -101,7 +101,7 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
 
 
 def _first(rows: list[str]) -> Iterator[str]:
-    """Yield the first MOST rows, and the number of the others."""
+    """Yield the first MOST rows, then a line with the number of omitted rows."""
     yield from rows[:MOST]
     if len(rows) > MOST:
         yield f"             … and {len(rows) - MOST} more"

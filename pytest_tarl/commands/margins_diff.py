@@ -1,4 +1,4 @@
-"""`tarl diff` of margins: whether a change makes a robot more fragile, as text and as Markdown."""
+"""`tarl diff` of margins: show as text or Markdown whether a change makes a robot more fragile."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MARKS = {"more fragile": "❌ ", "more robust": "✅ ", "not comparable": "⚠�
 
 
 def guarantees_changed(before: Sequence[Margins], after: Sequence[Margins]) -> Iterator[str]:
-    """Yield a note for each test whose guarantee is another one, since a boundary depends on it."""
+    """Yield a note for each test whose guarantee has changed, since its boundaries depend on the guarantee."""
     old = {one.title: one for one in before}
     for one in after:
         was = old.get(one.title)
@@ -43,7 +43,7 @@ def markdown(rows: Sequence[Row], since: str) -> Iterator[str]:
 
 
 def table(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield the present margins as a table."""
+    """Yield the current margins as a Markdown table."""
     yield "| test | direction | boundary |"
     yield "|---|---|---|"
     for row in rows:

@@ -1,4 +1,4 @@
-"""Read files of margins: a file, a folder of them, or either at a revision of git, written REVISION:PATH."""
+"""Read margins from a file or a folder of files; REVISION:PATH reads them from a git revision."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ FOLDER = ".tarl/margins"
 
 
 def is_recording(place: str) -> bool:
-    """Return whether an argument of `tarl diff` names a recording, not margins."""
+    """Return whether an argument of `tarl diff` names a recording; otherwise it names margins."""
     return place.endswith(".npz")
 
 
 def margins_in(place: str) -> list[Margins]:
     """Return the margins of a file or of the `.json` files of a folder, in the order of their names.
 
-    Raise FixtureError if the place does not exist or a file holds no margins. A revision without the folder has none.
+    Raise FixtureError if the place does not exist or a file holds no margins. At a revision without the folder, there
+    are no margins.
     """
     path = Path(place)
     if path.is_dir():

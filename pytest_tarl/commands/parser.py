@@ -1,4 +1,4 @@
-"""Parse the command line of `tarl`. A mistake shows the usage of its command and a sentence."""
+"""Parse the command line of `tarl`. On an error, print the usage of the command and a sentence."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"\n{self.prog}: {sentence(message)} Run {self.prog} --help for more.\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Parse the arguments. An unknown argument is an error of its command, not of `tarl`."""
+        """Parse the arguments. Report an unknown argument with the usage of its command instead of that of `tarl`."""
         found, extra = self.parse_known_args(args)
         if extra:
             command: Parser = getattr(found, "parser", self)

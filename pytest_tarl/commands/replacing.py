@@ -1,4 +1,4 @@
-"""Replace the contents of several files, all or none, without following links or losing concurrent changes."""
+"""Replace the contents of several files, all or none. Do not follow links or overwrite concurrent changes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CREATE: int = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NOFOLLOW | getattr(os, "O
 
 
 class MovedError(Exception):
-    """A file changed after it was checked: it has other content, or another file is in its place."""
+    """A file changed after its check: it has other content, or another file replaced it."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(str(path))
@@ -28,7 +28,7 @@ class MovedError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A file inside `project`, both resolved, to change from `before` to `after`."""
+    """A file inside `project` to change from `before` to `after`; both paths are resolved."""
 
     path: Path
     project: Path
@@ -38,7 +38,7 @@ class Change:
 
 @dataclass(frozen=True)
 class _Opened:
-    """A change whose folder is held open, so that the folder cannot be replaced."""
+    """A change with its folder held open, so that replacing the folder has no effect."""
 
     change: Change
     folder: int | None
@@ -74,7 +74,7 @@ def replace_all(changes: Sequence[Change]) -> None:
 
 @contextmanager
 def _held(change: Change) -> Iterator[_Opened]:
-    """Open the folder of a file component by component from the project; a link raises OSError."""
+    """Open a file's folder, one path component at a time from the project; raise OSError at a symbolic link."""
     if not RELATIVE:
         if change.path.resolve() != change.path:
             raise MovedError(change.path)

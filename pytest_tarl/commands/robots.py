@@ -1,4 +1,4 @@
-"""Commands for robots: `tarl observe` logs missions, `tarl watch` judges them as they arrive."""
+"""Commands for robots: `tarl observe` logs missions, and `tarl watch` tests them for changes as they arrive."""
 
 from __future__ import annotations
 

@@ -65,7 +65,7 @@ def described(sensor: Sensor, bins: Sequence[int]) -> str:
 
 
 def _counts(recorded: ListSample) -> Floats:
-    """Return the number of executions of each site, shape (sites,)."""
+    """Return how often each site was executed, shape (sites,)."""
     visits = recorded.visits
     events = visits.state != START
     site = (visits.state[events] - 1) % max(recorded.width, 1)

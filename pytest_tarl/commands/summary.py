@@ -1,6 +1,6 @@
 """`tarl summary`: the results of the last comparisons and stress runs as Markdown.
 
-It is meant for a comment on a pull request or a job's page.
+Use it for a comment on a pull request or the page of a CI job.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ BARS = 8  # maximum number of statements in a chart
 
 
 def markdown(folder: Path, since: str | None = None) -> str:
-    """Return the results in a folder, `.tarl/results`, and the margins beside it, as Markdown.
+    """Return the results in `folder` (`.tarl/results`) and the margins in the folder beside it, as Markdown.
 
-    With `since`, the margins are compared with those of a revision of git. Raise FixtureError if there is nothing, or
+    With `since`, compare the margins with those at this git revision. Raise FixtureError if there are no results, or if
     a file cannot be read.
     """
     paths = sorted(folder.glob("*.json"))
@@ -37,7 +37,7 @@ def markdown(folder: Path, since: str | None = None) -> str:
 
 
 def _margins(folder: Path, since: str | None) -> list[str]:
-    """Return the table of the margins, beside those of a revision if one is given."""
+    """Return the margins as a table, compared with those of a revision if one is given."""
     now = margins_in(str(folder))
     before = [] if since is None else margins_in(f"{since}:{folder.as_posix()}")
     rows = compared(before, now)

@@ -1,4 +1,4 @@
-"""The files that patches change: their paths, their contents, and the changes of each patch."""
+"""The files that patches change: path, content, and the changes of each patch."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Target:
 
     @property
     def as_searched(self) -> bool:
-        """Return whether the file has the text that every patch was accepted on."""
+        """Return whether the file still has the text for which all of its patches were accepted."""
         return all(identical(self.content, file.before) for _, file in self.parts)
 
     @property
     def done(self) -> bool:
-        """Return whether the file has the result of its only patch."""
+        """Return whether the file has one patch and already contains its result."""
         return len(self.parts) == 1 and identical(self.content, self.parts[0][1].after)
 
 

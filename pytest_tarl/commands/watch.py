@@ -1,4 +1,4 @@
-"""`tarl watch LOG… --fixture F`: judge missions as they arrive, report, and set the exit code."""
+"""`tarl watch LOG… --fixture F`: test missions for changes as they arrive, report, and set the exit code."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pytest_tarl.monitoring.watch import Watch
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # maximum seconds between two reports while there is more to read
+TOLD = 1.0  # maximum seconds between two reports while missions remain unread
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Order:
 
 
 def run(order: Order) -> int:
-    """Watch until an end condition; return 1 after any alarm, else 0, and 130 if Ctrl-C interrupts `once`.
+    """Watch until an end condition holds. Return 1 after an alarm, 130 if Ctrl-C interrupts `once`, else 0.
 
     Raise LogError if a log cannot be read under `once`; FixtureError, MonitorError or SettingsError for invalid input.
     """
@@ -63,7 +63,7 @@ def default_state(fixture: Path) -> Path:
 
 
 class Teller:
-    """Read the logs and print news: alarms and problems at once, other results at intervals."""
+    """Read the logs and print results: alarms and problems immediately, others at intervals."""
 
     def __init__(self, order: Order, watched: Watch, stopped: Event) -> None:
         self.order = order
@@ -74,7 +74,7 @@ class Teller:
         self._problems: tuple[str, ...] = ()
 
     def look(self) -> Status:
-        """Read new missions until there are no more or an end condition holds; return the status."""
+        """Read new missions until none are left or an end condition holds; return the status."""
         for _ in self.watch.poll():
             if monotonic() - self._looked > TOLD:
                 self._tell(self.watch.status())
@@ -147,7 +147,7 @@ def _follow(teller: Teller) -> int:
 
 @contextmanager
 def _stopped() -> Iterator[Event]:
-    """Make Ctrl-C and SIGTERM end a watch between two portions of a log, never within one."""
+    """Make Ctrl-C and SIGTERM end a watch only between two portions of a log."""
     stopped = Event()
 
     def stop(_number: int, _frame: object) -> None:

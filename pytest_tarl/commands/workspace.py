@@ -1,4 +1,4 @@
-"""`tarl workspace`: the packages of a workspace, their nodes and launch files, and what could not be read."""
+"""`tarl workspace`: list the packages of a workspace, their nodes and launch files, and unreadable files."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.read import read
 
 FORMAT_VERSION = 1
-WIDEST = 44  # characters of a list in the table; the JSON format has all of it
+WIDEST = 44  # characters of a list in the table; the JSON format has the whole list
 HEADINGS = ("package", "kind", "nodes and scripts", "launch files", "not read")
 
 
 def described(folder: Path) -> Workspace:
-    """Return the workspace below a folder. Raises SettingsError where there is no folder or no package."""
+    """Read the workspace below a folder. Raise SettingsError if there is no folder or no package."""
     if not folder.is_dir():
         raise SettingsError(f"{folder}: no such folder.")
     found = read(folder)
@@ -28,7 +28,7 @@ def described(folder: Path) -> Workspace:
 
 
 def table(workspace: Workspace) -> Iterator[str]:
-    """Yield the lines of the table, then what could not be read."""
+    """Yield the lines of the table, then the files that could not be read."""
     rows = [HEADINGS, *map(_row, workspace.packages)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     for row in rows:
@@ -67,7 +67,7 @@ def _row(package: Package) -> tuple[str, ...]:
 
 
 def _shortened(names: Sequence[str]) -> str:
-    """Return as many names as fit, and how many there are besides."""
+    """Return as many names as fit, and the number of omitted names."""
     shown: list[str] = []
     for name in names:
         if shown and len(", ".join([*shown, name])) > WIDEST:

@@ -1,4 +1,4 @@
-"""Convert the linter's findings to the protocol: diagnostics with the statements of a flow, and code lenses."""
+"""Convert the linter's findings to protocol objects: diagnostics, with the statements of a flow, and code lenses."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _diagnostic(finding: Finding, places: Places) -> types.Diagnostic:
 
 
 def _page(code: str) -> types.CodeDescription | None:
-    """Return the address of a rule's page, at which an editor makes its code a link."""
+    """Return the URL of a rule's documentation; editors link the rule's code to it."""
     page = rule_page(code)
     return types.CodeDescription(page) if page else None
 
@@ -65,7 +65,7 @@ def _severity(finding: Finding) -> types.DiagnosticSeverity:
 
 
 def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInformation]:
-    """Return the statements of a flow with their roles: only its shortest chain, if it has one."""
+    """Return the statements of a flow with their roles; if the flow has a shortest chain, only those on it."""
     chosen = [flow.steps[at] for at in flow.chain] or list(flow.steps)
     return [
         types.DiagnosticRelatedInformation(places.location(step.span), f"{step.role}: {step.code}")

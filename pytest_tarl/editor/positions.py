@@ -1,4 +1,4 @@
-"""Convert positions: the linter counts characters from 1, the protocol counts UTF-16 units from 0."""
+"""Convert positions. The linter counts characters from 1, the protocol counts UTF-16 code units from 0."""
 
 from __future__ import annotations
 

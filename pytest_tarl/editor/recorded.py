@@ -1,6 +1,7 @@
 """Results of the last comparisons by line: utility, its difference under a drift, rank, and accepted repairs.
 
-The source is `.tarl/results/*.json`. Statements are matched by identity, so moved lines keep their figures.
+The source is `.tarl/results/*.json`. Statements are matched by their site id, not by line number, so moved lines keep
+their figures.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ class Figures:
 
     @property
     def difference(self) -> float:
-        """Return the change of the statement's utility."""
+        """Return the change of the statement's utility from the designed to the deployed world."""
         return self.online - self.offline
 
 

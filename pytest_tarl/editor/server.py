@@ -19,7 +19,7 @@ from pytest_tarl.extras import missing_extra
 from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.errors import LintError
 
-Apply = Callable[[Path], Iterable[str]]  # raises TarlError if the patch no longer fits
+Apply = Callable[[Path], Iterable[str]]  # patch → lines to show; raises TarlError if it no longer fits
 PAUSE = 0.15  # seconds without a keystroke before the workspace is linted
 CHANGES = (
     types.TEXT_DOCUMENT_DID_OPEN,
@@ -40,7 +40,7 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
-        self.shown_in = self.places  # positions in the texts of the diagnostics that were published last
+        self.shown_in = self.places  # positions in the texts for which diagnostics were last published
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
         self._waiting: asyncio.Task[None] | None = None
@@ -55,7 +55,7 @@ class Server(LanguageServer):
         self.linted = Workspace([root])
 
     def changed(self) -> None:
-        """Lint after `PAUSE`; a further change restarts the wait."""
+        """Lint after PAUSE; a further change restarts the wait."""
         self._changes += 1
         if self._waiting is not None:
             self._waiting.cancel()
@@ -68,8 +68,8 @@ class Server(LanguageServer):
     async def lint(self) -> None:
         """Lint the workspace with the open buffers, and publish changed diagnostics.
 
-        A further change stops the run before the next program; the change starts a run of its own. Diagnostics of
-        files whose findings are final are published while other programs are still being analysed.
+        A further change stops the run before the next program and starts a new run. Files whose findings are final
+        get their diagnostics while other programs are still being analysed.
         """
         if self.linted is None:
             return
@@ -127,7 +127,10 @@ class Server(LanguageServer):
             self._show(path, found.get(path, []))
 
     def _publish_some(self, result: Result, settled: frozenset[str]) -> None:
-        """Publish the diagnostics of some files; the text of the others may have moved since theirs were found."""
+        """Publish the diagnostics of some files.
+
+        Those of other files may be outdated, because their text may have changed.
+        """
         self.shown_in = Places(self.root, result.texts)
         found = findings.diagnostics(result, self.shown_in)
         for path in sorted({*found, *self.shown} & settled):

@@ -1,6 +1,6 @@
-"""A simulator in a process of its own on a real ROS 2, as the world of a test.
+"""Use a simulator as the world of a test. It runs in its own process on a real ROS 1 or ROS 2.
 
-`guardian.py` is a second process, which starts, watches and kills the simulator and exchanges messages with it.
-`client.py` is the test's connection to the guardian, and `simulator.py` runs nodes and simulator together. The nodes
-may use any ROS.
+`guardian.py` is another process. It starts, monitors and kills the simulator, and exchanges messages with it.
+`client.py` is the test's connection to the guardian. `simulator.py` runs nodes and simulator together. The nodes may
+use any ROS.
 """

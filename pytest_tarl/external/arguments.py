@@ -1,4 +1,4 @@
-"""The arguments of `tarl.external`, checked: the command, its topics, services and limits."""
+"""Check the arguments of `tarl.external`: the command, its topics, services and limits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytest_tarl.errors import SettingsError
 
 @dataclass(frozen=True)
 class Call:
-    """A service of the simulator and the fields of its request; its type is the one that the simulator offers."""
+    """A service of the simulator and the fields of its request. The simulator determines the type."""
 
     service: str
     request: Mapping[str, Any] = field(default_factory=dict)
@@ -23,7 +23,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Setup:
-    """The arguments of `tarl.external`; see there."""
+    """The checked arguments of `tarl.external`, which documents them."""
 
     command: tuple[str, ...]
     folder: Path
@@ -39,7 +39,7 @@ class Setup:
 
     @property
     def shown(self) -> str:
-        """Return the command as typed in a shell."""
+        """Return the command as one would type it in a shell."""
         return shlex.join(self.command)
 
 
@@ -56,7 +56,7 @@ def setup(
     timeout: float,
     patience: float,
 ) -> Setup:
-    """Return checked arguments. Raise SettingsError for an empty command, no topic in `ready`, or without rclpy."""
+    """Return checked arguments. Raise SettingsError for an empty command or `ready`, or if no ROS is installed."""
     parts = shlex.split(command) if isinstance(command, str) else [os.fspath(part) for part in command]
     topics = (ready,) if isinstance(ready, str) else tuple(ready)
     if not parts or not topics:
@@ -80,7 +80,7 @@ def setup(
 
 
 def _generation() -> str:
-    """Return the installed ROS, which connects to the simulator. Raise SettingsError if there is none."""
+    """Return the installed ROS, by which the guardian connects to the simulator. Raise SettingsError without one."""
     for library, name in (("rclpy", "ros2"), ("rospy", "ros1")):
         if PathFinder.find_spec(library) is not None:
             return name

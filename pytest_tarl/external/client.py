@@ -1,4 +1,4 @@
-"""The test's connection to a guardian, which sends events; the simulator writes its output to a file."""
+"""The test's connection to a guardian, the process that runs a simulator. The simulator's output goes to a file."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tempfile import TemporaryFile
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 30.0  # s for the guardian to end the simulator and itself; longer than the guardian's own limit
-TAIL = 3  # lines of the simulator's output in a message
+PATIENCE = 30.0  # s until the guardian must have ended; longer than its own limits
+TAIL = 3  # number of output lines of the simulator in a message
 
 Event = dict[str, Any]
 
@@ -24,7 +24,7 @@ class Client:
     """One guardian process, which serves one simulator after another."""
 
     def __init__(self) -> None:
-        self._log = TemporaryFile()  # noqa: SIM115 - as long as the process
+        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process
         self._process = subprocess.Popen(
             [sys.executable, "-c", "from pytest_tarl.external.guardian import main; main()"],
             cwd=PACKAGES,
@@ -33,7 +33,7 @@ class Client:
             stderr=self._log,
             text=True,
             encoding="utf-8",
-            start_new_session=True,  # after a kill of the test's group, the guardian ends the simulator
+            start_new_session=True,  # must outlive the test's process group, to end the simulator
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0
@@ -45,8 +45,8 @@ class Client:
         return self._process.poll() is None
 
     def do(self, what: str, **arguments: Any) -> None:
-        """Send a command; if the guardian has ended, which an event reports, nothing happens."""
-        assert self._process.stdin is not None  # noqa: S101 - told to the type checker
+        """Send a command. Do nothing if the guardian has ended; an event reports that."""
+        assert self._process.stdin is not None  # noqa: S101 - for the type checker
         with suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
             self._process.stdin.flush()
@@ -66,7 +66,7 @@ class Client:
         self._log.close()
 
     def output(self) -> str:
-        """Return the output of the simulator since the last call."""
+        """Return the output of the simulator since the previous call."""
         new = self._unread()
         self._shown += len(new)
         return new.decode(errors="replace")
@@ -77,7 +77,7 @@ class Client:
         return " | ".join(line.strip() for line in lines[-TAIL:])
 
     def _unread(self) -> bytes:
-        with suppress(OSError, ValueError):  # pread, because the simulator writes at the file's own offset
+        with suppress(OSError, ValueError):  # pread does not move the offset at which the simulator writes
             size = os.fstat(self._log.fileno()).st_size
             return os.pread(self._log.fileno(), size - self._shown, self._shown)
         return b""

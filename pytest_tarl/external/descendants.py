@@ -1,4 +1,4 @@
-"""Children, orphans and parents of this process by prctl(2) and /proc on Linux; other systems adopt no orphans."""
+"""Manage children, orphans and the parent of this process. Uses prctl(2) and /proc, so only Linux adopts orphans."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def outlive_the_test() -> None:
-    """Ignore signals that end the test: the process ends after its simulator."""
+    """Ignore the signals that end the test, because this process must end after its simulator."""
     for number in _IGNORED:
         signal.signal(number, signal.SIG_IGN)
 
 
 def adopt() -> None:
-    """Become the parent of all descendants whose own parent ends."""
+    """Become the parent of every descendant whose own parent ends."""
     if _LINUX:
         ctypes.CDLL(None).prctl(_ADOPT, 1, 0, 0, 0)
 
@@ -43,17 +43,21 @@ def adopted() -> list[int]:
 
 
 def reap(which: int) -> None:
-    """Collect the exit statuses of ended children: of all for -1, of process group n for -n."""
+    """Collect the exit statuses of ended children: all children for -1, those of process group n for -n."""
     with suppress(ChildProcessError):
         while os.waitpid(which, os.WNOHANG)[0]:
             pass
 
 
 def die_with_parent() -> Callable[[], None]:
-    """Return a function for a new child to run before its program: default signals, and SIGKILL when this process ends.
+    """Return a function for a new child to call before exec.
 
-    The library is loaded before the fork, because a loader lock that another thread holds would never be released after
-    it.
+    It restores default signals, and makes the kernel send SIGKILL to the child when this process ends.
+
+
+
+    The C library is loaded before the fork: if another thread held the loader's lock during the fork, the child would
+    wait for it forever.
     """
     prctl = ctypes.CDLL(None).prctl if _LINUX else None
     parent = os.getpid()
@@ -64,7 +68,7 @@ def die_with_parent() -> Callable[[], None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, [])
         if prctl is not None:
             prctl(_DIE_WITH_PARENT, signal.SIGKILL)
-        if os.getppid() != parent:  # the parent ended before the request
+        if os.getppid() != parent:  # the parent ended before prctl took effect
             os._exit(1)
 
     return prepare

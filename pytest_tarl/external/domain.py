@@ -7,18 +7,18 @@ import socket
 import sys
 from contextlib import suppress
 
-DOMAINS = range(1, 101)  # their ports are below the kernel's ephemeral range
+DOMAINS = range(1, 101)  # the ports of these domains are below the kernel's ephemeral range
 
 
 class Domain:
-    """A ROS domain that no other guardian on this machine uses; the kernel releases it when the process ends."""
+    """A ROS domain that no other guardian on this machine uses. The kernel releases the claim when the process ends."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.number = 0
         candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
         if not sys.platform.startswith("linux"):
-            self.number = candidates[0]  # without abstract sockets it cannot be claimed
+            self.number = candidates[0]  # not claimed: this system has no abstract sockets
             return
         for number in candidates:
             with suppress(OSError):
@@ -28,5 +28,5 @@ class Domain:
         raise OSError(f"all {len(DOMAINS)} ROS domains are in use")
 
     def release(self) -> None:
-        """Give the domain back."""
+        """Release the claim on the domain."""
         self._socket.close()

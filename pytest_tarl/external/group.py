@@ -1,4 +1,4 @@
-"""The simulator's processes: one group, which ends with the guardian, whatever happens."""
+"""The simulator's processes: one process group, which always ends with the guardian."""
 
 from __future__ import annotations
 
@@ -16,14 +16,16 @@ STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
     (signal.SIGKILL, 5.0),
-)  # signals, and s to end after each
+)  # signals, with the time in s to end after each
 
 
 class Group:
-    """A command in a process group of its own, so that everything it starts can be killed; output goes to stderr.
+    """A command in its own process group, so that all processes that it starts can be killed.
+
+    Its output goes to stderr.
 
     On Linux, this process adopts the orphans of the group. It reaps them itself, because the init process of a
-    container may not, and it kills processes that left the group.
+    container may not do so. It also kills processes that left the group.
     """
 
     def __init__(self, command: Sequence[str], folder: str, environment: Mapping[str, str]) -> None:
@@ -45,7 +47,10 @@ class Group:
         return self._process.poll()
 
     def end(self) -> None:
-        """End all processes of the group with SIGINT, SIGTERM and SIGKILL, and those that left it with SIGKILL."""
+        """End the group's processes with SIGINT, then SIGTERM, then SIGKILL.
+
+        Send SIGKILL to processes that left the group.
+        """
         for number, limit in STEPS:
             self._send(number)
             deadline = monotonic() + limit
@@ -62,7 +67,7 @@ class Group:
             reap(-1)
 
     def kill(self) -> None:
-        """Send SIGKILL to the group; may be called in any thread."""
+        """Send SIGKILL to the group. Any thread may call this."""
         self._send(signal.SIGKILL)
 
     def _send(self, number: int) -> None:
@@ -70,7 +75,7 @@ class Group:
             os.killpg(self._process.pid, number)
 
     def _alive(self) -> bool:
-        """Return whether a process of the group runs; ended processes that were not reaped do not count."""
+        """Return whether any process of the group runs. Ended processes that were not reaped do not count."""
         if self._process.poll() is None:
             return True
         reap(-self._process.pid)

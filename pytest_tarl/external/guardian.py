@@ -1,6 +1,6 @@
-"""The guardian: a process that runs a simulator. It reads commands and writes events, one JSON object per line.
+"""The guardian: a process that runs a simulator. It reads commands and writes events, each a JSON line.
 
-It ends the simulator's processes when the test says so or the test's process has ended.
+It ends the simulator's processes on a command of the test, or when the test's process has ended.
 """
 
 from __future__ import annotations
@@ -24,15 +24,13 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # s between two checks of the ROS graph; 1 s after CALM
+LOOK = 0.05  # s between two checks of the ROS graph; after CALM, 1 s
 CALM = 5.0  # s
-LAST = (
-    20.0  # s until the simulator is killed if the middleware holds the main thread after the end of the test
-)
+LAST = 20.0  # s after the end of the test until the simulator is killed, if the main thread hangs in the middleware
 
 
 class Guardian:
-    """At most one simulator at a time."""
+    """The main loop of the process; it runs at most one simulator at a time."""
 
     def __init__(self, events: int) -> None:
         self._events = os.fdopen(events, "w", buffering=1, encoding="utf-8")
@@ -57,7 +55,10 @@ class Guardian:
             self._finish()
 
     def watch(self) -> None:
-        """Wait for the end of the test's process, whose forked children may keep stdin open; runs in a thread."""
+        """Wait for the end of the test's process; runs in a thread.
+
+        Forked children of the test may keep stdin open, so its end does not suffice.
+        """
         try:
             wait_for_end_of_parent()
         except OSError:  # an old kernel, or the test has already ended
@@ -142,7 +143,7 @@ class Guardian:
         self._link.subscribe(topics)
 
     def _network(self, ros: str) -> dict[str, str]:
-        """Return the environment variables of the simulator's own network: a master in ROS 1, a domain in ROS 2."""
+        """Return the environment variables of the simulator's private network: a master in ROS 1, a domain in ROS 2."""
         if ros == "ros1":
             self._master = Master()
             with xmlrpc.client.ServerProxy(self._master.uri) as master:
@@ -185,7 +186,7 @@ class Guardian:
 
 
 def main() -> None:
-    """Reserve stdout for events, and outlive the test even if Ctrl-C or a signal ends it."""
+    """Reserve stdout for events and run. Outlive the test even if Ctrl-C or a signal ends it."""
     outlive_the_test()
     events = os.dup(1)
     os.dup2(2, 1)

@@ -1,4 +1,4 @@
-"""The guardian's node on the simulator's domain: topics, services and clock of an unpatched rclpy."""
+"""The guardian's node on the simulator's domain: topics, services and clock through an unpatched rclpy."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-IDLE = 3  # attempts without a message after which none is left; an attempt may handle another event
+IDLE = 3  # attempts without a message after which no message is left; an attempt may handle another event
 
 Say = Callable[[dict[str, Any]], None]
 
 
 class Link:
-    """A node in a context of its own; `say` passes events on. Used in one thread."""
+    """A node in its own rclpy context; it passes events to `say`. Use it in one thread."""
 
     def __init__(self, domain: int, clock: str, say: Say) -> None:
         from rclpy.context import Context
@@ -43,11 +43,11 @@ class Link:
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
-        self._answers: list[dict[str, Any]] = []  # answers of services, to be passed on
-        self._handled = 0  # messages
+        self._answers: list[dict[str, Any]] = []  # answers of services that were not passed on yet
+        self._handled = 0  # number of messages
 
     def spin(self, seconds: float) -> None:
-        """Wait for one event at most this long and handle it; after an answer, handle also the messages before it.
+        """Wait up to `seconds` for an event and handle it. Before an answer, also handle the messages sent before it.
 
         In each cycle, rclpy's executor takes one message of each subscription and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
@@ -64,17 +64,17 @@ class Link:
             self._say(answer)
 
     def wake(self) -> None:
-        """End a wait; may be called in any thread."""
+        """End the wait in `spin`. Any thread may call this."""
         self._waker.trigger()
 
     def close(self) -> None:
-        """Leave the domain."""
+        """Shut the node down and leave the domain."""
         self._executor.shutdown()
         self._node.destroy_node()
         self._context.try_shutdown()
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of further topics once the simulator publishes them; report the graph again."""
+        """Also pass on messages of these topics once the simulator publishes them; report the ROS graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -86,16 +86,17 @@ class Link:
             publisher.publish(filled(publisher.msg_type(), data, _message_class))
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or once it exists.
+        """Call a service now, or as soon as it exists.
 
-        Earlier messages arrive earlier, because both go by UDP to one port of the simulator's participant. Waiting for
-        acknowledgements as well would cost 0.8 s per call, the period of the middleware's heartbeats.
+        Messages that were sent before the call also arrive before it, because both go by UDP to one port of the
+        simulator's participant. Waiting for acknowledgements would be safer but cost 0.8 s per call, the period of
+        the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
 
     def look(self) -> None:
-        """Connect to what the simulator publishes, subscribes to and serves; report changes."""
+        """Connect to the simulator's topics and services; report changes of the ROS graph."""
         kinds = {name: types[0] for name, types in self._node.get_topic_names_and_types() if types}
         published, subscribed = [], []
         for topic, kind in sorted(kinds.items()):

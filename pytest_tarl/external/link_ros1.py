@@ -1,4 +1,4 @@
-"""The guardian's node on the simulator's master: topics, services and clock of an unpatched rospy."""
+"""The guardian's node on the simulator's master: topics, services and clock through an unpatched rospy."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "/tarl_link"
 OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
-LOST = "transport error"  # how rospy's message begins when the connection breaks
-PATIENCE = 5.0  # s to wait for a service's answer about its type
-PAUSE = 0.005  # s between a command and a call, which use separate connections and could arrive in the other order
+LOST = "transport error"  # the start of rospy's error message for a broken connection
+PATIENCE = 5.0  # s to wait until a service tells its type
+PAUSE = 0.005  # s between a command and a call: they use separate connections, so a call could arrive first
 
 Say = Callable[[dict[str, Any]], None]
 
 
 class LinkROS1:
-    """The process's only node of rospy; `say` passes events on. Used in one thread, which rospy's threads wake."""
+    """The only rospy node of the process; it passes events to `say`. Use it in one thread; threads of rospy wake it."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph
@@ -47,18 +47,18 @@ class LinkROS1:
         self._sent = False  # whether a command was sent after the last call
 
     def spin(self, seconds: float) -> None:
-        """Pass on messages that have arrived or arrive within this time."""
+        """Pass on messages that have arrived or arrive within `seconds`."""
         self._arrival.wait(seconds)
         self._arrival.clear()
         while self._events:
             self._say(self._events.popleft())
 
     def wake(self) -> None:
-        """End a wait; may be called in any thread."""
+        """End the wait in `spin`. Any thread may call this."""
         self._arrival.set()
 
     def close(self) -> None:
-        """Leave the master."""
+        """Shut the node down and leave the master."""
         import rospy
 
         with suppress(Exception):  # it may have ended
@@ -78,7 +78,7 @@ class LinkROS1:
             self._sent = True
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or once it exists; commands that were sent before it have a short time to arrive."""
+        """Call a service now, or as soon as it exists. Wait PAUSE first, so that earlier commands arrive earlier."""
         if self._sent:
             sleep(PAUSE)
             self._sent = False
@@ -121,9 +121,7 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", SyntaxWarning
-            )  # without a queue, so that a message is sent before a later call
+            warnings.simplefilter("ignore", SyntaxWarning)  # no queue: a message is sent before a later call
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
     def _on_clock(self, message: Any) -> None:
@@ -155,7 +153,7 @@ class LinkROS1:
             told: dict[str, Any] = {"response": to_plain(proxy(request))}
         except Exception as problem:
             if str(problem).startswith(LOST):
-                return  # the guardian reports how the simulator ended, or the test reports that it does not answer
+                return  # the guardian reports the end of the simulator, or the test that it does not answer
             told = {"error": str(problem)}
         self._put({"kind": "answer", "id": asked["id"], "asked": when, **told})
 
@@ -172,7 +170,7 @@ class LinkROS1:
 
 
 def _service_type(service: str, uri: str) -> str:
-    """Return the type of a service, which its server states only on a connection that asks for it."""
+    """Return the type of a service; its server tells it only on a connection with a probe header."""
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
     place = urlparse(uri)

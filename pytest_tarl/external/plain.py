@@ -1,4 +1,4 @@
-"""Messages of ROS 1 and ROS 2 as plain data, the form in which test and guardian exchange them."""
+"""Convert messages of ROS 1 and ROS 2 to and from plain data, which test and guardian exchange."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ Find = Callable[[str, str], Any]  # (package, name) → message class
 
 
 def to_plain(value: Any) -> Any:
-    """Return a message, a sequence or a value as dictionaries, lists, numbers and strings."""
+    """Convert a message, a sequence or a value to dictionaries, lists, numbers and strings."""
     kinds = _fields(value)
     if kinds is not None:
         return {name: to_plain(getattr(value, name)) for name in kinds}
-    if hasattr(value, "tolist"):  # numpy's arrays and those of the standard library
+    if hasattr(value, "tolist"):  # arrays of numpy or of the module array
         return value.tolist()
     if isinstance(value, (bytes, bytearray)):
         return list(value)
@@ -42,7 +42,10 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
 
 
 def _fields(value: Any) -> Mapping[str, str] | None:
-    """Return the names and types of a message's fields, in ROS 1 also of a time or duration; None for other values."""
+    """Return the names and types of a message's fields; None for other values.
+
+    In ROS 1, times and durations count too.
+    """
     if hasattr(value, "get_fields_and_field_types"):
         return dict(value.get_fields_and_field_types())
     if hasattr(value, "_slot_types"):

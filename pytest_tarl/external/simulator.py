@@ -1,4 +1,4 @@
-"""An external simulator in an episode: started or reset, stepped or followed; the nodes' clocks show its time."""
+"""An external simulator in an episode: start, reset and run it. The nodes' clocks show its time."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # s of real time without a change of the ROS graph after which a simulator counts as started
+SETTLED = 0.3  # s of real time without a change of the ROS graph until a simulator counts as started
 
 
 class Kept:
-    """The guardian of this process, and the simulator that runs in it for further episodes."""
+    """The guardian of this process, and the simulator that it keeps running for further episodes."""
 
     def __init__(self) -> None:
         self.client: Client | None = None
@@ -49,7 +49,7 @@ atexit.register(KEPT.close)
 
 
 class Simulator:
-    """The simulator of one episode. `latest(topic)` returns what it published last."""
+    """The simulator of one episode. `latest(topic)` returns its last message on a topic."""
 
     def __init__(self, setup: Setup, ros: Ros, watched: Sequence[str]) -> None:
         self.setup = setup
@@ -58,7 +58,7 @@ class Simulator:
         self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
         self._heard: dict[
             str, int
-        ] = {}  # topic → when its newest message was sent, in ns of this machine's clock
+        ] = {}  # topic → send time of its newest message, in ns of this machine's clock
         self._latest: dict[str, Any] = {}
         self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
         self._forwarded: set[str] = set()
@@ -67,9 +67,9 @@ class Simulator:
         self._clock: int | None = None
         self._target = 0
         self._tick = 0
-        self._waiting: list[Event] | None = []  # messages to deliver later; None: at once
+        self._waiting: list[Event] | None = []  # messages to deliver later; None: deliver immediately
         self._usable = False  # whether the last step ended well
-        self._current = False  # whether events are about this episode's simulator
+        self._current = False  # whether events concern this episode's simulator
 
     @property
     def clock(self) -> float:
@@ -77,9 +77,9 @@ class Simulator:
         return seconds(self._clock or 0)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the simulator's newest message on a topic, None before the first.
+        """Return the simulator's newest message on a topic; None before the first one.
 
-        Topics that no node, sensor or argument names are received from the first call on.
+        A topic that no node, sensor or argument names is received only from the first call on.
         """
         if topic not in self._topics:
             self._want([topic])
@@ -103,7 +103,7 @@ class Simulator:
         if self.setup.step is not None:
             self._stepped(self.setup.step)
         else:
-            if self._target <= self._time:  # the simulator continued while the test did something else
+            if self._target <= self._time:  # the simulator ran on while the test did something else
                 self._target = self._time + nanoseconds(dt)
             self._deliver(self._released())
             self._wait(lambda: self._time >= self._target, self.setup.patience, self._hung)
@@ -192,13 +192,13 @@ class Simulator:
         return found
 
     def _theirs(self, message: Any) -> Any:
-        """Return a node's message as the class of the simulator's ROS."""
+        """Convert a node's message to the message class of the simulator's ROS."""
         package, _, name = type_name(type(message)).partition("/")
         wanted = self._class(package, name)
         return message if type(message) is wanted else snapshot(message, wanted)
 
     def _stepped(self, step: Call) -> None:
-        """Run the nodes up to the end of the simulator's next step, then the simulator."""
+        """Run the nodes up to the time of the simulator's next step, then let the simulator make that step."""
         self._deliver(self._released())
         while self._time < self._target:
             before = self._time
@@ -212,16 +212,16 @@ class Simulator:
             self._waiting = []
 
     def _over(self, before: int, asked: int) -> bool:
-        """Return whether a step has ended: the clock moved, and a message came on each of its topics.
+        """Return whether a step has ended: the clock moved, and each topic of `every_step` had a message.
 
-        Messages that were sent before the step was requested may still arrive; they do not count.
+        Messages sent before the request of the step may still arrive; they do not count.
         """
         return self._time > before and all(
             self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
         )
 
     def _released(self) -> list[Event]:
-        """Return the waiting messages, in an order that does not depend on the network."""
+        """Return the waiting messages in an order that is independent of the network."""
         waiting, self._waiting = self._waiting or [], None
         return sorted(waiting, key=lambda event: str(event["topic"]))
 
@@ -245,7 +245,10 @@ class Simulator:
         return int(answer["asked"])
 
     def _wait(self, done: Callable[[], bool], limit: float, late: Callable[[], SimulatorError]) -> None:
-        """Handle events until a condition holds. Raise the error of `late` after `limit` s without progress."""
+        """Handle events until a condition holds.
+
+        After `limit` s without progress, raise the error that `late` returns.
+        """
         deadline, progress = monotonic() + limit, self._time
         while not done():
             self._next(0.2)

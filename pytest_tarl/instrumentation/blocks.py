@@ -1,4 +1,4 @@
-"""Find the first code of blocks, and the parameters of functions."""
+"""Find the code that runs first in a block, and the parameters of functions."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Compiled code of instrumented files, kept between runs below `.tarl/cache`.
 
-An entry is named after everything that its code depends on, carries a digest of its contents and is written
+The name of an entry is a digest of all inputs of its code. The entry contains a digest of its contents, and is written
 to a temporary file that is then renamed. A damaged, foreign or unwritable entry only costs a compilation.
 """
 
@@ -18,13 +18,13 @@ from pathlib import Path
 from types import CodeType
 
 FORMAT = b"tarl-code-1\n"
-KEPT = 8  # entries per file; about one for each site plan
-REMEMBERED = 256  # entries in memory; a repair tries many edited texts
+KEPT = 8  # entries per source file; each choice of sites needs one
+REMEMBERED = 256  # entries in memory, since a repair tries many edited texts
 _HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
 
 
 class CodeCache:
-    """Code objects by key, in this process and in a directory; None keeps them in this process only."""
+    """Code objects by entry name, in memory and in a directory; without a directory, in memory only."""
 
     def __init__(self, directory: Path | None) -> None:
         self._directory = directory
@@ -40,7 +40,7 @@ class CodeCache:
         return code
 
     def store(self, name: str, code: CodeType, *, keep: bool = True) -> None:
-        """Store code under a name from `entry_name`; with `keep=False` in this process only."""
+        """Store code under a name from `entry_name`; with `keep=False`, in memory only."""
         self._remember(name, code)
         if keep and self._directory is not None and not sys.dont_write_bytecode:
             with contextlib.suppress(OSError):
@@ -53,7 +53,7 @@ class CodeCache:
 
 
 def entry_name(path: Path, depends_on: Iterable[object]) -> str:
-    """Return the name of a file's code, a digest of its inputs; each part needs an unambiguous `repr`."""
+    """Return the entry name of a file's code: a digest of `parts`, each of which needs an unambiguous `repr`."""
     digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
     return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
 
@@ -70,7 +70,7 @@ def _read(entry: Path) -> CodeType | None:
     payload = data[_HEADER:]
     if data[:_HEADER] != _header(payload):
         return None
-    code = marshal.loads(payload)  # noqa: S302 - what a .pyc is; the digest says that it is whole
+    code = marshal.loads(payload)  # noqa: S302 - as Python does with a .pyc; the digest was checked
     return code if isinstance(code, CodeType) else None
 
 

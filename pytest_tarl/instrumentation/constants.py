@@ -1,7 +1,7 @@
-"""Give instrumented code its hook and buffer as constants of its code objects, just before it runs.
+"""Insert the recording function (hook) and the event list (buffer) into code objects as constants.
 
-As globals they would show in `vars(module)`, in `globals()` and in class bodies with a namespace of their own. The
-transform inserts marks, which compile to constants and are cached with the code; `bound` replaces them.
+If they were globals, the program could see them in `vars(module)` and `globals()`. Therefore the transform inserts
+marks, which compile to constants and are cached with the code. `bound` replaces the marks just before the code runs.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ def _mark(name: str) -> Mark:
 
 HOOK = _mark("hook")  # hook(number, value) returns value
 BUFFER = _mark("buffer")  # the list of events
-TYPE = _mark("type")  # builtins, which the program may have shadowed
+TYPE = _mark("type")  # the builtin, since the program may shadow its name
 FLOAT = _mark("float")
 _BUILTINS: Mapping[Mark, Any] = {TYPE: type, FLOAT: float}
 
 
 def bound(code: CodeType, hook: Callable[[int, Any], Any], buffer: list[Any] | None = None) -> CodeType:
-    """Return code that records with `hook` and, if instrumented with `inline`, into `buffer`.
+    """Return code that records by calling `hook`. Code instrumented with `inline` also appends to `buffer`.
 
     Both must be hashable, since code objects are used as keys.
     """

@@ -1,4 +1,4 @@
-"""Replace the text of data files that a test or node reads: YAML parameters, launch and .cfg files."""
+"""Replace the text that a test or node reads from data files: YAML parameters, launch and .cfg files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _SUFFIXES = (".yaml", ".yml", ".json", ".toml", ".xml", ".launch", ".cfg", ".lau
 
 
 def is_data(path: Path) -> bool:
-    """Return whether a file holds parameters rather than code of the node."""
+    """Return whether a file is a data file, not Python code."""
     return path.name.endswith(_SUFFIXES)
 
 
 @contextmanager
 def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
-    """Make readers of these files get the replacement text; files on disk stay unchanged."""
+    """Within the context, reading one of these files returns its replacement text. Files on disk stay unchanged."""
     if not overlay:
         yield
         return

@@ -1,4 +1,4 @@
-"""The list to which instrumented code appends events, a constant of its code objects."""
+"""The event lists to which instrumented code appends. Code objects hold them as constants."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 
 
 class Entries(list[Any]):
-    """Events of a single-threaded program; has the methods of `list`, which CPython calls without a frame.
+    """Events of a single-threaded program. It inherits the methods of `list`, which CPython calls without a frame.
 
-    Code objects are compared, hashed, shown and pickled with their constants. So this list is equal only to itself,
-    has a short `repr`, and its copy in another process records nothing.
+    Comparing, hashing, printing or pickling a code object includes its constants. Therefore this list is equal only to
+    itself, has a short `repr`, and its unpickled copy in another process records nothing.
     """
 
     __slots__ = ("own",)
@@ -40,14 +40,14 @@ class Entries(list[Any]):
 class SharedEntries(Entries):
     """Events of a multi-threaded program: appends to the entries of the running thread.
 
-    An `Entries` list is converted by assigning `__class__`, so code that holds it needs no change.
+    Assigning `__class__` converts an `Entries` list to this class, so code that already refers to the list can stay.
     """
 
     __slots__ = ()
     __hash__ = object.__hash__
 
     def append(self, entry: object, /) -> None:
-        """Append half an event."""
+        """Append half an event: a site number or a value."""
         list.append(self.own(), entry)
 
     def extend(self, entries: Iterable[object], /) -> None:
@@ -56,7 +56,7 @@ class SharedEntries(Entries):
 
 
 class Unheard:
-    """Drops all events, in a process that does not record."""
+    """An event list that drops all events, for a process that does not record."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Convert flat event buffers to columns, with numpy."""
+"""Convert flat event buffers to numpy columns."""
 
 from __future__ import annotations
 
@@ -19,8 +19,7 @@ Pairs = tuple[Ints, Floats, Starts]
 def paired(entries: list[Any]) -> Pairs:
     """Split `[site, value, site, value, …]` into site, value and start index, each of shape (events,).
 
-    A signal handler that raises (a timeout, Ctrl-C) can leave a site without its value; such incomplete events are
-    dropped.
+    If a signal handler raises an exception (a timeout, Ctrl-C), a site may lack its value. Drop such incomplete events.
     """
     if len(entries) % 2 == 0 and set(map(type, entries[1::2])) <= {float}:
         even: Starts = np.arange(0, len(entries), 2)
@@ -39,7 +38,7 @@ def joined(parts: Sequence[Pairs]) -> Pairs:
 
 
 def sizes(flow: Floats) -> Floats:
-    """Return the magnitudes of plain floats, as `magnitude` does; shape (events,), as `flow`."""
+    """Return what `magnitude` returns for each float in `flow`; both have shape (events,)."""
     flow = np.minimum(np.abs(flow), np.where(np.isinf(flow), np.inf, LIMIT))
     flow[~np.isfinite(flow)] = 0.0
     return flow

@@ -1,7 +1,7 @@
-"""Build the syntax nodes that record values, with their source positions.
+"""Build the ast nodes that record values, and set their source positions.
 
-Every new node gets the position of code that runs at the same moment, so that line events, tracebacks and carets are
-those of the original program.
+A new node gets the position of the original code that runs at the same moment. So line events, tracebacks and their
+carets are the same as in the original program.
 """
 
 from __future__ import annotations
@@ -55,31 +55,31 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
 
 
 def start_of(node: ast.expr | ast.stmt) -> Where:
-    """Return the beginning of the part of `node` that runs first, as an empty range.
+    """Return the start of the part of `node` that runs first, as a range of length 0.
 
-    It is empty because CPython places a method call that spans several lines at the end of its attribute.
+    The length is 0 for a reason: if a method call spans several lines, CPython places it at the end of its attribute.
     """
     return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
 
 
 def collapsed(at: Where) -> Where:
-    """Return the empty range at the start of a range."""
+    """Return the range of length 0 at the start of a range."""
     line, column = at["lineno"], at["col_offset"]
     return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
 
 
 def end_of(node: ast.expr, then: Where) -> Where:
-    """Return the position of code that runs right after an expression and before the code at `then`.
+    """Return a position for new code that runs after an expression and before the code at `then`.
 
-    An expression with branches over several lines has no single last line, so this takes `then`. (Code without a line
-    number is not an alternative: CPython 3.13.0 copies such blocks and then runs both copies.)
+    An expression with branches over several lines has no single last line; in that case, return `then`. (Code without a
+    line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
-    """Return the part of an expression that runs first, where a debugger stops."""
+    """Return the part of an expression that runs first; a debugger stops there."""
     while True:
         if INLINED_COMPREHENSIONS and isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp)):
             node = node.generators[0].iter
@@ -93,7 +93,7 @@ def first_evaluated(node: ast.expr) -> ast.expr:
 
 
 def recorded(value: ast.expr, number: int, then: Where | None = None) -> ast.Call:
-    """Build `hook(number, value)`, which returns `value` to the code at `then`."""
+    """Build the expression `hook(number, value)`, which returns `value`; the code at `then` uses the result."""
     start = start_of(value)
     return ast.Call(
         func=_marked(HOOK, start),
@@ -132,13 +132,13 @@ def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
 
 
 def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
-    """Build the condition that all names hold floats, not instances of a subclass."""
+    """Build the condition that the class of every name's value is exactly `float`."""
     tests: list[ast.expr] = [_is_float(name, at) for name in inputs]
     return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 
 
 def truth(test: ast.expr) -> ast.expr:
-    """Build the truth value of a condition; evaluates each operand once, as a jump does."""
+    """Build an expression for the truth value of a condition. It evaluates each operand once, as a jump does."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
     at = where(test)
@@ -146,9 +146,9 @@ def truth(test: ast.expr) -> ast.expr:
 
 
 def reached(call: ast.Call, number: int) -> ast.Call:
-    """Build the call so that 0 is recorded after its arguments are evaluated and before it runs.
+    """Build a call that records 0 after its arguments are evaluated and before the function runs.
 
-    Publishing can run other nodes and the world: recorded afterwards, the event could be in a later step.
+    A publish call can run other nodes and the world. An event recorded after it could belong to a later step.
     """
     if call.keywords:
         last = call.keywords[-1]

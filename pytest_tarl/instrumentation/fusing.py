@@ -1,9 +1,9 @@
 """Record sequences ("runs") of plain arithmetic on local floats with a single call.
 
-If every name that a run reads holds a float at its beginning, its statements cannot fail, call no code of the program
-and produce only floats. So their events can be recorded together at the end of the run, at a fraction of the cost,
-with the same result. The types are known only when the run begins; so the program contains each run twice, and the
-second copy records statement by statement.
+If all names that a run reads hold floats when it begins, its statements cannot fail, call no code of the program and
+produce only floats. Then one call at the end of the run can record all its events, with the same result at lower cost.
+The types are known only at run time. Therefore the program contains each run twice: the copy for other types records
+after each statement.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pytest_tarl.instrumentation.blocks import Function, parameters
 
 Offset = tuple[int, int]
 
-FEWEST = 3  # fewer events do not outweigh the type checks
+FEWEST = 3  # with fewer events, the type checks cost more than they save
 _EXACT = 2**53  # smaller integers convert to float exactly
 _SAFE = (ast.Add, ast.Sub, ast.Mult)
 _DIVIDING = (ast.Div, ast.FloorDiv, ast.Mod)
@@ -25,14 +25,14 @@ _NOTHING: frozenset[str] = frozenset()
 
 
 class Run(ast.Interactive):
-    """Placeholder for the statements of a run in a function that is being transformed."""
+    """A placeholder for the statements of a run, used while a function is transformed."""
 
     inputs: tuple[str, ...] = ()  # names that must hold floats
 
 
 @dataclass
 class _Open:
-    """A run under construction."""
+    """A run that may still grow."""
 
     body: list[ast.stmt] = field(default_factory=list)
     inputs: dict[str, None] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class _Open:
 
 
 def gather(function: Function, sites: Collection[Offset]) -> None:
-    """Replace every worthwhile run of a function by a `Run`; nested functions stay unchanged."""
+    """Replace every run with at least FEWEST events in a function by a `Run`; leave nested functions unchanged."""
     _Gathering(function, sites).block(function.body, {one.arg for one in parameters(function.args)})
 
 
@@ -52,7 +52,7 @@ def target_of(statement: ast.stmt) -> ast.Name:
 
 
 class _Gathering:
-    """One walk over a function that tracks the names certainly bound."""
+    """One walk over a function; it tracks which names are certainly bound."""
 
     def __init__(self, function: Function, sites: Collection[Offset]) -> None:
         self._sites = sites
@@ -104,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads if it assigns a float whenever they hold floats."""
+    """Return the names that a statement reads if float values of these names guarantee that it assigns a float."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -114,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression that is certainly a float whenever they are; else None."""
+    """Return the names in an expression if float values of these names guarantee a float result; else None."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
@@ -135,7 +135,7 @@ def _whole(node: ast.expr) -> bool:
 
 
 def _divides(node: ast.expr) -> bool:
-    """Return whether an expression is a nonzero number."""
+    """Return whether an expression is a nonzero constant, so that division by it cannot fail."""
     return isinstance(node, ast.Constant) and bool(node.value) and (_whole(node) or _float(node) is not None)
 
 

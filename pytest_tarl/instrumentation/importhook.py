@@ -45,9 +45,10 @@ class AlreadyImportedWarning(UserWarning):
 class NodeImports:
     """Compile and execute a node and its imports, for one episode.
 
-    `plan` holds the sites of each file; `overlay` replaces the text of some files (sites keep their lines where
-    possible). As a context manager, it handles imports of those files, and at the end removes the project modules
-    that a node imported. `bind` gives code its hook and buffer (`Recorder.bind`); without it, code gets `hook` alone.
+    `plan` holds the sites of each file; `overlay` maps files to replacement texts, in which sites keep their lines
+    where possible. As a context manager, it handles imports of those files; on exit, it removes the project modules
+    that a node imported. `bind` (see `Recorder.bind`) gives code its hook and buffer; without it, code only gets
+    `hook`.
     """
 
     def __init__(
@@ -94,11 +95,11 @@ class NodeImports:
 
     @property
     def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
-        """Return the sites, by file, without a statement that can be recorded."""
+        """Return the positions of sites at which no statement could be recorded, by file."""
         return self._code.unrecorded
 
     def separate(self) -> SeparateModules:
-        """Return a switch that gives every program its own copies of the project's modules."""
+        """Return an object that gives every program its own copies of the project's modules."""
         belonging: dict[str, tuple[ModuleType, bool]] = {}
 
         def own() -> Iterator[str]:
@@ -115,7 +116,7 @@ class NodeImports:
         return SeparateModules(own)
 
     def compile_file(self, path: Path) -> CodeType:
-        """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""
+        """Compile a file with recording at its sites. Raise SyntaxError or OSError, as an import does."""
         code = self._code.compile(path)
         return self._bind(code) if self._code.recorded(path.resolve()) else code
 
@@ -128,9 +129,9 @@ class NodeImports:
             self.run_entry(path, entry)
 
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
-        """Execute a file as `python path` does, in a new module that `sys.modules` holds as `name`.
+        """Execute a file as `python path` does, in a new module that is registered in `sys.modules` as `name`.
 
-        `__package__` is set as by `python -m`, so that relative imports work.
+        Set `__package__` as `python -m` does, so that relative imports work.
         """
         __tracebackhide__ = True
         root, full_name = importable(path)
@@ -153,7 +154,7 @@ class NodeImports:
     def run_entry(self, path: Path, entry: str) -> None:
         """Import a file under its own name and call its function `entry`, as a `console_scripts` entry point does.
 
-        Raises SystemExit with the function's return value unless it is false.
+        Raise SystemExit with the function's return value if that is true.
         """
         __tracebackhide__ = True
         root, name = importable(path)
@@ -172,7 +173,7 @@ class NodeImports:
         self._namespaces.append(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Find a file of the plan or overlay; for other imports, only note whether a node requested them."""
+        """Find a file of the plan or overlay; for other imports, only remember whether a node requested them."""
         if fullname.rpartition(".")[2] not in self._tails:
             if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
                 self._imported.add(fullname)
@@ -201,7 +202,7 @@ class NodeImports:
         return None
 
     def _asked_by_node(self, frame: FrameType | None) -> bool:
-        """Return whether code of a node or of a module of this episode is on the stack."""
+        """Return whether a node or a module of this episode is on the call stack."""
         while frame is not None:
             space = frame.f_globals
             if space.get("__name__") in self._imported or any(space is known for known in self._namespaces):
@@ -210,12 +211,12 @@ class NodeImports:
         return False
 
     def _early(self) -> dict[Path, str]:
-        """Return the files of plan and overlay that are already imported, with their module names."""
+        """Return the files of the plan and the overlay that are already imported, with their module names."""
         early: dict[Path, str] = {}
         endings = tuple(self._tails)
         names = "\n".join(sys.modules) + "\n"
         if not any(f"{ending}\n" in names for ending in endings):
-            return early  # fast path, ten times as fast as the check of every name
+            return early  # ten times as fast as the check of every name below
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
@@ -236,13 +237,13 @@ class NodeImports:
             )
 
     def _look_for_older(self, early: Mapping[Path, str]) -> None:
-        """Collect edited files that were not executed but are in use: their old text ran."""
+        """Collect edited files that were in use but not executed again, so that their old text ran."""
         missed = {path.resolve() for path in self._overlay} - self._executed
         if missed:
             self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))
 
     def _forget_modules(self) -> None:
-        """Remove the project's modules, and modules of this episode that refer to them."""
+        """Remove the project's modules from `sys.modules`, and modules imported in this episode that refer to them."""
         own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
         new = sys.modules.keys() - self._before - set(own) if own else set()
         others = holders((sys.modules[name] for name in own), sorted(new))
@@ -254,7 +255,7 @@ class NodeImports:
                 delattr(outer, tail)
 
     def _belongs(self, module: ModuleType) -> bool:
-        """Return whether a module is source code of the node's or the tests' workspace."""
+        """Return whether a module's source file lies in the workspace of the node or of the tests."""
         spec = module.__dict__.get("__spec__")
         if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
             return False
@@ -266,7 +267,7 @@ class NodeImports:
 
 
 class NodeLoader(SourceFileLoader):
-    """Load a node file like the standard loader, but with instrumented code."""
+    """A loader that works like Python's but loads instrumented code."""
 
     def __init__(self, fullname: str, path: str, imports: NodeImports) -> None:
         super().__init__(fullname, path)
@@ -277,7 +278,7 @@ class NodeLoader(SourceFileLoader):
         return self._imports.compile_file(Path(self.path))
 
     def get_data(self, path: Any) -> bytes:
-        """Return the text that runs, for `get_source`."""
+        """Return the text that runs, so that `get_source` shows it."""
         edited = self._imports.edited(Path(path))
         return super().get_data(path) if edited is None else edited
 

@@ -33,7 +33,7 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
 Scope = Literal["module", "class", "function"]
 
-# They only declare names, or do nothing: there is no value to record.
+# These statements only declare names or do nothing, so there is no value to record.
 _SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
 Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
 Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
@@ -50,10 +50,11 @@ def instrument(
 ) -> ast.Module:
     """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
 
-    Compile the result with `compiled`, and give it a hook and a buffer by `constants.bound`. The recorded value is 0
-    for sites in `publishes` and calls of methods named publish, 1 or 0 for a condition, the message parameter for the
-    head of a function, and the target in each iteration for a loop. With `inline`, plain floats are appended to the
-    buffer without a call. `tree` is modified; positions with a recorded statement are added to `placed`.
+    Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. Sites record the value of
+    their statement. Exceptions are sites in `publishes` and calls of methods named publish (0), conditions (1 or 0),
+    the head of a function (its message parameter) and loops (the target, in each iteration). With `inline`, code
+    appends plain floats to the buffer without a call. This function modifies `tree` and adds recorded positions to
+    `placed`.
     """
     found: set[Offset] = set() if placed is None else placed
     changed = _Recording(sites, frozenset(publishes), found, inline=inline).visit(tree)
@@ -62,7 +63,7 @@ def instrument(
 
 
 def compiled(tree: ast.Module, path: str) -> CodeType:
-    """Compile an instrumented module; ignore the compiler's warnings, which are about the marks."""
+    """Compile an instrumented module. Ignore the compiler's warnings, since they concern the inserted marks."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code: CodeType = compile(tree, path, "exec", dont_inherit=True)
@@ -70,7 +71,7 @@ def compiled(tree: ast.Module, path: str) -> CodeType:
 
 
 class _Recording(ast.NodeTransformer):
-    """One walk over a module."""
+    """The ast transformer behind `instrument`."""
 
     def __init__(
         self, sites: Mapping[Offset, int], publishes: frozenset[int], placed: set[Offset], *, inline: bool
@@ -132,7 +133,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_Run(self, node: Run) -> ast.If:
-        """Record a run of arithmetic with one call if its inputs are floats, else statement by statement."""
+        """Record a run of arithmetic with one call if its inputs are floats; else record each statement."""
         begins = start_of(first_evaluated_in(node.body))
         numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
         events = [(name, number) for name, number in numbers if number is not None]
@@ -226,7 +227,7 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # No event if it fails: there is an exception, whose caret depends on how the test is compiled.
+        # No event if the assertion fails: the caret of its exception depends on how the test is compiled.
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:

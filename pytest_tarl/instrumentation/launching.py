@@ -14,7 +14,7 @@ _PACKAGE = ("package.xml", "pyproject.toml", "setup.py")
 
 
 def importable(path: Path) -> tuple[Path, str]:
-    """Return the import folder of a file and its module name there: `driver`, or `robot.driver` in a package."""
+    """Return the folder to import a file from, and its module name: `driver`, or `robot.driver` in a package."""
     root, parts = path.parent, [path.stem]
     while (root / "__init__.py").is_file():
         root, parts = root.parent, [root.name, *parts]
@@ -23,10 +23,10 @@ def importable(path: Path) -> tuple[Path, str]:
 
 @lru_cache(maxsize=256)
 def workspace(path: Path) -> Path:
-    """Return the root folder of the sources that belong to a node.
+    """Return the root folder of a node's project.
 
-    That is its git repository; without one, the folder above the `src` of a colcon or catkin workspace, or the
-    outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; without these, its import folder.
+    It is the first of these that exists: the git repository; the folder above `src` in a colcon or catkin workspace, or
+    the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder from which it is imported.
     """
     file = path.resolve()
     for folder in file.parents:
@@ -47,7 +47,7 @@ def on_search_path(*folders: Path) -> None:
 
 @contextlib.contextmanager
 def restored_interpreter() -> Iterator[None]:
-    """Restore what a script changes: the search path and `__main__`."""
+    """On exit, restore the search path and `__main__`, which a script may change."""
     path, main = list(sys.path), sys.modules["__main__"]
     try:
         yield

@@ -10,9 +10,9 @@ NaN, infinity                  0: "no measurement" (REP 117), also as a part of 
 None, text, bytes, the rest    0
 =============================  =====================================================================
 
-Values above `LIMIT` count as `LIMIT`, so that their sums and squares stay finite. To limit the cost, sequences of
-plain numbers and arrays with more than `SAMPLE` numbers are sampled evenly and scaled up; of other containers at most
-`SAMPLE` parts are visited.
+Values above `LIMIT` count as `LIMIT`, so that their sums and squares stay finite. To limit the cost, longer arrays and
+sequences of plain numbers are sampled at about `SAMPLE` even steps, and the norm is scaled up. In other containers,
+at most `SAMPLE` parts are visited.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def magnitude(value: object) -> float:
         if number is not None:
             return _size(number, value)
         return 0.0 if parts is None else _bounded(_norm(value))
-    except Exception:  # an object can raise anything; the program must not notice
+    except Exception:  # an object can raise any exception; it must not reach the program
         return 0.0
 
 
@@ -61,7 +61,7 @@ def _bounded(number: float) -> float:
 
 def _norm(value: object) -> float:
     sizes: list[float] = []
-    entered: set[int] = set()  # ids of visited containers, for cycles
+    entered: set[int] = set()  # ids of visited containers, to stop at cycles
     waiting: list[Any] = [value]
     looked_at = 0
     while waiting and looked_at < 2 * SAMPLE:
@@ -109,7 +109,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
 
 
 def _kind(kind: type) -> tuple[Number | None, Parts | None]:
-    """Return (number reader, part lister) of a class; None for each that does not apply."""
+    """Return (function that reads a number, function that lists parts) for a class; None for what does not apply."""
     known = _KINDS.get(id(kind))
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
@@ -175,7 +175,7 @@ def _parts(kind: type) -> Parts | None:
     """Return a function that lists the contents of a container or message; None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # not that of a subclass, which can run any code
+            return container.__iter__  # the builtin method: that of a subclass can run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
@@ -220,7 +220,7 @@ def _stored(message: object, name: str) -> object:
     return stored.get(name, stored.get(f"_{name}"))
 
 
-# Class attributes read without the metaclass, which can run code of the program even for these.
+# Read class attributes without the metaclass, which can run code of the program even for these.
 _bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
 _attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
 

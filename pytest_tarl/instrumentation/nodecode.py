@@ -1,4 +1,4 @@
-"""Compile a node file, or its replacement text, so that it records its sites."""
+"""Compile a node file, or its replacement text, with recording at its sites."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class NodeCode:
         return bool(self._plan.get(file))
 
     def compile(self, path: Path) -> CodeType:
-        """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""
+        """Compile a file that records its sites. Raise SyntaxError and OSError, as an import does."""
         file = path.resolve()
         data, text, positions = self._text(file)
         parts = (data, sorted(positions.items()), self._publishes, self._inline, _transform_digest())
@@ -61,7 +61,7 @@ class NodeCode:
         return code
 
     def _text(self, file: Path) -> tuple[bytes, str | None, Positions]:
-        """Return the bytes to compile, the replacement text if there is one, and the sites."""
+        """Return the bytes to compile, the replacement text (None without one), and the sites."""
         positions = self._plan.get(file, {})
         text = self._overlay.get(file)
         if text is None:
@@ -73,7 +73,7 @@ class NodeCode:
     def _compiled(self, path: Path, source: bytes | str, positions: Positions) -> CodeType:
         placed: set[Offset] = set()
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # shown when developers run the node themselves
+            warnings.simplefilter("ignore")  # developers see the warnings when they run the node
             tree = ast.parse(source, str(path))
             offsets = _offsets(source if isinstance(source, str) else decode_source(source), positions)
             tree = instrument(

@@ -1,7 +1,7 @@
-"""Record the events of one episode, with little work while the node runs; most is done at the end.
+"""Record the events of one episode. Most of the work is done at the end, so that the node is slowed down little.
 
-A buffer is one flat list per thread, `[site, value, site, value, …]`. Events of the simulation (a cell is latched, a
-step is rewarded) are marks in a separate list, each with the length of every buffer at that moment. So only its own
+A buffer is one flat list per thread, `[site, value, site, value, …]`. Each event of the simulation (a new current
+cell, the reward of a step) is a mark in a separate list, with the length of every buffer at that moment. So only one
 thread writes to a buffer. Greenlets of one thread share its buffer.
 """
 
@@ -23,8 +23,8 @@ from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
-EXACT = 2**53  # smaller integers convert to float exactly; the fast path handles only these
-MANY = 200_000  # entries above which a buffer is packed at the end of a step, to limit memory
+EXACT = 2**53  # smaller integers convert to float exactly, as the fast path needs
+MANY = 200_000  # entries; a longer buffer is packed to columns after a step
 _TOOLS = frozenset(
     {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
 )
@@ -34,7 +34,7 @@ Hook = Callable[[int, Any], Any]
 
 @dataclass
 class _Buffer:
-    """The events of one thread; `lengths` are its numbers of entries at each mark, including packed ones."""
+    """The events of one thread. `lengths[i]` is the number of its entries at mark i, including packed entries."""
 
     entries: list[Any] = field(default_factory=list)
     lengths: list[int] = field(default_factory=list)
@@ -53,13 +53,13 @@ class _Buffer:
 class Recorder:
     """Record one episode.
 
-    `hook` can be called from any thread. `bind` gives instrumented code a faster hook, and the buffer of the thread
-    that created the recorder. That buffer assumes a single thread until a second one starts, and then distinguishes
-    them. With `threads=True`, for real ROS, or if another thread that may run the program exists already, it
-    distinguishes threads from the start.
+    `hook` can be called from any thread. `bind` gives instrumented code a faster hook and the buffer of the thread that
+    created the recorder. That buffer assumes a single thread until a second thread starts; from then on, each thread
+    has its own entries. Threads are separate from the start with `threads=True`, which real ROS needs, or if another
+    thread already exists that may run the program.
     """
 
-    _packing = True  # whether `reward` may pack the buffer of the recorder's own thread
+    _packing = True  # whether `reward` may pack the buffer of the thread that created the recorder
 
     def __init__(self, *, threads: bool = False) -> None:
         self._lock = threading.Lock()
@@ -81,7 +81,7 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
-        """Pickle with a function of a program of several threads: in another process, nothing is recorded."""
+        """Pickle as `_Elsewhere`: functions of the program may hold a recorder, but other processes record nothing."""
         return _Elsewhere, ()
 
     def bind(self, code: CodeType) -> CodeType:
@@ -155,7 +155,7 @@ class Recorder:
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
         bounds = np.concatenate(([0], before, [len(starts)]))
-        between = bounds[1:] - bounds[:-1]  # numbers of events before each mark and after the last
+        between = bounds[1:] - bounds[:-1]  # number of events before each mark, and after the last mark
         cells = np.array([-1, *self._latched], np.int32)
         closing = np.zeros(len(cells), np.int32)
         closing[np.array(self._rewards, np.int64) + 1] = 1
@@ -169,7 +169,7 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Return whether all other threads belong to test tools, which never run code of the program."""
+    """Return whether all other threads belong to test tools and thus never run code of the program."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )
@@ -181,7 +181,7 @@ def _of_tool(thread: threading.Thread) -> bool:
 
 
 class _Elsewhere:
-    """Stands for a recorder in a process that does not record; `Recorder._entries` is called with it."""
+    """The replacement of a recorder in a process that does not record. `Recorder._entries` accepts it as `self`."""
 
     __slots__ = ()
 
@@ -196,7 +196,7 @@ class _Elsewhere:
 
 
 def _plain_hook(entries: list[Any]) -> Hook:
-    """Return the hook for a program that starts in one thread; `entries` distinguishes later threads."""
+    """Return the hook for a program that starts with one thread; `entries` handles later threads."""
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:

@@ -1,7 +1,7 @@
-"""Each program's own copies of the project's modules, as separate processes have them.
+"""Give each program its own copies of the project's modules, as if it were a separate process.
 
-Without it, two nodes in one interpreter would share the module `utils` of whichever was started first, and two nodes
-of one program the globals of its modules.
+Otherwise, two nodes in one interpreter would share one module `utils`, that of the node that started first. Two nodes
+of one program would share the globals of its modules.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from types import ModuleType
 
 
 class SeparateModules:
-    """Swaps the modules of programs in `sys.modules`, and their search paths, when another program runs.
+    """Replace the modules in `sys.modules` and the search path whenever another program runs.
 
     `own` returns the names of loaded modules that belong to a program.
     """
@@ -25,7 +25,7 @@ class SeparateModules:
         self._path = list(sys.path)
 
     def enter(self, program: object) -> None:
-        """Show a program its modules and search path, and hide those of the one that ran before."""
+        """Install the modules and search path of a program, and remove those of the program that ran before."""
         if program is self._running:
             return
         self._modules[self._running] = {name: sys.modules.pop(name) for name in tuple(self._own())}

@@ -1,4 +1,4 @@
-"""Number the sites of an analysis: one list per pair of source and sink topic, with the sites' positions."""
+"""Number the sites (statements to record) of an analysis, in one taint list per pair of source and sink topic."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tarl_lint.model import Flow, SiteId, Step
 
 Position = tuple[int, int]  # line and column of a statement's first character, each from 1
-Positions = Mapping[Position, int]  # → global number of the site
+Positions = Mapping[Position, int]  # position → global number of the site
 
 
 class HasFlows(Protocol):
@@ -32,8 +32,8 @@ class HasFlows(Protocol):
 class Plan:
     """The sites to record.
 
-    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`. `positions` holds the
-    sites by path (as in the analysis), with columns in characters.
+    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`. `positions` holds
+    the sites by path, as the analysis names it; columns count characters.
     """
 
     lists: tuple[TaintList, ...]
@@ -43,12 +43,12 @@ class Plan:
 
     @property
     def publishes(self) -> frozenset[int]:
-        """Return the sites without a value, which are recorded when they are reached."""
+        """Return the sites without a value. For these, only the fact that they are reached is recorded."""
         return frozenset(number for number, place in enumerate(self.places) if place.role == "publish")
 
 
 def plan(analysis: HasFlows) -> Plan:
-    """Number the data and control steps of all flows; context steps are never instrumented."""
+    """Number the data and control steps of all flows; skip context steps, which are never instrumented."""
     grouped: dict[tuple[str, str], list[Flow]] = defaultdict(list)
     for flow in analysis.flows:
         for pair in product(_topics(flow.source), _topics(flow.sink)):
@@ -68,7 +68,7 @@ def plan(analysis: HasFlows) -> Plan:
 def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:
     """Find the positions of the sites of `before` in an edited text.
 
-    Changed lines keep their sites if their number is unchanged; sites on removed lines are dropped.
+    A block of changed lines keeps its sites if it still has as many lines. Sites on removed lines are dropped.
     """
     lines: dict[int, int] = {}
     matcher = difflib.SequenceMatcher(None, before.split("\n"), after.split("\n"), autojunk=False)
@@ -91,7 +91,7 @@ def _scored(flow: Flow) -> list[Step]:
 
 
 def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
-    """Merge taint lists in an order consistent with each, as far as they agree; break ties by position."""
+    """Merge taint lists. Keep the order of each list as far as the lists agree; break ties by position."""
     best: dict[SiteId, Step] = {}
     followers: dict[SiteId, set[SiteId]] = defaultdict(set)
     waiting: dict[SiteId, int] = defaultdict(int)

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-# Not threading.setprofile: CPython 3.11 repeats the first instruction of a profiled thread while others wait for the
-# interpreter, so that several threads that start at once never get past it.
+# threading.setprofile is unsuitable: CPython 3.11 repeats the first instruction of a profiled thread while others
+# wait for the interpreter lock, so threads that start at the same time never proceed.
 _STARTERS = (
     (_thread, "start_new_thread"),
     (_thread, "start_joinable_thread"),  # Python ≥ 3.13
@@ -21,7 +21,7 @@ _STARTERS = (
 class ThreadWatch:
     """Call `heard` before a thread starts through `threading` or `_thread`.
 
-    Threads that extension modules start by other means are not noticed.
+    Threads that extension modules start by other means are not detected.
     """
 
     def __init__(self, heard: Callable[[], None]) -> None:
@@ -29,7 +29,7 @@ class ThreadWatch:
         self._replaced: list[tuple[ModuleType, str, Any, Any]] = []
 
     def begin(self) -> None:
-        """Watch."""
+        """Replace the functions that start threads in both modules."""
         for module, name in _STARTERS:
             original = getattr(module, name, None)
             if original is not None:
@@ -38,7 +38,7 @@ class ThreadWatch:
                 self._replaced.append((module, name, original, telling))
 
     def end(self) -> None:
-        """Restore both modules, unless other code has changed them meanwhile."""
+        """Restore both modules unless other code has changed them in the meantime."""
         for module, name, original, telling in self._replaced:
             if getattr(module, name) is telling:
                 setattr(module, name, original)

@@ -18,9 +18,9 @@ Floats = NDArray[np.float64]
 class Trace:
     """Events and simulation steps of one episode.
 
-    `cells` are the distinct cells in order of first use; the other cell columns are indices into it, -1 before the
-    first message. Event columns have shape (events,), step columns (steps,). Events are sorted by step and then by
-    thread, so the order of events of different threads is not known. Events after the last reward belong to the
+    `cells` holds the distinct cells in order of first use. `event_cell` and `step_cell` are indices into it, -1
+    before the first message. Event columns have shape (events,), step columns (steps,). Events are sorted by step and
+    then by thread, so the order of events of different threads is lost. Events after the last reward belong to the
     last step. `thread` is None if one thread recorded everything.
     """
 

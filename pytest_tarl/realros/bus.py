@@ -1,4 +1,4 @@
-"""Common base of real rospy and rclpy: the bus of the world, and the episode."""
+"""Base classes for real rospy and rclpy: the bus (the topics as the simulated world sees them) and the episode."""
 
 from __future__ import annotations
 
@@ -22,13 +22,11 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
-_SWITCH_INTERVAL = (
-    0.0002  # s; Python's default of 0.005 s delays every message, which passes through several threads
-)
+_SWITCH_INTERVAL = 0.0002  # s; Python's default, 0.005 s, delays a message at every switch of threads
 
 
 class RealBus(Bus):
-    """The bus of the world, which uses its own node."""
+    """The bus of the simulated world. It uses its own ROS node."""
 
     kind: Kind
 
@@ -37,7 +35,7 @@ class RealBus(Bus):
         scheduler.collect = self.collect
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world; every idle subscriber gets the message before this returns."""
+        """Publish from the world. Every idle subscriber receives the message before this method returns."""
         place = self.topic(topic)
         message = self._own_class(message, place.name)
         stamp_if_unset(message, self._scheduler.time)
@@ -47,13 +45,13 @@ class RealBus(Bus):
         self._run(self._publish, place, message, latch)
 
     def interpose(self, topic: str, channel: Channel) -> None:  # noqa: ARG002
-        """Raise UnsupportedApiError: messages of an installed ROS do not pass through this process alone."""
+        """Raise UnsupportedApiError: this process cannot intercept the messages of an installed ROS."""
         raise UnsupportedApiError(
             f"The fault of {topic} needs the in-process ROS: remove --tarl-ros, or the fault from the marker."
         )
 
     def disconnect(self, process: Program) -> None:
-        """Do nothing: an ended process receives no messages."""
+        """Do nothing, because an ended process receives no messages anyway."""
 
     def collect(self) -> bool:
         """Receive one message in transit; return whether there was one."""
@@ -79,7 +77,10 @@ class RealBus(Bus):
         self.send(place, message, latch)
 
     def _own_class(self, message: Any, topic: str) -> Any:
-        """Return the message in the installed ROS' class. Raises RecordingError if it is invalid or not installed."""
+        """Convert a message to the class of the installed ROS.
+
+        Raise RecordingError if it is invalid or not installed.
+        """
         own = type(message)
         package, _, short = type_name(own).partition("/")
         wanted = find_class(self.kind, package, short) if short else None
@@ -101,14 +102,14 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Set a launch file's parameters: of a node whose name is not known before it runs, for all nodes."""
+        """Set the parameters of a launch file. If a node's name is unknown before it runs, set them for all nodes."""
         super().launch(given)
         private = {} if given.node else {f"~{key}": one for key, one in given.private.items()}
         for name, value in {**given.shared, **private}.items():
             self.parameters.setdefault(name, value)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raises NodeError if it raises an exception."""
+        """Run a node's main program until it first waits. Raise NodeError if it raises an exception."""
         given = self._launched
         if given.node:
             argv = (*argv, *_arguments(given.private, ros2="--ros-args" in argv))
@@ -119,7 +120,7 @@ class RealRos(Ros):
         raise NotImplementedError
 
     def installed(self) -> AbstractContextManager[None]:
-        """Show nodes the virtual clock, and run their threads as tasks."""
+        """Within the context, nodes see the virtual clock, and their threads run as tasks."""
         return self._installed()
 
     @contextmanager
@@ -134,14 +135,14 @@ class RealRos(Ros):
 
 
 def _arguments(parameters: Mapping[str, Any], *, ros2: bool) -> Iterator[str]:
-    """Yield the command line that sets private parameters, after remappings of the same generation."""
+    """Yield the command line arguments that set private parameters, in the syntax (ROS 1 or 2) of the remappings."""
     for name, value in parameters.items():
         text = json.dumps(value)  # JSON is YAML
         yield from ("-p", f"{name}:={text}") if ros2 else (f"_{name}:={text}",)
 
 
 def refused(topic: str, published: Any, receiver: str, wanted: Any) -> RecordingError:
-    """Return the error for a subscription with another type than the published one."""
+    """Return the error for a subscription whose message type differs from the published type."""
     return RecordingError(
         f"{topic} carries {type_name(published)}, but node {receiver!r} subscribes to it as {type_name(wanted)}."
     )

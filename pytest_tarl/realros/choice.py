@@ -36,7 +36,7 @@ def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
 
 
 def check_kind(kind: str) -> str:
-    """Return the kind. Raise SettingsError if it is unknown."""
+    """Return the value of --tarl-ros. Raise SettingsError if it is unknown."""
     if kind not in KINDS:
         raise SettingsError(
             f"--tarl-ros does not know {kind!r}; it takes {', '.join(KINDS[:-1])} or {KINDS[-1]}."
@@ -57,7 +57,7 @@ def _imported(file: Path) -> list[Library]:
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
-        return []  # reported when the file is run
+        return []  # running the file reports the error
     found: list[Library] = []
     for node in ast.walk(tree):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

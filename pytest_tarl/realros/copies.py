@@ -14,7 +14,7 @@ Modules = dict[str, ModuleType]
 
 
 def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Modules:
-    """Import a new copy of a package and some of its modules; other importers keep theirs.
+    """Import a new copy of a package and some of its modules; other copies stay in use elsewhere.
 
     `argv` is the command line that the package reads on import.
     """

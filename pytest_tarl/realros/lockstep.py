@@ -1,6 +1,6 @@
-"""Lock-step: count sent messages, and resume nodes only after all have arrived.
+"""Lock-step: count the sent messages, and resume nodes only after all of them have arrived.
 
-Messages travel by a real network and arrive in threads of the client library. Here they are put back into the
+Messages pass through a real network and arrive in threads of the client library. This module restores the
 deterministic order of the scheduler.
 """
 
@@ -15,11 +15,11 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-PATIENCE = 10.0  # s of wall time for a message to cross the loopback device
+PATIENCE = 10.0  # s of wall time until a message must have arrived
 
 
 class Way(NamedTuple):
-    """One connection; its messages arrive in order."""
+    """One connection. Its messages arrive in the order in which they were sent."""
 
     topic: str
     sender: str
@@ -47,7 +47,7 @@ class Wire:
     def take(self) -> tuple[Way, Any] | None:
         """Wait for the message that was sent first and return it; None if no message is in transit.
 
-        Raises RecordingError if it does not arrive within PATIENCE.
+        Raise RecordingError if it does not arrive within PATIENCE.
         """
         if not self._expected:
             return None
@@ -80,7 +80,9 @@ class WireScheduler(Scheduler):
 
     def __init__(self) -> None:
         super().__init__()
-        self.collect: Callable[[], bool] = bool  # receives one message; returns whether there was one
+        self.collect: Callable[[], bool] = (
+            bool  # receives a message in transit; returns False if there was none
+        )
         self.enter: Callable[[Process], None] | None = None  # called before a task of a process resumes
 
     def settle(self) -> None:

@@ -17,7 +17,7 @@ _NODES = "_Context__node_weak_ref_list"
 
 
 class SharedParticipant:
-    """Mixin for rclpy's Context with rclpy's interface and a shared participant."""
+    """Mixin for rclpy's Context: the same interface, but all contexts share one DDS participant."""
 
     network: RclpyNetwork
     error: Any  # rclpy's RCLError
@@ -34,7 +34,7 @@ class SharedParticipant:
         self.network.contexts.append(self)
 
     def init(self, args: Any = None, **_: Any) -> None:
-        """Initialise the context. Raises RuntimeError if it was initialised before."""
+        """Initialise the context. Raise RuntimeError if it was initialised before."""
         if self.handle is not None:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -50,7 +50,7 @@ class SharedParticipant:
         """Do nothing: other contexts share the participant."""
 
     def shutdown(self) -> None:
-        """Shut the context down. Raises RuntimeError before `init`, RCLError if it is already down."""
+        """Shut the context down. Raise RuntimeError before `init`, RCLError if it is already shut down."""
         if self.handle is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
         if not self.ok():
@@ -65,7 +65,7 @@ class SharedParticipant:
             self._cleanup()
 
     def on_shutdown(self, callback: Any) -> None:
-        """Register a callback for the shutdown. Raises TypeError if it is not callable."""
+        """Register a callback for the shutdown. Raise TypeError if it is not callable."""
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         if self.handle is not None and not self.ok():
@@ -76,7 +76,7 @@ class SharedParticipant:
             )
 
     def stop(self) -> None:
-        """Shut down as on Ctrl-C: nodes stay until their program destroys them."""
+        """Shut down as Ctrl-C does: nodes still exist until their program destroys them."""
         if self._up:
             self._up = False
             self._call_on_shutdown_callbacks()

@@ -37,13 +37,13 @@ class RclpyNetwork:
         self.scheduler = WireScheduler()
         self.parameters: Mapping[str, Any] = {}
         self.arguments: tuple[str, ...] = ()
-        self.listening: list[Task] = []  # tasks to wake at every arrival
+        self.listening: list[Task] = []  # tasks to wake whenever a message arrives
         self.nodes: list[tuple[Process, Any]] = []
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
         self.expected: Counter[Any] = Counter()  # messages in transit, by subscription of a node
-        self.kept: Counter[Any] = Counter()  # messages that publishers keep for late subscribers
-        self.for_world: deque[Any] = deque()  # subscriptions of the world, once for each message in transit
+        self.kept: Counter[Any] = Counter()  # stored messages that publishers send to late subscribers
+        self.for_world: deque[Any] = deque()  # the world's subscription for each message in transit
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}
@@ -98,7 +98,7 @@ class RclpyNetwork:
         return stop
 
     def tell_time(self) -> None:
-        """Set the clocks of the nodes."""
+        """Set the ROS clocks of all nodes to the virtual time."""
         now = self.scheduler.time
         if now == self._told:
             return
@@ -127,9 +127,9 @@ class RclpyNetwork:
         self.wake_listening()
 
     def joined(self, subscription: Any) -> None:
-        """Count kept messages as in transit to a new subscription.
+        """Count the publishers' stored messages as in transit to a new subscription.
 
-        Waits until all of them are sent: if they were taken meanwhile, a short queue would keep older messages.
+        Wait until all of them are sent. If a node took messages in the meantime, a short queue would keep older ones.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
@@ -147,7 +147,7 @@ class RclpyNetwork:
     def under_way(self, executor: Any) -> bool:
         """Return whether a message to a node of the executor is still in transit.
 
-        The executor must wait for it: otherwise thread timing would decide which of two topics comes first.
+        The executor must wait for that message; otherwise, thread timing would determine the order of two topics.
         """
         expecting = [
             subscription
@@ -158,9 +158,11 @@ class RclpyNetwork:
         return bool(expecting and silent(self.rclpy, executor.context, expecting))
 
     def take_for_world(self) -> tuple[str, Any] | None:
-        """Wait for the message that nodes sent first to the world; return (topic, message), or None if there is none.
+        """Wait for the oldest message in transit to the world.
 
-        Raises RecordingError if it does not arrive within PATIENCE.
+        Return (topic, message); None if no message is in transit.
+
+        Raise RecordingError if it does not arrive within PATIENCE.
         """
         if not self.for_world:
             return None
@@ -208,12 +210,12 @@ def capacity(profile: Any) -> int:
 
 
 def pause(_sleep: Any = sleep) -> None:
-    """Sleep for a moment of wall time to let the middleware's threads run."""
+    """Sleep _PAUSE of wall time, so that the middleware's threads can run."""
     _sleep(_PAUSE)
 
 
 def _own_domain() -> dict[str, str | None]:
-    """Restrict ROS to this machine and a random domain; return the environment variables' former values."""
+    """Restrict ROS to this machine and a random domain. Return the previous values of the environment variables."""
     wanted = {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "ROS_DOMAIN_ID": str(random.SystemRandom().choice(_DOMAINS)),

@@ -1,7 +1,7 @@
 """Patches of rclpy: its waits, clocks and context, and hooks for sent messages.
 
 Executors, callbacks, parameters, profiles, messages and the middleware stay unchanged. Every replacement checks the
-running task and calls the original outside of nodes.
+running task; outside of nodes, it calls the original.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def _patch_timers(network: RclpyNetwork) -> None:
         if running_task() is not None:
             options.pop(
                 "clock", None
-            )  # one virtual clock for all clock types: a steady one would run on while the simulation pauses
+            )  # all clock types show virtual time: a steady clock would run on while the simulation pauses
         return create(self, *args, **options)
 
     node_class.create_timer = create_timer
@@ -203,7 +203,7 @@ def _raise_if_ended(executor: Any, task: Task, executors: Any) -> None:
 
 
 def _earliest(executor: Any, now: int, until: int | None) -> int | None:
-    """Return when the next timer of the executor's nodes is due, at most `until`."""
+    """Return the time at which the next timer of the executor's nodes is due, or `until` if that is earlier."""
     due = [] if until is None else [until]
     for node in executor.get_nodes():
         for timer in node.timers:
@@ -258,7 +258,7 @@ def _patch_topics(network: RclpyNetwork) -> None:
 
 
 def _of_node(topic: str) -> bool:
-    """Return whether the node's program created an entity, rather than rclpy, which creates some for every node."""
+    """Return whether the node's program created an entity; rclpy itself creates some for every node."""
     return running_task() is not None and topic not in ("/rosout", "/parameter_events", "/clock")
 
 

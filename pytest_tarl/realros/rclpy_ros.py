@@ -29,7 +29,7 @@ class RclpyBus(RealBus):
         self._publishers: dict[tuple[str, bool], Any] = {}
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish by rclpy. Raises RecordingError if a subscriber has another type."""
+        """Publish by rclpy. Raise RecordingError if a subscriber has another message type."""
         for _, node in self._network.nodes:
             for subscription in node.subscriptions:
                 if subscription.topic_name == place.name and subscription.msg_type is not type(message):
@@ -54,7 +54,10 @@ class RclpyBus(RealBus):
         return True
 
     def _publisher(self, topic: str, message_class: Any, latch: bool) -> Any:
-        """Return the world's publisher; transient local with depth 1 if it latches or a subscription requires it."""
+        """Return the world's publisher.
+
+        It is transient local with depth 1 if it latches or a subscription requires that.
+        """
         qos = self._network.rclpy.qos
         wanted = [
             subscription.qos_profile
@@ -139,4 +142,4 @@ def close_network() -> None:
 
 
 def _nothing(_message: Any) -> None:
-    """Do nothing: `collect` takes the world's messages one by one."""
+    """Do nothing, because `collect` takes the world's messages one at a time."""

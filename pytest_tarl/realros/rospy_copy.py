@@ -16,7 +16,7 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 
 
 class RospyCopy:
-    """A private copy of rospy. `process` is its user in the current episode; None for the world's copy."""
+    """A private copy of rospy. `process` is the process that uses it in this episode; None for the world's copy."""
 
     def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)
@@ -53,7 +53,7 @@ class RospyCopy:
         show("rospy", self.modules)
 
     def register(self, name: str, arguments: dict[str, Any]) -> None:
-        """Run the real `init_node`, once."""
+        """Run the original `init_node`; a copy does this only once."""
         self.real["init_node"](name, **{**arguments, "disable_signals": True})
         self.name = self.names.get_caller_id()
 

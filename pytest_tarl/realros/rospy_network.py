@@ -79,7 +79,7 @@ class RospyNetwork:
             return
         key, number = process.argv, 0
         while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
-            number += 1  # second process of the same program in one episode
+            number += 1  # another process of the same program in this episode
         if copy is None:
             copy = self._kept[(*key, str(number))] = self._made(key)
         copy.begin(process)
@@ -91,9 +91,9 @@ class RospyNetwork:
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do the work of `init_node`; a kept node is reset to look like a new one.
+        """Do the work of `init_node`. Reset a node from an earlier episode to the state of a new one.
 
-        Raises NodeError if the node's name has changed since an earlier episode.
+        Raise NodeError if the node's name has changed since an earlier episode.
         """
         if copy.core.is_initialized():
             copy.real["init_node"](name, *args, **kwargs)  # raises if the arguments differ
@@ -125,7 +125,10 @@ class RospyNetwork:
         self.connect(impl.resolved_name)
 
     def connect(self, topic: str) -> None:
-        """Wait until every publisher of a topic is connected with every subscriber. Raises RecordingError."""
+        """Wait until all publishers and subscribers of a topic are connected.
+
+        Raise RecordingError on a type mismatch.
+        """
         deadline = monotonic() + PATIENCE
         for sender, publisher in self._ends(topic, "pubs"):
             for receiver, subscriber in self._ends(topic, "subs"):
@@ -230,7 +233,7 @@ def mismatch(publisher: Any, subscriber: Any) -> bool:
 
 
 def sleep_really(duration: float, _sleep: Callable[[float], None] = sleep) -> None:
-    """Sleep for a moment of wall time to let other threads run."""
+    """Sleep for a short wall time, so that other threads can run."""
     _sleep(duration)
 
 

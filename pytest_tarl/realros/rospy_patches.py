@@ -1,7 +1,7 @@
 """Patches of a node's copy of rospy: waits, sent and received messages, initialisation and shutdown.
 
-Everything else stays rospy's own. Every replacement checks the running task: in threads of rospy, and in the world's
-copy, it calls the original.
+All other parts of rospy stay unchanged. Every replacement checks the running task; in threads of rospy and in the
+world's copy, it calls the original.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pytest_tarl.realros.rospy_copy import RospyCopy
     from pytest_tarl.realros.rospy_network import RospyNetwork
 
-REAL_TIME = SimpleNamespace(  # bound now, before nodes see the virtual clock under these names
+REAL_TIME = SimpleNamespace(  # the real functions, saved before nodes see the virtual clock under these names
     time=time.time, sleep=time.sleep, monotonic=time.monotonic, perf_counter=time.perf_counter,
     strftime=time.strftime, localtime=time.localtime, gmtime=time.gmtime)  # fmt: skip
 _ON_REAL_TIME = ("core", "topics", "impl.init", "impl.registration", "impl.tcpros_base", "impl.tcpros_pubsub")
@@ -103,7 +103,7 @@ def _sleep(copy: RospyCopy, network: RospyNetwork, process: Process, until: int)
     if process.ending:
         process.refuse_to_wait()
         if network.in_hooks:
-            return  # virtual time no longer moves then
+            return  # in shutdown hooks, virtual time stands still
     elif until >= process.scheduler.time:
         process.scheduler.wait(until)
     if process.ending:
@@ -177,16 +177,14 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
         if connection_override is not None and message is self.latch:
-            return None  # `latched` delivers latched messages, for kept connections and new ones alike
+            return None  # `latched` delivers latched messages, also on new connections
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:
             network.wire.wait_for_all(way)
         try:
             result = original(self, message, connection_override)
-        except (
-            BaseException
-        ):  # rospy leaves a partial message in its buffer, and the next one would break the connection
+        except BaseException:  # rospy would leave a partial message in its buffer and break the connection
             self.buff.seek(0)
             self.buff.truncate(0)
             raise

@@ -34,7 +34,7 @@ class RospyBus(RealBus):
         network.node_subscribes = self.subscribed.add
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish by rospy. Raises RecordingError if the message is invalid or a subscriber has another type."""
+        """Publish by rospy. Raise RecordingError if the message is invalid or a subscriber has another type."""
         publisher = self._publisher(place.name, type(message))
         for copy, subscriber in self._network.subscribers(place.name):
             if copy.process is not None and subscriber.callbacks and mismatch(publisher.impl, subscriber):
@@ -82,7 +82,7 @@ class RospyBus(RealBus):
 
 
 class Lane:
-    """The callbacks of a node for one topic; handles one message at a time, as rospy's thread does."""
+    """The callbacks of a node for one topic. They handle one message at a time, as in rospy's thread."""
 
     def __init__(self, process: Process, subscriber: Any) -> None:
         self._process = process
@@ -91,7 +91,7 @@ class Lane:
         self._busy = False
 
     def deliver(self, message: Any) -> None:
-        """Run the callbacks, or queue the message if they are still handling an earlier one."""
+        """Run the callbacks with a message; queue it while they handle an earlier message."""
         if self._process.ending:
             return
         self._waiting.append(message)

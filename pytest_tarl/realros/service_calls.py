@@ -1,7 +1,7 @@
-"""Service calls of rospy in lock-step: each is in transit, or in a handler that runs in virtual time.
+"""Service calls of rospy in lock-step. A call is either in transit or in its handler, which runs in virtual time.
 
-Virtual time stands still while a call is in transit. Arrivals are handled in an order that does not depend on the
-network: answers in the order of the calls, then requests by service and content.
+Virtual time stands still while a call is in transit. The order of arrivals does not depend on the network: first
+answers, in the order of the calls, then requests, by service and content.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pytest_tarl.realros.lockstep import PATIENCE
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-Outcome = Callable[[], Any]  # returns the result of a call or raises its exception
+Outcome = Callable[[], Any]  # function that returns the result of a call or raises its exception
 Order = tuple[int, int, str]
 
 
@@ -28,7 +28,7 @@ class Arrival(NamedTuple):
 
 
 class ServiceCalls:
-    """The calls of one episode. Only `_arrived` is accessed outside of the test's thread, under `_arrival`."""
+    """The calls of one episode. Other threads than the test's only access `_arrived`, with the lock `_arrival`."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -38,7 +38,7 @@ class ServiceCalls:
         self._on_wire = 0
 
     def served(self, process: Process, service: str, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a handler that can be called in any thread and runs in a task of its node."""
+        """Return a handler for any thread; it runs the original handler in a task of its node."""
 
         def handle(request: Any) -> Any:
             answer: list[Outcome] = []
@@ -92,7 +92,7 @@ class ServiceCalls:
             self._arrival.notify()
 
     def _attend(self) -> None:
-        """Wait for everything in transit, then handle it in order. Raises RecordingError after PATIENCE."""
+        """Wait for everything in transit, then handle it in order. Raise RecordingError after PATIENCE."""
         if not self._on_wire:
             return
         with self._arrival:

@@ -1,1 +1,1 @@
-"""Report the result of a comparison to people (terminal, page) and to other tools (JSON)."""
+"""Report the result of a comparison to people (terminal, HTML page) and to other tools (JSON)."""

@@ -24,7 +24,7 @@ def amount(value: float | None) -> str:
 
 
 def expected(value: float) -> float:
-    """Round off floating-point noise: 12.0 for 11.999999999999998."""
+    """Remove floating-point noise by rounding: 11.999999999999998 becomes 12.0."""
     return float(f"{value:.10g}")
 
 
@@ -62,6 +62,6 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def deviations(effect: float) -> str:
-    """Format an effect size; beyond 100 standard deviations its digits are meaningless."""
+    """Format an effect size; beyond 100 standard deviations, `over 100`, since digits are meaningless."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"

@@ -1,4 +1,4 @@
-"""Report a comparison to build servers: properties of a JUnit test case, a GitHub annotation."""
+"""Report a comparison to CI servers: properties of a JUnit test case, and a GitHub annotation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IN_PROPERTY = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", 
 
 
 def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
-    """Return the known properties as names and values, in a fixed order."""
+    """Return the JUnit properties as (name, value), without unknown values, in a fixed order."""
     verdict, repair = comparison.verdict, comparison.repair
     found = {
         "tarl_verdict": verdict.result,
@@ -30,9 +30,9 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
 
 
 def annotation(comparison: Comparison, root: Path) -> str:
-    """Return the workflow command that marks the culprit's line on GitHub; empty without a culprit.
+    """Return the GitHub workflow command that marks the line of the first culprit; empty if there is no culprit.
 
-    Its path is relative to the checkout, of which `root` may be a subfolder.
+    The path in it is relative to the checkout; `root` may be a subfolder of the checkout.
     """
     if not _guilty(comparison):
         return ""

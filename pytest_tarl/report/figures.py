@@ -1,4 +1,4 @@
-"""The page's figures as plain data, in sensor units and rewards; the page's script draws them."""
+"""The figures of the report page as plain data, in sensor units and rewards; a script in the page draws them."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # maximum number of values of the splitting sensor with their own row
-QUIET = 0.25  # share of the utility range: least end of the difference scale
+MOST_ROWS = 6  # maximum number of rows, one per value of the sensor that splits the figure
+QUIET = 0.25  # the difference scale spans at least this share of the utility range
 DIGITS = 5  # significant digits of numbers on the page
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The sensors that a figure shows: one along the axis and one as rows; all others are averaged."""
+    """The sensors that a figure shows, one along the axis and one as rows. The figure averages over all others."""
 
     position: int
     split: int | None
 
     def others(self, sensors: Sequence[Sensor]) -> tuple[str, ...]:
-        """Return the names of the averaged sensors."""
+        """Return the names of the sensors over which the figure averages."""
         return tuple(s.name for d, s in enumerate(sensors) if d not in (self.position, self.split))
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis, and the category that best separates the region as rows."""
+    """Choose the first numeric sensor as axis; for the rows, choose the category that best separates the region."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -45,14 +45,14 @@ def plane(comparison: Comparison) -> Plane:
 
 
 def _covered(comparison: Comparison, dimension: int) -> float:
-    """Return the share of a sensor's values that occur in the region; 1 means that it does not separate the region."""
+    """Return the share of a sensor's values that occur in the region; at 1, the sensor does not separate it."""
     seen = {cell[dimension] for cell in comparison.cells}
     region = (*comparison.region.cells, *comparison.region.novel)
     return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return the utility of both worlds and its difference over position and site; None without a visited cell."""
+    """Return both worlds' utilities and their difference, by site and axis position; None without a visited cell."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
@@ -73,7 +73,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values shown as rows, those with the most cells if there are too many; [None] for a single row."""
+    """Return the values that get a row; if there are too many, those with the most cells. [None] means a single row."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}
@@ -110,7 +110,7 @@ def _row(
 
 
 def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
-    """Average the cells of each position; shape (sites, positions), null if never visited."""
+    """Average over the cells at each position. Return shape (sites, positions), with None where no cell was visited."""
     column = np.asarray(places, dtype=np.intp) - bins[0]
     known = ~np.isnan(values)
     total = np.zeros((len(bins), values.shape[1]))
@@ -147,7 +147,7 @@ def _span(indices: Iterable[int]) -> list[int]:
 
 
 def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
-    """Return the least and the largest shown value, and the largest difference in magnitude."""
+    """Return the least and the largest shown utility, and the largest absolute difference."""
     values, changes = [], [0.0]
     for row in rows:
         for before, after in zip(chain(*row["offline"]), chain(*row["online"]), strict=True):

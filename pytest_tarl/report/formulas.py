@@ -1,4 +1,4 @@
-"""Formulas in a report: one row each, with robustness by world and the first violation."""
+"""Formulas in a report: a row per formula, with its robustness by world and the first violation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WORLDS = {
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """Yield one line per formula for the terminal, violated ones first."""
+    """Yield one line per formula for the terminal; violated formulas come first."""
     for row in sorted(comparison.formulas, key=lambda one: not violated(one)):
         yield f"{row.formula}: {', '.join(_worlds(row)) or 'never judged'}"
 
@@ -30,7 +30,7 @@ def violated(row: FormulaRow) -> bool:
 
 
 def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the rows of the page's table."""
+    """Return the rows of the formula table on the report page."""
     return [
         {
             "formula": row.formula,
@@ -42,7 +42,7 @@ def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def margin(value: float) -> str:
-    """Format a robustness; infinitesimal values from strict comparisons are shown as 0."""
+    """Format a robustness; show infinitesimal values, which strict comparisons produce, as 0."""
     return amounts.amount(0.0 if abs(value) < NEGLIGIBLE else value)
 
 

@@ -12,7 +12,7 @@ WORLDS = {"offline": "designed", "repaired": "repaired", "nominal_repaired": "de
 
 
 def sentences(stated: Guarantee) -> Iterator[str]:
-    """Yield one sentence per bound; a single one if the episodes do not vary, since they sample only one world."""
+    """Yield one sentence per bound; if all episodes are equal, a single sentence, since they sample only one world."""
     sure = f"with {100 * stated.success.confidence:.5g} % confidence"
     every = "every one" if stated.passed == stated.episodes else f"{stated.passed}"
     if not stated.varied:
@@ -54,7 +54,7 @@ def brief(stated: Guarantee) -> Iterator[str]:
 
 
 def worlds(comparison: Comparison) -> Iterator[tuple[str, Guarantee]]:
-    """Yield the worlds with bounds, by their names in reports."""
+    """Yield the name of each world that has bounds, as reports show it, with these bounds."""
     for world, name in WORLDS.items():
         if world in comparison.stated:
             yield name, comparison.stated[world]

@@ -1,4 +1,4 @@
-"""Python lines and patches as highlighted HTML. pygments escapes all untrusted text."""
+"""Convert Python lines and patches to highlighted HTML. pygments escapes all untrusted text."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def code_html(code: str) -> str:
 
 
 def patch_lines(diff: str) -> Iterator[PatchLine]:
-    """Yield the lines of a unified diff, numbered."""
+    """Yield the lines of a unified diff with their line numbers."""
     old = new = old_left = new_left = 0
     for line in diff.splitlines():
         sign, text = line[:1], line[1:]
@@ -55,5 +55,5 @@ def patch_lines(diff: str) -> Iterator[PatchLine]:
 
 
 def code_free(text: str) -> str:
-    """Escape a line that is not code."""
+    """Escape a line that is not code, for HTML."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

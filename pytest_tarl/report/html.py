@@ -69,7 +69,7 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
 
 
 def environment(source: Callable[[str], str], needed: Sequence[str]) -> Any:
-    """Return the jinja2 environment of a page, whose templates `source` reads by name.
+    """Return the jinja2 environment of a page; `source` returns the text of a template by name.
 
     Raise TarlError if one of the packages that the page needs is missing.
     """
@@ -94,24 +94,24 @@ def _require(needed: Sequence[str]) -> None:
 
 
 def asset(name: str) -> str:
-    """Return a file of the page."""
+    """Return the text of a file that the page includes, by name."""
     return resources.files(__package__).joinpath("page").joinpath(name).read_text("utf-8")
 
 
 @lru_cache(maxsize=1)
 def _library() -> str:
-    """Return plotly.js compressed (to two fifths) and base64-encoded; the browser inflates it."""
+    """Return plotly.js, compressed to about 40 % and base64-encoded; the browser decompresses it."""
     script = resources.files("plotly").joinpath("package_data").joinpath("plotly.min.js").read_bytes()
     return base64.b64encode(zlib.compress(script, 9)).decode("ascii")
 
 
 def in_script(data: Any) -> str:
-    """Return data as JSON that cannot close the surrounding script element."""
+    """Return data as JSON, escaped so that it cannot close the surrounding script element."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
 
 
 def parts(text: str) -> list[str]:
-    """Split a path or test id at allowed line breaks."""
+    """Split a path or test id into parts between which the page may break the line."""
     return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
@@ -132,7 +132,7 @@ def _data(comparison: Comparison) -> dict[str, Any]:
 
 
 def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the variables of the template."""
+    """Return the variables of the page template."""
     name = title or comparison.test
     return {
         "c": comparison,
@@ -174,14 +174,14 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
 
 
 def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether the designed curve is longer than all others and therefore clipped."""
+    """Return whether the figure clips the designed curve, because it is longer than all others."""
     offline = [len(curve["mean"]) for curve in curves if curve["kind"] == "offline"]
     others = [len(curve["mean"]) for curve in curves if curve["kind"] != "offline"]
     return bool(offline and others) and max(offline) > max(others)
 
 
 def _share(comparison: Comparison) -> float | None:
-    """Return the share of the lost reward that the repair restored, in per cent."""
+    """Return how much of the lost reward the repair restored, in per cent."""
     worlds = [amounts.atr(comparison, world) for world in ("offline", "online", "repaired")]
     offline, online, repaired = worlds
     if offline is None or online is None or repaired is None or offline <= online:
@@ -203,7 +203,7 @@ def _list(
 
 
 def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
-    """Yield notes on how the figure was made."""
+    """Yield notes on what the utility figure shows and omits."""
     shown = plane(comparison)
     if others := shown.others(comparison.sensors):
         yield f"Each value is the mean over {' and '.join(others)}."
@@ -214,7 +214,7 @@ def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str
 
 
 def _largest_change(figure: Mapping[str, Any]) -> str:
-    """Describe the largest difference of utility."""
+    """Describe the largest difference between the utilities of both worlds."""
     found = [
         (on - off, row["title"], site, figure["axis"]["names"][column])
         for row in figure["rows"]
@@ -231,7 +231,7 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
 
 
 def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
-    """Describe the end of each curve in the reward figure."""
+    """Describe the last value of each curve in the reward figure, as alternative text."""
     ends = []
     for curve in curves:
         end = typeset(amounts.amount(curve["mean"][-1]))

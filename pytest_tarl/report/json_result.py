@@ -34,7 +34,7 @@ WORLDS = ("offline", "online", "repaired", "nominal_repaired")
 
 
 def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
-    """Write the result of a run; `episodes` has the counts of `offline`, `online`, `search` and `acceptance`.
+    """Write the result of a run; `episodes` counts those of `offline`, `online`, `search` and `acceptance`.
 
     Raises:
         TarlError: the file cannot be written.
@@ -90,7 +90,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
 
 
 def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return the mean rewards in each interval of a drift's range."""
+    """Return the mean reward in each interval of each range of a drift, by world."""
     return [
         {
             "part": row.band.part,
@@ -104,9 +104,11 @@ def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:
-    """Cover cells with rectangles: per sensor name, a closed interval in its units, null at an open end.
+    """Cover cells with rectangles.
 
-    For a text sensor, both ends are the same category.
+    Each maps sensor names to closed intervals in the sensor's units; null is an open end.
+
+    For a sensor with text categories, both ends are the same category.
     """
     texts = [d for d, sensor in enumerate(sensors) if sensor.categories]
     return [
@@ -124,7 +126,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Return each site once, from the list in which it changes most, in order of first appearance."""
+    """Return each site once, in order of first appearance; the slice comes from the list in which it differs most."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)
@@ -206,7 +208,7 @@ def _partial(partial: Partial) -> dict[str, Any]:
 
 
 def _tried(attempt: Attempt) -> dict[str, Any]:
-    """Return a promising candidate and its outcome."""
+    """Return a tried repair candidate and its outcome as plain values."""
     return {
         "what": attempt.what,
         "reason": attempt.reason or None,
@@ -240,7 +242,7 @@ def _bound(bound: Bound) -> dict[str, Any]:
 
 
 def finite(value: float | None) -> float | None:
-    """Return a number as valid JSON: numpy scalars as Python's, NaN and infinities as null."""
+    """Return a number that JSON can hold: numpy scalars become Python numbers, NaN and infinities become null."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

@@ -1,4 +1,4 @@
-"""Commands for the developer: those that repeat a comparison, and the next ones."""
+"""Commands that a report suggests: to repeat the comparison, and to take the next step."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 
 def recording(comparison: Comparison) -> str:
-    """Return the command that makes a permanent drift part of the design after its repair is applied."""
+    """Return the command that records a permanent drift as part of the design; run it after applying the repair."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
 
@@ -35,7 +35,7 @@ def repeat(comparison: Comparison) -> str:
 
 
 def next_steps(comparison: Comparison) -> Iterator[str]:
-    """Yield the next command for the developer, if there is one."""
+    """Yield the next command for the developer, if any."""
     if not comparison.lists:
         yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
@@ -47,5 +47,5 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
 
 
 def _happened(comparison: Comparison) -> bool:
-    """Return whether the compared missions were recorded and cannot be run again."""
+    """Return whether the missions come from a log or bags, so they cannot be repeated."""
     return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})

@@ -1,4 +1,4 @@
-"""Describe sets of cells as rectangles of neighbouring bins, and in words: `x 4.0-7.0 m, terrain true`."""
+"""Describe sets of cells by boxes (a range of bins per sensor), and in words: `x 4.0-7.0 m, terrain true`."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from itertools import permutations
 
 from pytest_tarl.sensors import Cell, Sensor
 
-Box = tuple[tuple[int, int], ...]  # first and last bin per sensor
+Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-ORDERS = 24  # orders of sensors tried to minimise the boxes: all orders of up to four sensors
+ORDERS = 24  # number of sensor orders to try when merging bins; covers all orders of four sensors
 NAMED = 3  # places named before "and 2 more"
 
 
 def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]:
-    """Cover exactly `cells` with few boxes; bins of the sensors in `apart` are never merged."""
+    """Cover exactly `cells` with few boxes. Never merge bins of the sensors in `apart`."""
     single = [tuple((index, index) for index in cell) for cell in sorted(set(cells))]
     if not single:
         return ()
@@ -53,7 +53,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes across unvisited cells, if their hull contains none of `others`."""
+    """Join boxes if only unvisited cells lie between them: their hull must contain no cell of `others`."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -69,7 +69,10 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 
 
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
-    """Join boxes of an angle that meet at the ends of its range; the last bin of a joined one exceeds the range."""
+    """Join boxes of an angle that touch across the ends of its range.
+
+    The last bin of a joined box exceeds the range.
+    """
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
         first = ending[dimension][0]
@@ -88,7 +91,7 @@ def _holds(box: Box, cell: Cell) -> bool:
 
 
 class Vocabulary:
-    """Names of bins, given the sensors and the cells visited in either world."""
+    """Names for bins and sets of cells, given the sensors and the cells visited in either world."""
 
     def __init__(self, sensors: Sequence[Sensor], seen: Iterable[Cell]) -> None:
         self.sensors = tuple(sensors)
@@ -97,7 +100,7 @@ class Vocabulary:
         self.seen = tuple(sorted(set(bins)) for bins in by_sensor)
 
     def words(self, cells: Iterable[Cell], most: int = NAMED) -> str:
-        """Describe a set of cells by at most `most` places, which may include unvisited cells."""
+        """Describe a set of cells by at most `most` boxes; these may include unvisited cells."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
         for dimension, sensor in enumerate(self.sensors):
@@ -118,7 +121,7 @@ class Vocabulary:
         return f"{sensor.name} {self._range(dimension, index, index)}".rstrip()
 
     def value(self, dimension: int, index: int) -> str:
-        """Name one bin without its sensor."""
+        """Name one bin without the name of its sensor."""
         return self._range(dimension, index, index)
 
     def _place(self, ranges: Sequence[tuple[int, int]], rest: Sequence[str]) -> str:
@@ -126,7 +129,7 @@ class Vocabulary:
         return ", ".join(phrase for phrase in phrases if phrase) or "everywhere"
 
     def _several(self, ranges: Sequence[tuple[int, int]]) -> str:
-        """Describe ranges of the first sensor, with one unit: `x 1.0-2.0 or 4.0-7.0 m`."""
+        """Describe several ranges of the first sensor and state the unit once: `x 1.0-2.0 or 4.0-7.0 m`."""
         if len(ranges) == 1:
             return self._phrase(0, *ranges[0])
         joined = runs(ranges)
@@ -158,7 +161,7 @@ class Vocabulary:
 
 
 def _interval(sensor: Sensor, first: int, last: int) -> str:
-    """Format the interval of bins, to about a tenth of a bin."""
+    """Format the interval of a range of bins, rounded to about a tenth of a bin."""
     low, high = sensor.interval(first, last)
     digits = max(0, -math.floor(math.log10(sensor.resolution)))
     unit = sensor.unit and " " + sensor.unit

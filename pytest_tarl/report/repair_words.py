@@ -1,4 +1,4 @@
-"""Sentences on repairs: edits, candidates and why they were dropped, ways out."""
+"""Sentences on repairs: edits, reasons why candidates were rejected, and advice."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def partial_words(partial: Partial, comparison: Comparison) -> str:
 
 
 def refusal(repair: Repair) -> str:
-    """Return why no repair was accepted."""
+    """Return the reason why no repair was accepted."""
     return REASONS.get(repair.reason, repair.reason)
 
 
@@ -94,7 +94,7 @@ def attempt_words(attempt: Attempt) -> str:
 
 
 def ways_out(comparison: Comparison) -> str:
-    """Return advice for a repair that fails only in the designed world; empty without one."""
+    """Return advice if a candidate failed only in the designed world; else empty."""
     repair = comparison.repair
     if repair is None or repair.accepted or comparison.permanent:
         return ""

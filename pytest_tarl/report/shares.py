@@ -1,4 +1,4 @@
-"""Say how many of a run's shared episodes a comparison got, and why."""
+"""Describe how many of the shared episodes (--tarl-total) a comparison got, and why."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Share:
-    """What a comparison got of `total` episodes, and what ended it.
+    """The share of a comparison in `total` episodes, and the reason why it ended.
 
-    `looks` holds the episodes and the uncorrected p-value of the loss at each look, `missing` how many more episodes
-    its next look needs (None after the last look), `left` how many of the total were not run.
+    `looks` holds the number of episodes and the uncorrected p-value of the loss at each look (test of the verdict).
+    `missing` is the number of further episodes that the next look needs, None after the last look. `left` is the number
+    of episodes of the total that were not run.
     """
 
     total: int

@@ -1,4 +1,4 @@
-"""Reward against the size of a drift with a range: in words, and as points for the page."""
+"""Reward by the size of a drift that has a range, as text and as a drawing for the page."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WIDTH, HEIGHT = 640, 240  # pixels of the drawing, without its margins
 
 @dataclass(frozen=True)
 class Row:
-    """The mean reward in an interval of a range, before and after the repair; None without an episode."""
+    """The mean reward in an interval of a range, before and after the repair; None if no episode falls into it."""
 
     band: Band
     before: float | None
@@ -25,13 +25,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Plot:
-    """One range as a drawing: points in pixels by world, ticks with labels."""
+    """The drawing of one range: points in pixels by world, and labelled ticks."""
 
     part: str
     points: Mapping[str, tuple[tuple[float, float], ...]]
     across: tuple[tuple[float, str], ...]
     up: tuple[tuple[float, str], ...]
-    offline: float  # y of the designed average
+    offline: float  # y of the mean reward in the designed world, in pixels
     rows: tuple[Row, ...]
 
 

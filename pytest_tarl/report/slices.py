@@ -1,4 +1,4 @@
-"""Lay out slices beside their code lines, in per cent of the width, so that the page needs no script for them."""
+"""Lay out slices (the utility of a site) beside code lines, in per cent of the width, so the page needs no script."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pytest_tarl.model import SitePlace, Slice
 
 MARGIN = 0.05  # share of the width left free on either side
-TICKS = 4  # approximate number per scale
+TICKS = 4  # approximate number of ticks per scale
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ def chart(slices: Sequence[Slice]) -> Chart:
 
 
 def scale(values: Iterable[float]) -> Scale:
-    """Return the scale on which zero and all finite values fit with a margin."""
+    """Return a scale that includes zero and all finite values, with a margin at both ends."""
     known = [0.0, *(value for value in values if math.isfinite(value))]
     low, high = min(known), max(known)
     if low == high:
@@ -80,12 +80,12 @@ def scale(values: Iterable[float]) -> Scale:
 
 
 def _round_step(step: float) -> float:
-    """Return the next larger of 1, 2, 5 times a power of ten."""
+    """Return the next larger number of the form 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:
-    """Return the slice that differs most between the worlds; None if none differs."""
+    """Return the slice with the largest difference between the worlds; None if no slice differs."""
     known = [one for one in slices if one.difference and not math.isnan(one.difference)]
     return max(known, key=lambda one: abs(one.difference), default=None)

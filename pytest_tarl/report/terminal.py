@@ -20,14 +20,14 @@ from pytest_tarl.report import (
 
 SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-LEGIBLE = 24  # minimum number of characters of code beside its place; with less room, code gets its own line
-NARROWEST = 40  # columns below which the terminal breaks lines
+LEGIBLE = 24  # with fewer columns for code beside its place, code gets its own line
+NARROWEST = 40  # minimum width of the report, in columns
 
 
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
     """Return the report of one comparison, `width` columns wide; `page` is the report page's path, if written.
 
-    Paths and commands may be wider, so that they can be copied.
+    Paths and commands are not wrapped, so that they can be copied; they may be wider.
     """
     width = max(width, NARROWEST)
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
@@ -69,7 +69,7 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Wrap `text` beside its label; `whole` keeps paths and commands in one line for copying."""
+    """Wrap `text` beside its label; with `whole`, do not wrap it, so that paths and commands can be copied."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 

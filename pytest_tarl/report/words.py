@@ -11,8 +11,8 @@ from pytest_tarl.report.amounts import amount, deviations, p_value
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.regions import Vocabulary
 
-SIGNIFICANT = 0.05  # p-value above which a loss is not reported
-NEGLIGIBLE = 0.01  # share of the total loss below which a part's loss is not reported
+SIGNIFICANT = 0.05  # losses with a larger p-value are not reported
+NEGLIGIBLE = 0.01  # parts of the reward with a smaller share of the total loss are not reported
 SHORTEST = 16  # minimum number of characters shown of a code line
 
 
@@ -58,7 +58,7 @@ def loss_words(comparison: Comparison) -> str:
 
 
 def _sure(interval: LossInterval) -> str:
-    """Format the confidence of an interval; it is approximate without a declared range of totals."""
+    """Format the confidence of an interval; without a declared range of totals, call it approximate."""
     return f"{'' if interval.exact else 'about '}{percent(interval.confidence)} confidence"
 
 
@@ -82,7 +82,7 @@ def _capital(text: str) -> str:
 
 
 def region_words(comparison: Comparison) -> str:
-    """Describe the region where the deployed world differs, with new situations listed separately; empty if none."""
+    """Describe the region where the deployed world differs; list new situations separately. Empty without a region."""
     vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
     novel = set(region.novel)
     known = [cell for cell in region.cells if cell not in novel]
@@ -109,13 +109,13 @@ def _words_without(comparison: Comparison) -> str:
 
 
 def lost_words(comparison: Comparison, part: str) -> str:
-    """Describe where a part of the reward is lost; empty if it is not, or if no situation stands out."""
+    """Describe where a part of the reward is lost; empty if it is not lost, or if no situation stands out."""
     cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
     return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
 
 
 def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
-    """Return the parts of the reward that decreased, with the difference per episode, the largest loss first."""
+    """Return the parts of the reward that decreased, with the difference per episode; the largest loss comes first."""
     changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
     least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
     return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])
@@ -129,7 +129,7 @@ def paper_region_words(comparison: Comparison) -> str:
 
 
 def place(path: str, line: int, root: Path) -> str:
-    """Return `path:line`, with the path relative to `root` if it is below."""
+    """Return `path:line`; a path below `root` is relative to it."""
     inside = Path(path)
     if inside.is_absolute() and inside.is_relative_to(root):
         inside = inside.relative_to(root)

@@ -1,4 +1,4 @@
-"""In-process stand-in for rospy and rclpy: virtual clock, synchronous delivery, no state after an episode.
+"""Replacements for rospy and rclpy that run in this process: virtual clock, synchronous delivery, no state left over.
 
 Heavy modules are imported when `Ros`, `Bus` or `message_type` is first used.
 """

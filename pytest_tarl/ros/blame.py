@@ -1,4 +1,4 @@
-"""Find the place in user code where something happened: the innermost frame outside of libraries."""
+"""Find the user code that caused an event: the innermost frame outside of libraries."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", 
 _SYSTEM = (
     "/dist-packages/",
     "/opt/ros/",
-)  # a system ROS is in neither of these folders when seen from a virtual environment
+)  # from a virtual environment, a system ROS is in neither folder
 
 Place = tuple[str, int, str]  # file, line, function
 

@@ -18,20 +18,20 @@ from pytest_tarl.ros.services import Reply, ServiceDirectory
 Listener = Callable[[Any], None]
 Channel = Callable[
     [Any, float], Iterable[tuple[float, Any]]
-]  # (message, time in s) → delays in s, and messages
+]  # (message, time in s) → pairs of a delay in s and a message
 
 
 class Subscription(Protocol):
     """A node's end of a topic."""
 
-    message_type: type | None  # None takes anything
+    message_type: type | None  # None accepts any type
 
     @property
     def process(self) -> Program:
         """The process that subscribes."""
 
     def deliver(self, message: Any, origin: Publication | None = None) -> None:
-        """Take a message of a node's publication, or of the world without one. Called outside of all tasks.
+        """Receive a message. `publication` is None if the world sent it. Call this outside of all tasks.
 
         The caller keeps no reference to the message.
         """
@@ -78,12 +78,12 @@ class Bus:
         self.subscribed: set[str] = set()
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world: every idle subscriber gets a copy before this returns.
+        """Publish from the world. Every idle subscriber receives a copy before this method returns.
 
-        A busy subscriber gets it in a later `step`. A header stamp of zero becomes the current time. `latch` keeps
+        A busy subscriber receives it in a later `step`. A header stamp of zero becomes the current time. `latch` keeps
         the message for later subscribers.
 
-        Raises NodeError if a callback raises an exception, RecordingError for a message of a wrong type.
+        Raise NodeError if a callback raises an exception, RecordingError for a message of a wrong type.
         """
         place = self.topic(topic)
         if self.muted:
@@ -99,7 +99,7 @@ class Bus:
             return
         if latch:
             place.kept[None] = snapshot(message)
-        if running_task() is not None:  # called within a node's publish: the node continues first
+        if running_task() is not None:  # a node is publishing: let it continue first
             self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
         self._run(self._deliver, place, message, True)
@@ -121,11 +121,11 @@ class Bus:
         self._own_services("serve").serve(service, service_type, handler)
 
     def call(self, service: str, request: Any) -> Reply:
-        """Call a node's service from the world; the reply is `done` once the node has answered.
+        """Call a node's service from the world and return the reply, which is `done` once the node has answered.
 
-        A waiting node answers before this returns, a busy one during a later `step`.
+        A waiting node answers before this method returns, a busy node during a later `step`.
 
-        Raises RecordingError if no node serves it.
+        Raise RecordingError if no node serves it.
         """
         services = self._own_services("call")
         reply: list[Reply | None] = []
@@ -162,7 +162,7 @@ class Bus:
         return list(self._topics.values())
 
     def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
-        """Publish a copy of a node's message: to the world at once, and to other nodes when this one waits."""
+        """Publish a copy of a node's message. The world receives it immediately, other nodes when this node waits."""
         message = snapshot(message)
         self.published[place.name] += 1
         place.carried = True
@@ -174,7 +174,7 @@ class Bus:
             self._run(lambda: None)
 
     def _emit(self, publication: Publication, place: Topic, message: Any, keep: int) -> None:
-        """Deliver a node's message to the world, and to other nodes when the running one waits."""
+        """Deliver a node's message to the world now, and to other nodes when the running node waits."""
         place.latest = message
         if keep:
             place.kept[publication] = message
@@ -184,11 +184,11 @@ class Bus:
             self._scheduler.later(lambda: self._deliver(place, message, False, publication))
 
     def interpose(self, topic: str, channel: Channel) -> None:
-        """Let all messages on a topic pass through a channel, after those that it passes through already."""
+        """Add a channel that all messages on a topic pass through; it comes after the topic's other channels."""
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
-        """Call `arrive` with the messages that a topic's channels give: now, or after their delay."""
+        """Pass a message through a topic's channels, and call `arrive` with each resulting message after its delay."""
         now = self._scheduler.time
         arrivals: list[tuple[float, Any]] = [(0.0, message)]
         for channel in place.channels:
@@ -216,7 +216,7 @@ class Bus:
         place.publications.append(publication)
 
     def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
-        """Add a node's subscription; it gets latched messages as soon as the node waits."""
+        """Add a node's subscription. It receives latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
         for publication in place.publications:
@@ -242,7 +242,7 @@ class Bus:
             place.publications = [p for p in place.publications if p.process is not process]
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
-        """Deliver a message to all subscriptions as copies; the last one gets the original if `spare`."""
+        """Deliver copies of a message to all subscriptions. If `spare`, the last one gets the original."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None
@@ -268,6 +268,6 @@ class Bus:
 
 
 def _compatible(publication: Publication, subscription: Subscription) -> bool:
-    """Return whether two ends connect: by their QoS profiles in ROS 2, always in ROS 1."""
+    """Return whether two ends of a topic connect. In ROS 2, QoS profiles decide; in ROS 1, they always connect."""
     offered, wanted = getattr(publication, "qos_profile", None), getattr(subscription, "qos_profile", None)
     return offered is None or wanted is None or bool(offered.satisfies(wanted))

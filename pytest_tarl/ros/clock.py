@@ -1,4 +1,4 @@
-"""Virtual time in whole nanoseconds, so that equal instants compare equal on every machine."""
+"""Virtual time in whole nanoseconds, so that equal times compare equal on every machine."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class CvBridge:
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
         """Return an array of shape (height, width[, channels]) as an image message.
 
-        Raises TypeError if it is not an array, CvBridgeError if its type does not fit the encoding.
+        Raise TypeError if it is not an array, CvBridgeError if its type does not fit the encoding.
         """
         if not hasattr(cvim, "dtype"):
             raise TypeError("Your input type is not a numpy array")
@@ -80,7 +80,7 @@ class CvBridge:
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> Any:
         """Return a compressed message as an array of shape (height, width[, channels]); needs OpenCV.
 
-        Raises CvBridgeError if it cannot be decoded.
+        Raise CvBridgeError if it cannot be decoded.
         """
         import numpy as np
 
@@ -99,7 +99,7 @@ class CvBridge:
         return message
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return the numpy type and the number of channels of an encoding. Raises CvBridgeError if it is unknown."""
+        """Return the numpy type and the number of channels of an encoding. Raise CvBridgeError if it is unknown."""
         if encoding in _NAMED:
             depth, channels = _NAMED[encoding]
             return _DEPTHS[depth], channels
@@ -115,7 +115,7 @@ class CvBridge:
 
 
 def getCvType(encoding: str) -> int:  # noqa: N802 (the library's name)
-    """Return OpenCV's type number for an encoding. Raises CvBridgeError if it is unknown."""
+    """Return OpenCV's type number for an encoding. Raise CvBridgeError if it is unknown."""
     return CvBridge().encoding_to_cvtype2(encoding)
 
 
@@ -127,7 +127,7 @@ def _depth_of(dtype: Any) -> str:
 
 
 def converted(image: Any, origin: str, wanted: str) -> Any:
-    """Convert channels and depth between named encodings. Raises CvBridgeError if that is impossible."""
+    """Convert channels and depth between named encodings. Raise CvBridgeError if that is impossible."""
     import numpy as np
 
     if origin == wanted:

@@ -11,7 +11,7 @@ __all__ = ["CV_MAT_CNWrap", "CV_MAT_DEPTHWrap", "cvtColor2", "getCvType"]
 
 
 def cvtColor2(image: Any, encoding_in: str, encoding_out: str) -> Any:  # noqa: N802 (the module's name)
-    """Return an image in another encoding. Raises CvBridgeError if there is no conversion."""
+    """Return an image in another encoding. Raise CvBridgeError if there is no conversion."""
     return converted(image, encoding_in, encoding_out)
 
 

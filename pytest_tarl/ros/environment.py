@@ -21,7 +21,7 @@ _OF_KIND: Mapping[Kind, Mapping[str, str]] = {
 
 @contextmanager
 def variables_restored() -> Iterator[None]:
-    """Undo on exit what `set_variables` did within the context."""
+    """On exit, undo all calls of `set_variables` within the context."""
     names = {name for variables in _OF_KIND.values() for name in variables}
     before = {name: os.environ.get(name) for name in sorted(names)}
     try:
@@ -35,6 +35,6 @@ def variables_restored() -> Iterator[None]:
 
 
 def set_variables(kind: Kind) -> None:
-    """Set the variables of a ROS generation that are not set."""
+    """Set those variables of a ROS generation that are not set yet."""
     for name, value in _OF_KIND[kind].items():
         os.environ.setdefault(name, value)

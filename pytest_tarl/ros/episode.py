@@ -24,7 +24,7 @@ from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
 class Ros(Network):
     """Nodes, their bus and their clock, for one episode.
 
-    `parameters` are given to every node (`kp`, `~kp` or `/node/kp`), `remappings` are old → new names.
+    Every node gets `parameters` (`kp`, `~kp` or `/node/kp`) and `remappings` (old → new name).
     `watchdog_limit` is the CPU time in seconds after which a node that does not wait is stopped.
     """
 
@@ -63,7 +63,7 @@ class Ros(Network):
 
     @property
     def shutdown_errors(self) -> tuple[NodeError, ...]:
-        """Errors that nodes raised during shutdown; they do not fail the episode, which is already over."""
+        """Errors that nodes raised during shutdown. The episode is over by then, so they do not fail it."""
         return tuple(error for process in self.processes for error in process.errors)
 
     @property
@@ -72,7 +72,7 @@ class Ros(Network):
         return (*self._launch_notes, *self.uninstalled.notes(), *self._silent_terminals())
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of one running node, by its file or name, or of all. Raises SettingsError."""
+        """Type text on the terminal of one running node, by its file or name, or of all. Raise SettingsError."""
         running = [one for one in self.processes if not one.ended and node in (None, one.name, one.label)]
         if not running:
             which = "no node is running" if node is None else f"no running node is called {node!r}"
@@ -83,7 +83,7 @@ class Ros(Network):
             process.part(Terminal).type(text)
 
     def _silent_terminals(self) -> list[str]:
-        """Return sentences about nodes that waited for keys in vain."""
+        """Return a sentence for each node that waited for keys although the test typed none."""
         terminals = [(one.label, one.part(Terminal)) for one in self.processes]
         return [
             f"Node {label!r} waits for the keyboard, but the test types nothing: call tarl.type(text)."
@@ -112,7 +112,7 @@ class Ros(Network):
         workspace.search(folder)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raises NodeError if it raises an exception."""
+        """Run a node's main program until it first waits. Raise NodeError if it raises an exception."""
         process = Process(self, name, (name, *argv))
         process.launched, self._launched = self._launched, NOTHING
         for key, value in process.launched.shared.items():
@@ -129,7 +129,7 @@ class Ros(Network):
             self._run(self.scheduler.spawn, process, function, *arguments)
 
     def interrupt(self, name: str, at: float, outage: float) -> None:
-        """Kill the node started as `name` at the moment `at`, and start it anew `outage` seconds later, both in s."""
+        """Kill the node `name` at the time `at`, in s, and start it again `outage` seconds later."""
 
         def kill() -> None:
             running = next((one for one in self.processes if one.name == name and not one.ended), None)
@@ -148,9 +148,9 @@ class Ros(Network):
         self.scheduler.at(nanoseconds(at), kill)
 
     def step(self, dt: float) -> None:
-        """Advance virtual time by `dt` seconds and run everything due, until every node waits again.
+        """Advance virtual time by `dt` seconds; run all tasks that fall due, until every node waits again.
 
-        Raises NodeError if a node raises an exception or never waits.
+        Raise NodeError if a node raises an exception or never waits.
         """
         self._run(self.scheduler.advance, self.scheduler.time + nanoseconds(dt))
 
@@ -159,11 +159,11 @@ class Ros(Network):
         self.bus.observe(listener)
 
     def installed(self) -> AbstractContextManager[None]:
-        """Make rospy, rclpy and the message packages importable; restore the former modules on exit."""
+        """Make rospy, rclpy and the message packages importable; restore the previous modules on exit."""
         return standins_installed(self.scheduler, self.uninstalled, self.processes)
 
     def close(self) -> None:
-        """End every node as ROS does, then discard all state. Raises NodeError for a node that refuses to end."""
+        """End every node as ROS does, then discard all state. Raise NodeError for a node that refuses to end."""
         if self.closed:
             return
         self.closed = True
@@ -172,7 +172,7 @@ class Ros(Network):
         for process in self.processes:
             try:
                 self._run(process.end)
-            except Exception as error:  # noqa: PERF203 (the others are to be ended all the same)
+            except Exception as error:  # noqa: PERF203 (the other nodes must end as well)
                 failures.append(error)
         self.scheduler.close()
         if failures:

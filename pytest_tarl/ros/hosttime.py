@@ -52,7 +52,7 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _clock(real: Callable[[], Any], virtual: Callable[[], Any], *, question: bool) -> Callable[[], Any]:
-    """Return a clock that nodes read; it is no `question` if the standard library reads it in order to wait."""
+    """Return a clock that nodes read. Each read counts as polling, unless the standard library reads it to wait."""
 
     def read() -> Any:
         if running_task() is None:

@@ -88,7 +88,7 @@ class StandinFinder:
             inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
             hidden = {
                 key for key in inner if f"{name}.{key}" in STANDINS
-            }  # modules of ours named like a submodule
+            }  # modules of this package with the name of a stand-in's submodule
             module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
@@ -108,7 +108,7 @@ class StandinFinder:
         """Do nothing: the module is complete."""
 
     def _talking_spec(self, name: str) -> ModuleSpec:
-        """Find a message part (`msg`, `srv`, `action`) of a package. Raises UnsupportedModuleError if there is none."""
+        """Find a message part (`msg`, `srv`, `action`) of a package. Raise UnsupportedModuleError if there is none."""
         root, _, part = name.partition(".")
         kind = self._kind or "ros1"
         if part.partition(".")[0] in PARTS and is_package(kind, root):
@@ -129,7 +129,7 @@ class StandinFinder:
         """Return the ROS generation of the importer, by the client library that its code names."""
         asked = asked_kind()
         if asked is not None:
-            return asked  # says nothing about the nodes of the episode
+            return asked  # not evidence of the generation of the episode's nodes
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
@@ -144,7 +144,7 @@ class StandinFinder:
 
 
 def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
-    """Return a submodule of a stand-in: one that the test put into `sys.modules`, or another stand-in."""
+    """Return a submodule of a stand-in: the test's own in `sys.modules`, or another stand-in."""
     inner = f"{module}.{name}"
     if inner in sys.modules:
         return sys.modules[inner]
@@ -156,7 +156,7 @@ def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -
 
 
 def _is_optional_for(frame: FrameType | None) -> bool:
-    """Return whether the code that reads a name, past the frames of an import, can do without it."""
+    """Return whether the code that reads a name handles its absence; ignore the frames of the import system."""
     while frame is not None and "importlib" in frame.f_code.co_filename:
         frame = frame.f_back
     return frame is not None and is_optional(frame.f_code.co_filename, frame.f_lineno)
@@ -239,9 +239,9 @@ def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
 
 
 def _is_given(name: str) -> bool:
-    """Return whether the test put this module into `sys.modules`, itself or as a part of a package of its own.
+    """Return whether the test put this module, or a package that contains it, into `sys.modules`.
 
-    The stand-in of a whole package, such as rospy, takes precedence over what a test puts there.
+    The stand-in of a whole package, such as rospy, takes precedence over the test's module.
     """
     root = name.partition(".")[0]
     of_a_test = root in sys.modules and getattr(sys.modules[root], "__spec__", None) is None

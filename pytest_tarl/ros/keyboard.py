@@ -27,7 +27,7 @@ class NodeInterruptedError(KeyboardInterrupt):
 class Terminal(io.TextIOBase):
     """The standard input of one node.
 
-    Until the node switches to raw or cbreak mode, it can read whole lines only, as in a real terminal.
+    As in a real terminal, the node can read only whole lines until it switches to raw or cbreak mode.
     """
 
     encoding = "utf-8"
@@ -42,7 +42,7 @@ class Terminal(io.TextIOBase):
         self.used = False  # whether the test has typed
 
     def type(self, text: str) -> None:
-        """Add text to what the node can read, and wake what waits for it."""
+        """Add text to the input of the node, and wake tasks that wait for input."""
         self.used = True
         self._typed += text
         for task in self._waiting:
@@ -69,7 +69,7 @@ class Terminal(io.TextIOBase):
         return self._take(min(self._typed.find("\n") + 1 or limit, limit))
 
     def fileno(self) -> int:
-        """Return a descriptor that termios can query and configure. Raises OSError where there are no terminals."""
+        """Return a descriptor that termios can query and configure. Raise OSError if the system has no terminals."""
         if not self._descriptors:
             if not hasattr(os, "openpty"):
                 raise io.UnsupportedOperation("This operating system has no pseudo-terminals.")
@@ -180,7 +180,10 @@ def own_terminal() -> Terminal | None:
 
 
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
-    """Return the streams of a `select` that are the node's terminal, the others, and the terminal if among them."""
+    """Split the streams of a `select`.
+
+    Return the streams that are the node's terminal, all other streams, and the terminal (None if not among them).
+    """
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]
     return own, [one for one in streams if one not in own], terminal if own else None
@@ -190,7 +193,7 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
     """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
 
-    What the test has replaced stays: its own `input`, or its own stream as `sys.stdin`, from which `input` reads too.
+    Replacements by the test stay: its own `input`, or its own stream as `sys.stdin`, from which `input` then reads.
     """
     mine = _StandardInput(sys.stdin)
     replaced: list[tuple[Any, str, Any, Any]] = [(os, "read", os.read, _read(os.read))]
@@ -212,7 +215,7 @@ def terminals(processes: Sequence[Process]) -> Iterator[None]:
 
 
 def _from_test(stream: Any) -> bool:
-    """Return whether a test has put a stream of its own, such as a StringIO, in the place of `sys.stdin`."""
+    """Return whether the test has replaced `sys.stdin` by its own stream, such as a StringIO."""
     of_pytest = type(stream).__module__.startswith("_pytest.")
     return not (stream is None or of_pytest or isinstance(stream, io.TextIOWrapper | _StandardInput))
 

@@ -1,4 +1,4 @@
-"""What a launch file starts: Python nodes with names, command lines and parameters, and nodes that are not Python."""
+"""The contents of a launch file: Python nodes with names, command lines and parameters, and other nodes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 class Launched:
     """A node of a launch file. `path` is its Python program; without one, `foreign` is the reason.
 
-    `problem` is why it cannot be started as it is, empty if it can.
+    `problem` is the reason why it cannot be started; empty if it can.
     """
 
     launch: Launch
@@ -46,7 +46,7 @@ class Launched:
 
     @cached_property
     def given(self) -> Given:
-        """Return the parameters. Raises SettingsError for YAML that cannot be read."""
+        """Return the parameters. Raise SettingsError for YAML that cannot be read."""
         return replace(parameters(self.launch, self.node, self.name), node=self.name)
 
     @property
@@ -74,7 +74,7 @@ class LaunchPlan:
     def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
         """Return the nodes to start or to replace.
 
-        Raises SettingsError for a name that no node has, and for a node in `only` that can be neither.
+        Raise SettingsError for an unknown name, and for a node in `only` that can be neither started nor replaced.
         """
         for argument, names in (("only", only or ()), ("replace", replaced)):
             for name in names:
@@ -106,14 +106,14 @@ class LaunchPlan:
 
 
 def named(one: Launched, names: Iterable[str]) -> bool:
-    """Return whether one of these names stands for a node."""
+    """Return whether one of these names is a name of the node."""
     return not one.spellings.isdisjoint(names)
 
 
 def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
     """Return a launch file: a path relative to `folder`, or its name in the workspace around it.
 
-    Raises SettingsError, which begins with `where`, if there is none.
+    Raise SettingsError if there is none; its message begins with `where`.
     """
     path = (folder / file).resolve()
     if path.is_file():
@@ -129,16 +129,16 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
 
 
 def launch_plan(file: Path, arguments: Mapping[str, object]) -> LaunchPlan:
-    """Return what a launch file starts with these launch arguments.
+    """Return the plan of a launch file for these launch arguments.
 
-    Raises SettingsError for an unknown argument, and if the file starts nothing.
+    Raise SettingsError for an unknown argument, and if the file starts nothing.
     """
     search(file.parent)
     return _plan(file, tuple(sorted((str(name), _text(value)) for name, value in arguments.items())))
 
 
 def programs(plan: LaunchPlan) -> tuple[Path, ...]:
-    """Return the files of the Python nodes, each once."""
+    """Return the files of the Python nodes, without duplicates."""
     return tuple(dict.fromkeys(one.path for one in plan.nodes if one.path is not None))
 
 
@@ -191,7 +191,7 @@ def _name_in_code(path: Path) -> str:
     try:
         return node_name(ast.parse(path.read_bytes()))
     except (OSError, SyntaxError, ValueError):
-        return ""  # reported when the file is run
+        return ""  # running the file reports the error
 
 
 def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
@@ -212,7 +212,7 @@ def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
 
 
 def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
-    """Return why a node cannot be started: part of its description is known only on the robot."""
+    """Return a reason if a node cannot be started because part of its description is known only on the robot."""
     remaps = [side for pair in node.remaps for side in pair]
     texts = [node.package, node.executable, node.name, node.namespace, node.arguments, *remaps]
     unknown = next((text for text in texts if "$(" in text), None)
@@ -231,7 +231,7 @@ def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
 
 
 def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
-    """Yield one note on what of the launch file is not known."""
+    """Yield a note if parts of the launch file could not be evaluated."""
     problems = [f"{one.file.name}:{one.line}: {one.reason}" for one in launch.problems]
     problems += [f"{one.file.parent.name}/{one.file.name}: {one.reason}" for one in hidden(launch, workspace)]
     if problems:

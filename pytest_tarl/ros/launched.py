@@ -27,7 +27,8 @@ class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
     `node` is the absolute name of a node that is started under the name of the launch file, else empty. `valueless`
-    are the names of parameters whose values are known only at launch, or null in YAML, which ROS 1 cannot store.
+    holds names of parameters without a usable value: it is known only at launch, or it is null in YAML, which ROS 1
+    cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
@@ -38,16 +39,16 @@ class Given:
 
 
 NOTHING = Given()
-WITH_TEXTS: list[Callable[[], None]] = []  # functions that empty caches of launch and parameter files
+WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of launch and parameter files
 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return a script's parameters from the named launch file, or else from the only one that sets any.
+    """Return a script's parameters from the named launch file; without a name, from the only launch file with any.
 
-    If several files start the script with different parameters, only those of its own package count.
+    If several files start the script with different parameters, use only the files in the script's package.
 
-    Raises SettingsError if the named file does not exist or does not start the script.
+    Raise SettingsError if the named file does not exist or does not start the script.
     """
     workspace = next((one for one in workspaces() if script.is_relative_to(one.root)), None)
     if workspace is None:
@@ -65,7 +66,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 
 
 def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: Sequence[Path]) -> Given:
-    """Return the parameters on which all files agree; if not on all, those on which the files of its package do."""
+    """Return the parameters if all files agree; otherwise, those on which all files of the script's package agree."""
     own = workspace.package_of(script)
     telling = [(one, file) for one, file in zip(found, files, strict=True) if one.private or one.shared]
     near = [(one, file) for one, file in telling if own is not None and file.is_relative_to(own.folder)]
@@ -89,7 +90,7 @@ def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: S
 
 
 def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the entries that all mappings have with the same value; of nested mappings, those of the parts."""
+    """Return the entries that are equal in all mappings; compare nested mappings entry by entry."""
     first, *others = mappings
     agreed: dict[str, Any] = {}
     for name, value in first.items():
@@ -104,7 +105,7 @@ def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Return whether two values of YAML are the same: 1, 1.0 and True differ."""
+    """Return whether two YAML values are identical; unlike in Python, 1, 1.0 and True differ."""
     return repr(one) == repr(other)
 
 
@@ -204,7 +205,7 @@ def _read(file: Path, workspace: Workspace) -> Launch:
 
 @contextmanager
 def texts_replaced() -> Iterator[None]:
-    """Read launch and parameter files anew within the context, in which their text is another, and after it."""
+    """Clear the caches of launch and parameter files on entry and exit, because their texts differ in the context."""
     for clear in WITH_TEXTS:
         clear()
     try:

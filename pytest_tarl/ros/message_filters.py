@@ -169,7 +169,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return _time_of(message, self.allow_headerless)
 
     def _match(self, stamp: int, index: int) -> None:
-        """Forward the first set that contains the new message and lies within the slop, nearest stamps first."""
+        """Forward the first set within the slop that contains the new message; try the nearest stamps first."""
         near = [
             [stamp]
             if i == index

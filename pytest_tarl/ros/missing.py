@@ -8,7 +8,7 @@ from typing import Final
 from pytest_tarl.errors import UnsupportedApiError, UnsupportedModuleError
 
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
-_ADVICE: Final[Mapping[str, str]] = {  # package → what to do instead of waiting for it
+_ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user
     "moveit_commander": f"since MoveIt plans in compiled libraries: {_REPLACE} that plays the planner, or run the test "
     "on a real ROS (--tarl-ros=real).",
     "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",

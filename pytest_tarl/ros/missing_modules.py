@@ -1,4 +1,4 @@
-"""Advice for a node that imports a module which neither this interpreter nor the workspace has."""
+"""Advice for a node that imports a module found neither in this interpreter nor in the workspace."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OF_PYTHON_2: Final = frozenset(
     ["ConfigParser", "HTMLParser", "Queue", "StringIO", "Tkinter", "cPickle", "commands", "cookielib", "cv", "httplib",
      "sets", "thread", "urllib2", "urlparse"]
 )  # fmt: skip
-_PIP_NAMES: Final[Mapping[str, str]] = {  # module → its name for pip, where the two differ
+_PIP_NAMES: Final[Mapping[str, str]] = {  # module → pip package, if the names differ
     "Crypto": "pycryptodome",
     "OpenGL": "PyOpenGL",
     "PIL": "pillow",

@@ -1,4 +1,4 @@
-"""Advice on the error of a node: one sentence on what its environment lacks, and what to do."""
+"""Advice on the error of a node: a sentence that says what its environment lacks and what to do."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PYTHON_2_NAMES = re.compile(
 
 
 def advice(error: BaseException, given: Given) -> str:
-    """Return one sentence on what to do about a node's error; empty where its own text says it all.
+    """Return one sentence of advice on a node's error; empty if the error's own text suffices.
 
     `given` are the parameters that launch files give the node.
     """
@@ -68,7 +68,7 @@ def _of_lookup(error: KeyError, given: Given) -> str:
 
 
 def _of_arguments(error: BaseException) -> str:
-    """Return advice for command line arguments that are absent, with what a parser says about them."""
+    """Return advice for missing command line arguments, including the message of the node's argument parser."""
     hint = "pass argv=[…] to tarl.start."
     for frame in _frames(error):
         module = frame.f_globals.get("__name__")

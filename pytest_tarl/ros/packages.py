@@ -61,7 +61,7 @@ def _folder(package: str) -> Path | None:
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """Return a package's source folder, which stands in for its share directory. Raises PackageNotFoundError."""
+    """Return a package's source folder, which stands in for its share directory. Raise PackageNotFoundError."""
     found = _folder(package_name)
     if found is None:
         raise PackageNotFoundError(_absent(package_name))
@@ -84,7 +84,7 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def get_pkg_dir(package: str, required: bool = True) -> str | None:
-    """Return a package's folder, as roslib does. Raises InvalidROSPkgException if it is unknown."""
+    """Return a package's folder, as roslib does. Raise InvalidROSPkgException if it is unknown."""
     found = _folder(package)
     if found is None and required:
         raise InvalidROSPkgException(_absent(package))
@@ -125,12 +125,12 @@ def get_ros_package_path(env: Mapping[str, str] | None = None) -> str | None:
 
 
 def find_node(pkg: str, node_type: str) -> list[str]:
-    """Return the paths of a package's executable files of that name. Raises InvalidROSPkgException for the package."""
+    """Return the paths of a package's executable files of that name. Raise InvalidROSPkgException for the package."""
     return [found for found in find_resource(pkg, node_type) if os.access(found, os.X_OK)]
 
 
 def find_resource(pkg: str, resource_name: str) -> list[str]:
-    """Return the paths of a package's files of that name. Raises InvalidROSPkgException for an unknown package."""
+    """Return the paths of a package's files of that name. Raise InvalidROSPkgException for an unknown package."""
     folder = Path(str(get_pkg_dir(pkg)))
     named = folder / resource_name
     inside = [one for one in sorted(folder.rglob(named.name)) if one.is_file() and one != named]
@@ -146,7 +146,7 @@ class RosPack:
     """rospkg's view of the packages."""
 
     def get_path(self, name: str) -> str:
-        """Return a package's folder. Raises ResourceNotFound if it is unknown."""
+        """Return a package's folder. Raise ResourceNotFound if it is unknown."""
         found = _folder(name)
         if found is None:
             raise ResourceNotFound(_absent(name))

@@ -9,7 +9,7 @@ from pytest_tarl.ros.missing import unsupported
 
 
 def read(filename: str) -> dict[str, Any]:
-    """Return a file's parameters by node name or `/**`. Raises RuntimeError, as ROS does, if it cannot be read."""
+    """Return a file's parameters by node name or `/**`. Raise RuntimeError, as ROS does, if it cannot be read."""
     try:
         import yaml
     except ModuleNotFoundError:

@@ -99,7 +99,7 @@ def read_points_list(
 def read_points_numpy(cloud: Any, field_names: Any = None, skip_nans: bool = False, uvs: Any = None) -> Any:
     """Return the points as a plain array of shape (points, fields).
 
-    Raises AssertionError, as in ROS, unless all fields have the same type.
+    Raise AssertionError, as in ROS, unless all fields have the same type.
     """
     import numpy as np
 

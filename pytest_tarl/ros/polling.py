@@ -1,9 +1,9 @@
-"""Let tasks wait that poll: they ask for the time, or whether ROS is up, again and again without a pause.
+"""Make tasks wait that poll, which means that they read the time or the state of ROS in a loop without a pause.
 
-On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock only moves when every task
-waits, so such a loop would never end. Therefore a task that asks very often at one instant has to wait for a moment;
-from then on it asks a few times per moment, until it waits by itself. The numbers are counts, so the result depends on
-no other clock.
+On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock moves only when every task
+waits, so such a loop would never end. Therefore, a task that polls PATIENCE times at one instant waits for PAUSE. From
+then on, it waits after every AGAIN polls, until it waits by itself. These limits are counts, so the result does not
+depend on real time.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from __future__ import annotations
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import running_task
 
-AGAIN = 10  # questions of a polling task between two waits
-PAUSE = nanoseconds(0.01)  # ns that it waits
+AGAIN = 10  # polls of a polling task between two waits
+PAUSE = nanoseconds(0.01)  # ns of virtual time that it waits
 
 
 def asked() -> None:
-    """Count a question of the running task that only time or other tasks can answer; wait if it keeps asking."""
+    """Count a poll of the running task, whose result changes only with time or by other tasks; wait after too many."""
     task = running_task()
     if task is None:
         return

@@ -18,7 +18,7 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 
 Part = TypeVar("Part")
 
-_PATIENCE = 1_000  # waits that return at once before a task counts as one that ignores the shutdown
+_PATIENCE = 1_000  # immediate returns from waits before a task counts as ignoring the shutdown
 _ROUNDS = 5  # rounds in which the tasks of an ending process can return before they are killed
 
 
@@ -108,7 +108,7 @@ class Process:
         program()
 
     def failed(self, task: Task, error: BaseException) -> None:
-        """Handle the exception that ended a task: one of the node becomes a NodeError."""
+        """Handle the exception that ended a task. An exception of the node becomes a NodeError."""
         if self.ending and getattr(error, "tarl_shutdown", False):
             return
         if isinstance(error, Spinning):
@@ -148,7 +148,7 @@ class Process:
         self.bus.disconnect(self)
 
     def kill(self) -> None:
-        """End the process at once, as SIGKILL does: no hook of it runs. Outside of tasks."""
+        """End the process immediately without running its hooks, as SIGKILL does. Call this outside of tasks."""
         self._closing = self.ending = True
         for _ in range(_ROUNDS):
             for task in tuple(self.tasks):
@@ -208,7 +208,7 @@ def running_process() -> Process | None:
 
 
 def current_process(api: str) -> Process:
-    """Return the process of the running task. Raises UnsupportedApiError outside of nodes."""
+    """Return the process of the running task. Raise UnsupportedApiError outside of nodes."""
     process = running_process()
     if process is not None:
         return process

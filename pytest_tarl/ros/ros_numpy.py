@@ -22,7 +22,7 @@ _KINDS = {kind: number for number, kind in TYPES.items()}  # numpy → PointFiel
 
 
 def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return a message as an array. Raises ValueError for an unsupported type."""
+    """Return a message as an array. Raise ValueError for an unsupported type."""
     convert = _TO_ARRAY.get(type_name(type(msg)))
     if convert is None:
         raise ValueError(
@@ -32,7 +32,7 @@ def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
 
 
 def msgify(msg_type: Any, numpy_obj: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return an array as a message of a type. Raises ValueError for an unsupported type."""
+    """Return an array as a message of a type. Raise ValueError for an unsupported type."""
     convert = _FROM_ARRAY.get(type_name(msg_type))
     if convert is None:
         raise ValueError(
@@ -101,7 +101,7 @@ def occupancygrid_to_numpy(msg: Any) -> Any:
 def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
     """Return an array of shape (height, width) as a map; masked cells become unknown.
 
-    Raises TypeError unless it is a two-dimensional array of int8.
+    Raise TypeError unless it is a two-dimensional array of int8.
     """
     import numpy as np
 

@@ -68,7 +68,7 @@ class TypesAndTopicsTuple(NamedTuple):
 
 
 class Bag:
-    """A bag opened for reading (`r`) or writing (`w`). Raises ROSBagException for a file that cannot be read."""
+    """A bag opened for reading (`r`) or writing (`w`). Raise ROSBagException for a file that cannot be read."""
 
     def __init__(self, f: Any, mode: str = "r", compression: str = "none", **_: Any) -> None:  # noqa: ARG002
         if not isinstance(f, str | Path):
@@ -119,7 +119,7 @@ class Bag:
     ) -> Iterator[BagMessage]:
         """Yield topic, message and time in order of time; optionally of some topics, within inclusive limits.
 
-        Raise for filters of connections and for connection headers, which are not supported.
+        Raise UnsupportedApiError for filters of connections and for connection headers.
         """
         if connection_filter is not None or return_connection_header:
             raise unsupported("read_messages(connection_filter=…, return_connection_header=True)")
@@ -139,7 +139,7 @@ class Bag:
             yield BagMessage(connection.topic, message, stamp)
 
     def write(self, topic: str, msg: Any, t: Any = None, raw: bool = False, **_: Any) -> None:
-        """Write a message with the time `t`, by default the current time. Raises UnsupportedApiError for `raw`."""
+        """Write a message with the time `t`, by default the current time. Raise UnsupportedApiError for `raw`."""
         if raw:
             raise unsupported("rosbag.Bag.write(raw=True)")
         from pytest_tarl.ros.rospy.timing import Time as RospyTime

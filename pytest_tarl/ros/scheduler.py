@@ -1,7 +1,8 @@
 """Schedule tasks, which are greenlets, on a virtual clock.
 
-All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another one: it
-requests it (`wake`, `later`) and continues until it waits itself. So the order of execution is deterministic.
+All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another task
+directly. It only requests that (`wake`, `later`) and continues until it waits itself. So the order of execution is
+deterministic.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
-PATIENCE = 500  # questions at one instant before a task counts as polling, see polling.py
+PATIENCE = 500  # polls at one instant before a task counts as polling, see polling.py
 
 
 class Program(Protocol):
@@ -54,9 +55,9 @@ class Task:
         self.process = process
         self.function = function
         self.args = args
-        self.ticket = 0  # grows at every resumption; heap entries with an older ticket are stale
+        self.ticket = 0  # increases at every resumption; heap entries with an older ticket are stale
         self.parked = False
-        self.patience = PATIENCE  # questions left until it has to wait
+        self.patience = PATIENCE  # polls left until it must wait
         self.done = False
         self.worker: Worker | None = None
 
@@ -93,7 +94,7 @@ class Worker(greenlet):
 def hand_over() -> Any:
     """Switch to the greenlet that resumed the running one; return the value passed at the next resumption.
 
-    Raises RuntimeError outside of tasks.
+    Raise RuntimeError outside of tasks.
     """
     parent = getcurrent().parent
     if parent is None:
@@ -108,7 +109,7 @@ def running_task() -> Task | None:
 
 
 def current_task() -> Task:
-    """Return the running task. Raises RuntimeError outside of tasks."""
+    """Return the running task. Raise RuntimeError outside of tasks."""
     task = running_task()
     if task is None:
         raise RuntimeError("only a task has a current task")
@@ -132,7 +133,7 @@ class Scheduler:
     def wait(self, until: int | None = None) -> bool:
         """Suspend the running task until the instant `until` or until woken; return whether it was woken.
 
-        Raises RuntimeError outside of tasks.
+        Raise RuntimeError outside of tasks.
         """
         worker = getcurrent()
         task = worker.task if isinstance(worker, Worker) else None
@@ -190,14 +191,14 @@ class Scheduler:
         while self._alarms and self._alarms[0][0] <= until and self.failure is None:
             instant, _, job = self._alarms[0]
             self._advance(instant - 1)
-            if self._alarms[0][2] is job:  # no earlier one was set meanwhile
+            if self._alarms[0][2] is job:  # no earlier alarm was set in the meantime
                 heappop(self._alarms)
                 self.time = max(self.time, instant)
                 job()
         self._advance(until)
 
     def _advance(self, until: int) -> None:
-        """Move the clock to `until`, at which no alarm is due before the last instant."""
+        """Move the clock to `until`; no alarm may be due before it."""
         if self._ready:
             self.settle()
         sleeping = self._sleeping
@@ -233,7 +234,7 @@ class Scheduler:
         self._idle.clear()
 
     def spinning(self) -> NodeError:
-        """Return the error for the task that ran last, which never waits."""
+        """Return the error for the task that ran last and never waits."""
         task = self._running
         if task is None or task.worker is None:
             return StuckNodeError("A node never waits.")

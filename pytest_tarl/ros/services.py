@@ -23,7 +23,7 @@ class Endpoint(Protocol):
 
 
 class ServiceDirectory:
-    """The services of one episode. An offer is a service that is created when first requested."""
+    """The services of one episode. An offer is a service that is created on the first request for it."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -52,7 +52,7 @@ class ServiceDirectory:
             self._offers[name] = make
 
     def remove(self, name: str, endpoint: Endpoint) -> None:
-        """Remove a service unless another one has taken its name."""
+        """Remove a service unless another service has taken its name."""
         if self._endpoints.get(name) is endpoint:
             del self._endpoints[name]
 

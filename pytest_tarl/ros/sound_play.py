@@ -1,4 +1,4 @@
-"""`sound_play.libsoundplay`: clients that ask a sound server to play sounds; the server is up to the test's world."""
+"""`sound_play.libsoundplay`: clients of a sound server, which the test's world can provide."""
 
 from __future__ import annotations
 

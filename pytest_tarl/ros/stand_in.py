@@ -1,4 +1,4 @@
-"""A function of the test in place of a node of a launch file, under the node's names."""
+"""Let a function of the test replace a node of a launch file; it uses the node's topic and service names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StandIn:
-    """The node that a function of the test stands for: its names are those in the node's code, before remapping."""
+    """The interface of a function that replaces a node. Names are those in the node's code, before remapping."""
 
     def __init__(self, ros: Ros, launched: Launched) -> None:
         self.name = launched.name
@@ -52,9 +52,9 @@ class StandIn:
         self._ros.bus.serve(self.resolve(service), service_type, handler)
 
     def every(self, seconds: float, function: Callable[[], object]) -> None:
-        """Call the function at the beginning of the next step, and then every so many seconds of virtual time.
+        """Call the function at the beginning of the next step, and then every `period` seconds of virtual time.
 
-        Raises SettingsError for a period that is not positive.
+        Raise SettingsError for a period that is not positive.
         """
         if not 0 < seconds < math.inf:
             raise SettingsError(f"{self.name}: every({seconds!r}, …) needs a positive number of seconds.")
@@ -70,7 +70,7 @@ class StandIn:
 
 
 class _OfTest(Process):
-    """The process of a function of the test: its errors are raised in the test as they are."""
+    """The process of a replacing function. Its errors are raised in the test unchanged."""
 
     def failed(self, task: Task, error: BaseException) -> None:  # noqa: ARG002
         """Raise the error in the test, unless the episode is over."""

@@ -140,4 +140,4 @@ STANDALONE = (
     "image_geometry",
     "rospkg",
     "ament_index_python",
-)  # the real package works without a running ROS and takes precedence
+)  # if installed, the real package takes precedence, because it works without a running ROS

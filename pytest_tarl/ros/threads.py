@@ -1,4 +1,4 @@
-"""Run a node's threads as tasks, and let its locks suspend tasks, so that execution is deterministic."""
+"""Run a node's threads as tasks, and make its locks suspend tasks, so that execution is deterministic."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Lock:
         self._waiting: deque[Task] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock; return whether that succeeded. Raises RuntimeError on a deadlock of the test itself."""
+        """Acquire the lock; return whether that succeeded. Raise RuntimeError on a deadlock of the test itself."""
         clock = self._scheduler
         until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
         while self._held:
@@ -74,7 +74,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Release the lock; wake the task that has waited longest. Raises RuntimeError if it is not held."""
+        """Release the lock; wake the task that has waited longest. Raise RuntimeError if it is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -112,7 +112,7 @@ class ReentrantLock(Lock):
     def release(self) -> None:
         """Release the lock once; it is free after as many releases as acquisitions.
 
-        Raises RuntimeError unless the running task holds it.
+        Raise RuntimeError unless the running task holds it.
         """
         if not self._is_owned():
             raise RuntimeError("cannot release un-acquired lock")
@@ -143,7 +143,7 @@ def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Calla
 
 
 def _asked_by_node() -> bool:
-    """Return whether a node's own code is the caller, not a library being imported: its locks outlive the episode."""
+    """Return whether a node's own code is the caller. Locks of a library that is being imported outlive the episode."""
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and frame.f_code.co_filename in _PASSED_THROUGH:
         frame = frame.f_back

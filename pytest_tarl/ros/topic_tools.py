@@ -23,7 +23,7 @@ class _Subscribing(type):
 class LazyTransport(SubscribeListener, metaclass=_Subscribing):
     """A node that processes topics on demand: `advertise`, `subscribe` and `unsubscribe`.
 
-    By default it subscribes when a first peer does. The simulated world is a peer of every topic, so the node
+    By default, it subscribes when its first peer subscribes. The simulated world is a peer of every topic, so the node
     subscribes as soon as it advertises a topic.
     """
 

@@ -33,13 +33,13 @@ def reflection_matrix(point: Numbers, normal: Numbers) -> Any:
 
 
 def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
-    """Return a point on the mirror plane and its normal. Raises ValueError if the matrix is not a reflection."""
+    """Return a point on the mirror plane and its normal. Raise ValueError if the matrix is not a reflection."""
     normal = _eigenvector(matrix, -1.0, 3)
     return _eigenvector(matrix, 1.0, 4), normal
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Return angle, axis and a point on the axis. Raises ValueError if the matrix is not a rotation."""
+    """Return angle, axis and a point on the axis. Raise ValueError if the matrix is not a rotation."""
     import numpy as np
 
     turn = np.asarray(matrix, float)[:3, :3]
@@ -113,7 +113,7 @@ def projection_matrix(
 def clip_matrix(
     left: float, right: float, bottom: float, top: float, near: float, far: float, perspective: bool = False
 ) -> Any:
-    """Return the 4×4 matrix that maps a frustum to the cube from -1 to 1. Raises ValueError for an empty one."""
+    """Return the 4×4 matrix that maps a frustum to the cube from -1 to 1. Raise ValueError for an empty one."""
     import numpy as np
 
     if left >= right or bottom >= top or near >= far:
@@ -139,7 +139,7 @@ def clip_matrix(
 def shear_matrix(angle: float, direction: Numbers, point: Numbers, normal: Numbers) -> Any:
     """Return the 4×4 matrix of a shear by an angle, in radians, along a direction in a plane through a point.
 
-    Raises ValueError if direction and normal are not orthogonal.
+    Raise ValueError if direction and normal are not orthogonal.
     """
     import numpy as np
 
@@ -153,7 +153,7 @@ def shear_matrix(angle: float, direction: Numbers, point: Numbers, normal: Numbe
 
 
 def decompose_matrix(matrix: Any) -> tuple[Any, list[float], tuple[float, float, float], Any, Any]:
-    """Return scale, shear, angles, translation and perspective. Raises ValueError for a singular matrix."""
+    """Return scale, shear, angles, translation and perspective. Raise ValueError for a singular matrix."""
     import numpy as np
 
     whole = np.array(matrix, dtype=float).T
@@ -285,7 +285,7 @@ def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
 def _eigenvector(matrix: Any, value: float, size: int) -> Any:
     """Return the unit eigenvector of an eigenvalue; for a 4×4 matrix, scaled so that its last element is one.
 
-    Raises ValueError if there is none.
+    Raise ValueError if there is none.
     """
     import numpy as np
 

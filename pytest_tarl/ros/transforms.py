@@ -107,7 +107,7 @@ class Edge:
     def at(self, time: int, child: str) -> Rigid:
         """Return the interpolated pose at an instant (0: the latest).
 
-        Raises ExtrapolationException outside of the received data.
+        Raise ExtrapolationException outside of the received data.
         """
         if self.static or time == 0:
             return self.poses[self.times[-1]]
@@ -138,7 +138,7 @@ class TransformTree:
         self.authorities: dict[str, str] = {}
 
     def add(self, message: Any, time: int, *, static: bool, authority: str = "") -> None:
-        """Add geometry_msgs/TransformStamped. Raises InvalidArgumentException if it is not a valid transform."""
+        """Add geometry_msgs/TransformStamped. Raise InvalidArgumentException if it is not a valid transform."""
         child, parent = clean(message.child_frame_id), clean(message.header.frame_id)
         move, turn = message.transform.translation, message.transform.rotation
         pose = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))
@@ -162,7 +162,7 @@ class TransformTree:
     def look_up(self, target: str, source: str, time: int) -> tuple[Rigid, int]:
         """Return the pose of `source` in `target`, and its instant (0 requests the latest common one).
 
-        Raises LookupException for an unknown frame, ConnectivityException if the frames are in different trees, and
+        Raise LookupException for an unknown frame, ConnectivityException if the frames are in different trees, and
         ExtrapolationException outside of the received data.
         """
         target, source = self._known(target), self._known(source)

@@ -17,7 +17,7 @@ _MISSING = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "E
 
 
 class UninstalledFinder:
-    """The last finder on `sys.meta_path`, for names that no other finder knows. `taken` are module names and files."""
+    """The last finder on `sys.meta_path`, for names that no other finder knows. `taken` maps found modules to files."""
 
     def __init__(self) -> None:
         self.taken: dict[str, Path] = {}

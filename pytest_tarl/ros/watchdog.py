@@ -1,4 +1,4 @@
-"""Stop a node that never waits. It measures CPU time, so a busy machine stops no node and no result depends on it."""
+"""Stop a node that never waits. It measures CPU time, so it does not stop nodes because the machine is busy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.held_interpreter import allow
 
 DEFAULT_LIMIT = 10.0  # CPU seconds without progress of virtual time
 _PATIENCE = 12  # factor on the limit for waits outside of ROS, which use no CPU time
-_HOLD = 12  # factor in CPU time for a node that holds the interpreter
+_HOLD = 12  # factor on the limit for a node that holds the interpreter lock
 _INTERVAL = 0.1  # s between two checks
 _IDLE_EXIT = 50  # checks after which an unused watching thread ends
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
@@ -21,7 +21,7 @@ _CLOCK_OF: Callable[[int], int] | None = getattr(
 )  # missing on macOS and Windows
 _read_clock: Callable[[int], float] | None = getattr(
     time, "clock_gettime", None
-)  # bound before nodes see the virtual clock
+)  # the real clocks, saved before nodes see the virtual clock
 _process_time = time.process_time
 
 
@@ -42,7 +42,7 @@ class Watchdog:
         self._watching = False
         self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        self.hung = False  # whether it fired for a wait outside of ROS instead of computing
+        self.hung = False  # whether it fired because of a wait outside of ROS, not of computing
 
     def arm(self, limit: float) -> None:
         """Watch the calling thread: fire after `limit` CPU seconds without `beat`."""
@@ -89,7 +89,7 @@ class Watchdog:
             idle = 0 if self._armed else idle + 1
             if idle > _IDLE_EXIT:
                 self._watching = False
-                if not self._armed:  # not armed since the last check, by a caller that relies on this thread
+                if not self._armed:  # nothing armed it since the last check, so this thread may end
                     return
                 self._watching = True
             self._allow(self._limit * _HOLD if self._armed else 0.0)
@@ -97,14 +97,14 @@ class Watchdog:
             if idle or moves != seen:
                 seen, looks, computed = moves, 0, self._computed()
                 continue
-            looks += 1  # counted instead of timed: a suspended process makes no checks
+            looks += 1  # a count, not a time: a suspended process makes no checks
             worked = self._computed() - computed >= self._limit
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):
                 self._fire(moves, hung=not worked)
                 seen = -1  # raise again later if a bare `except:` swallows it
 
     def _allow(self, seconds: float) -> None:
-        """Set or clear the kernel's CPU limit for a process whose interpreter is held."""
+        """Set or clear the kernel's CPU timer, which ends a process whose interpreter lock is held."""
         if seconds or self._allowed:
             self._allowed = bool(seconds)
             allow(seconds)

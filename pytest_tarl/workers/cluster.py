@@ -10,14 +10,14 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
-REACHED = 10  # s to wait for the scheduler
+REACHED = 10  # s to wait for a connection to the scheduler
 RETRIES = 2  # retries on another machine after an episode's machine is lost
 
-_pools: list[Pool] = []  # one pool, made in each worker process of the cluster
+_pools: list[Pool] = []  # at most one pool per worker process of the cluster
 
 
 def serve_here(post: Post, request: bytes) -> bytes:
-    """Run a request in a process on this machine."""
+    """Run an episode request in a process on this machine of the cluster."""
     if not _pools:
         _pools.append(Pool())
     return _pools[0].serve(post, request)
@@ -31,7 +31,7 @@ def leave() -> None:
 
 @contextmanager
 def joined(address: str) -> Iterator[tuple[Executor, int]]:
-    """Join a cluster and return its executor and how many episodes it runs at a time. Raises SettingsError."""
+    """Connect to a cluster. Return its executor and the number of parallel episodes. Raise SettingsError on failure."""
     try:
         from distributed import Client
     except ImportError:

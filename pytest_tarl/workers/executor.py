@@ -1,4 +1,4 @@
-"""Run the episodes of a test on workers: processes here, by concurrent.futures, or on a Dask cluster."""
+"""Run the episodes of a test on workers: local processes behind concurrent.futures, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# Plugins that a worker does not load: reports, result caches, debuggers, nested workers.
+# Plugins that a worker must not load: reports, result caches, debuggers, nested workers.
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -59,8 +59,7 @@ class EpisodeExecutor:
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode and return its run.
 
-        Raises TarlError if the test cannot be run as configured; pytest's Exit and Skipped if the test raised
-        them.
+        Raise TarlError if the test cannot run as configured; raise pytest's Exit or Skipped if the test did.
         """
         return self.begin(plan).result()
 
@@ -79,7 +78,7 @@ class Answer:
     def result(self) -> EpisodeRun:
         """Wait for the episode and return its run.
 
-        Raises TarlError if it could not be run; pytest's Exit and Skipped if the test raised them.
+        Raise TarlError if it could not run; raise pytest's Exit or Skipped if the test did.
         """
         try:
             return protocol.answered(self.plan, self.future.result())
@@ -102,16 +101,16 @@ class Answer:
             raise RecordingError("The cluster cancelled an episode: check its scheduler's log.") from None
 
     def cancel(self) -> bool:
-        """Cancel the episode unless a worker has begun it."""
+        """Cancel the episode unless a worker has started it; return whether it was cancelled."""
         return self.future.cancel()
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result when the episode ends, in the thread that receives it."""
+        """Call a function with the result when the episode ends, in the thread that receives the result."""
 
         def ended(future: Future[bytes]) -> None:
             if future.cancelled() or future.exception() is not None:
                 return
-            with suppress(TarlError):  # `result` raises it
+            with suppress(TarlError):  # `result` raises the error instead
                 call(protocol.answered(self.plan, future.result()))
 
         self.future.add_done_callback(ended)
@@ -140,7 +139,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Describe the job of a worker: everything that it needs to prepare the item."""
+    """Describe the job of a worker, with everything that it needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}
@@ -149,7 +148,7 @@ def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Se
     plugins = [*config.option.plugins, "no:terminal"]
     folder = str(config.invocation_params.dir)
     start = {
-        "path": [str(Path(folder, entry)) for entry in sys.path],  # an absolute entry stays unchanged
+        "path": [str(Path(folder, entry)) for entry in sys.path],  # relative entries become absolute
         "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
         "target": f"{item.path}::{item.nodeid.partition('::')[2]}",
     }

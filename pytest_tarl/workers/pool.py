@@ -18,10 +18,10 @@ from pytest_tarl.held_interpreter import SIGNAL
 from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.workers import protocol
 
-TRIES = 3  # runs of an episode whose worker dies, including the first
-PATIENCE = 5.0  # seconds for a worker to finish its fixtures before it is ended
+TRIES = 3  # runs of an episode whose worker dies, including the first run
+PATIENCE = 5.0  # seconds to tear down fixtures before a worker is killed
 SILENCE = (
-    180  # checks without a sign of life, one per second; a count, since a suspended machine does not check
+    180  # checks without a heartbeat, one per second; a count, so that suspending the machine does not add
 )
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
@@ -32,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held a worker's interpreter, so the worker was ended; not retried, since it would hang again."""
+    """A node held a worker's interpreter lock, so the worker was ended. No retry: it would hang again."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Worker:
     """One process that runs episodes of one test."""
 
     def __init__(self, post: Post) -> None:
-        self._log = TemporaryFile()  # noqa: SIM115 - as long as the process
+        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process
         self._process = subprocess.Popen(
             [sys.executable, str(WORKER_MAIN), post.start],
             cwd=post.folder,
@@ -66,7 +66,7 @@ class Worker:
     def greet(self) -> None:
         """Send the first message and wait until the worker has prepared its test.
 
-        Raises TarlError if the worker cannot prepare it, WorkerDiedError if it dies.
+        Raise TarlError if the worker cannot prepare it, WorkerDiedError if it dies.
         """
         greeting = self.ask(self._post.first)
         if greeting != protocol.READY:
@@ -74,7 +74,7 @@ class Worker:
         threading.Thread(target=self._listen, name="tarl-listener", daemon=True).start()
 
     def ask(self, request: bytes) -> bytes:
-        """Send a request and return the answer. Raises WorkerDiedError and WorkerHeldError."""
+        """Send a request and return the answer. Raise WorkerDiedError or WorkerHeldError if the worker ended."""
         asked, told = self._pipes()
         self._silent, self._asked = 0, True
         try:
@@ -93,7 +93,10 @@ class Worker:
         return answer
 
     def _listen(self) -> None:
-        """End the worker after SILENCE checks without a sign of life, so that it cannot block the run."""
+        """Check for heartbeats once per second.
+
+        After SILENCE checks without a heartbeat, end the worker, so that it cannot block the run.
+        """
         while not self._over.wait(1.0):
             self._silent += self._asked
             if self._silent > SILENCE:
@@ -127,7 +130,10 @@ class Worker:
         self.end()
 
     def end(self) -> None:
-        """End the worker immediately; the thread that it serves and the thread that stops the run may both do so."""
+        """End the worker immediately.
+
+        Two threads may call this: the one that waits for it and the one that stops the run.
+        """
         self._over.set()
         self._process.kill()
         self._process.wait()
@@ -137,13 +143,13 @@ class Worker:
 
     def _pipes(self) -> tuple[BinaryIO, BinaryIO]:
         process = self._process
-        assert process.stdin is not None  # noqa: S101 - told to the type checker: both were asked for
+        assert process.stdin is not None  # noqa: S101 - for the type checker: both are pipes
         assert process.stdout is not None  # noqa: S101
         return process.stdin, process.stdout  # type: ignore[return-value]
 
 
 def place_held(log: str) -> str:
-    """Return the innermost line of user code in faulthandler's output; empty if there is none."""
+    """Return the place of the innermost user code in faulthandler's output; empty if there is none."""
     ours = str(WORKER_MAIN.parent.parent)
     frames = [
         (file, int(line), function)
@@ -154,7 +160,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process by job; started on demand, safe to use from several threads."""
+    """The workers of this process, by job. They start on demand. Several threads may use the pool."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -208,7 +214,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Mark a worker as no longer busy; with a post, make it available for that job."""
+        """Mark a worker as not busy. With a post (a job), make it available for that job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

@@ -20,7 +20,7 @@ COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
-ALIVE = b""  # heartbeat: the worker's threads run
+ALIVE = b""  # heartbeat: Python threads of the worker can run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:
@@ -31,7 +31,7 @@ def write(pipe: BinaryIO, message: bytes) -> None:
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message; None if the other side has gone, even in the middle of a message."""
+    """Receive one message; None if the pipe is closed, even in the middle of a message."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None
@@ -83,7 +83,7 @@ def run_message(run: EpisodeRun) -> bytes:
 def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
     """Decode the result of an episode.
 
-    Raises the TarlError that ended it, or SkippedError or EndedError.
+    Raise the TarlError that prevented it, SkippedError, or EndedError.
     """
     head, arrays = _parted(message)
     if "error" in head:
@@ -113,11 +113,11 @@ def error_message(problem: TarlError) -> bytes:
 
 
 class SkippedError(TarlError):
-    """The test skipped itself in a worker; the text is its reason."""
+    """The test skipped itself in a worker; the message is its reason."""
 
 
 class EndedError(TarlError):
-    """The test ended the whole run in a worker, by `pytest.exit`; the text is its reason."""
+    """The test called `pytest.exit` in a worker to end the whole run; the message is its reason."""
 
 
 def _error(name: str) -> Callable[[str], TarlError]:

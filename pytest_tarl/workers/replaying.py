@@ -1,4 +1,4 @@
-"""In a worker: replay bags through the nodes of a test, with the sites numbered as in its recording."""
+"""Worker side: replay bags through the nodes of a test, with the site numbers of its recording."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.sensors import binning_digest
 
 @dataclass(frozen=True)
 class RenumberedRollout:
-    """A rollout that numbers sites anew: `number[n]` is the new number of site n, -1 for a site to leave out."""
+    """A rollout that renumbers sites: `number[n]` is the new number of site n, or -1 to drop the site."""
 
     rollout: ItemRollout
     number: Ints
@@ -40,9 +40,9 @@ class RenumberedRollout:
 def replaying(
     item: pytest.Function, marked: Designation, sensors: str, sites: Sequence[str]
 ) -> RenumberedRollout:
-    """Return the rollout of a test's bags; `sites` are the ids of the recorded sites, in the order of their numbers.
+    """Return a rollout that replays bags; `sites` holds the ids of the recorded sites, in the order of their numbers.
 
-    `sensors` is the digest of the recorded sensors and bins. Raise FixtureError if the marker's differ,
+    `sensors` is the digest of the recorded sensors and bins. Raise FixtureError if the marker's sensors differ,
     SettingsError if the marker cannot judge bags, AnalysisError if the nodes cannot be analysed.
     """
     check(marked)

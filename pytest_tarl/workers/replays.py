@@ -1,4 +1,4 @@
-"""Replay bags through the nodes of a recorded test, outside a run of pytest: in a worker process."""
+"""Replay bags through the nodes of a recorded test in a worker process, without a pytest run around it."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ OFF: Mapping[str, object] = {
 
 @dataclass
 class Replays:
-    """The worker that replays bags, started with the first of them."""
+    """The worker that replays bags; the first bag starts it."""
 
     fixture: Fixture
-    root: Path  # of the project, in which the test is named as in the recording
+    root: Path  # of the project; the recording's test id is relative to it
     _pool: Pool = field(default_factory=Pool)
     _post: Post | None = None
 
     def __call__(self, bag: Path, seed: int) -> EpisodeRun:
         """Return the mission of a bag.
 
-        Raise LogError if it cannot be replayed, another TarlError if no bag can.
+        Raise LogError if this bag cannot be replayed, another TarlError if no bag can be replayed.
         """
         plan = EpisodePlan(seed, record=True, bag=bag.resolve())
         self._post = self._post or self._posted(bag)
@@ -61,7 +61,7 @@ class Replays:
         self._pool.close()
 
     def _posted(self, bag: Path) -> Post:
-        """Describe the job of the worker; any bag makes pytest collect the test as for a bag."""
+        """Describe the job of the worker. The name of one bag suffices for pytest to collect the test for bags."""
         test = self.fixture.test.partition("[")[0]
         if not (self.root / test.partition("::")[0]).is_file():
             raise SettingsError(

@@ -1,4 +1,4 @@
-"""The main loop of a worker process: prepare one test and run an episode of it per request."""
+"""The main loop of a worker process: prepare one test, then run one episode per request."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ENDED = 70  # exit status if the parent run has ended
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
     """Serve the parent process until it closes the pipe or exits.
 
-    The arguments are the descriptors of the pipes, and pytest's configuration or the error that prevented it.
+    The arguments are the descriptors of the pipes, and pytest's configuration or the error that occurred in its place.
     """
     alive, told = os.pipe()
     _thread.start_new_thread(_forwarded, (requests, told))
@@ -51,7 +51,7 @@ def serve(requests: int, answers: int, config: Config | None, problem: str) -> N
 
 
 class Server:
-    """The pytest plugin of a worker, which answers requests instead of running tests."""
+    """The pytest plugin of a worker. It answers requests instead of running tests."""
 
     def __init__(self, post: dict[str, Any], requests: BinaryIO, answers: BinaryIO) -> None:
         self.post = post
@@ -102,7 +102,7 @@ class Server:
         self.serving = True
         self._say(protocol.READY)
         _thread.start_new_thread(self._beat, ())
-        while request := protocol.read(self.requests):  # an empty request ends the session
+        while request := protocol.read(self.requests):  # an empty request or a closed pipe ends the session
             self._say(answer(rollout, request))
         finish(item, None)
         return True
@@ -119,11 +119,11 @@ class Server:
                 self._say(protocol.ALIVE)
 
     def refuse(self, problem: str) -> None:
-        """Answer the first message with the reason why the test cannot be prepared."""
+        """Answer the first request with the reason why the test cannot be prepared."""
         self.refused(TarlError("\n".join([problem, *self.problems])))
 
     def refused(self, problem: TarlError) -> None:
-        """Answer the first message with an error."""
+        """Answer the first request with an error."""
         if not self.serving:
             protocol.write(self.answers, protocol.error_message(problem))
             self.serving = True
@@ -159,10 +159,9 @@ def instruments(given: dict[str, Any]) -> Instruments:
 
 
 def _forwarded(requests: int, told: int) -> None:
-    """Forward requests; when the run has gone, end this process at once, even if a node is running.
+    """Forward requests. If the parent run has ended, end this process immediately, even while a node runs.
 
-    It runs in a plain thread, unknown to `threading`, because the recorder counts threads listed there as
-    nodes.
+    It runs in a thread that `threading` does not list, because the recorder takes all listed threads for nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:

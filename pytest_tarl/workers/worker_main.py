@@ -9,7 +9,7 @@ import sys
 
 
 def main() -> None:
-    """Reserve the pipes before a conftest can write to them, configure pytest, then serve."""
+    """Move the pipes away before a conftest can write to them, configure pytest, then serve requests."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the run, which ends its workers
     pipes = _pipes()
     start = json.loads(sys.argv[1])
@@ -19,10 +19,10 @@ def main() -> None:
     problem = ""
     config = None
     try:
-        if "arguments" in start:  # of a command line, which no run of pytest has read yet
+        if "arguments" in start:  # of a command line that pytest has not parsed yet
             config = _prepareconfig(start["arguments"])
             vars(config.option).update(start["options"])
-        else:  # pytest heeds the blocked plugins among the options too late, when it has imported them
+        else:  # pytest reads `-p no:` from these options only after it has imported the plugins
             blocked = [f"-p{name}" for name in start["options"]["plugins"] if name.startswith("no:")]
             config = Config.fromdictargs(start["options"], [start["target"], *blocked])
     except (Exception, SystemExit) as refused:

@@ -31,7 +31,7 @@ class SimpleClientGoalState:
 
 
 class GoalManager:
-    """Placeholder: several goals of one client are not implemented."""
+    """Placeholder for actionlib's class; several goals of one client are not implemented."""
 
     def __init__(self, *_: Any) -> None:
         raise unsupported("actionlib.GoalManager")

@@ -40,7 +40,7 @@ def described(config_type: Any) -> dict[str, dict[str, Any]]:
 def checked(config_type: Any, given: dict[str, Any]) -> Config:
     """Convert values to their parameters' types and clip them to the limits.
 
-    Raises DynamicReconfigureParameterException for an unknown parameter.
+    Raise DynamicReconfigureParameterException for an unknown parameter.
     """
     known = described(config_type)
     config = Config()

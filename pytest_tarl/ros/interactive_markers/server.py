@@ -57,7 +57,7 @@ class InteractiveMarkerServer:
         self._number = 0
         self._shown: dict[str, _Shown] = {}
         self._waiting: dict[str, _Shown | None] = {}  # None: to be erased
-        self._moved: dict[str, Any] = {}  # poses that change without a new marker
+        self._moved: dict[str, Any] = {}  # marker name → new pose, for markers that only moved
         self._update = self._publisher("update", "InteractiveMarkerUpdate")
         self._full = self._publisher("update_full", "InteractiveMarkerInit")
         self._subscription = self._subscribe("feedback", "InteractiveMarkerFeedback", self.processFeedback)
@@ -69,7 +69,7 @@ class InteractiveMarkerServer:
         feedback_callback: Callable[[Any], Any] | int | None = None,
         feedback_type: int = DEFAULT,
     ) -> None:
-        """Add a marker, or replace the one of its name, whose callbacks stay."""
+        """Add a marker. If a marker of its name exists, replace it but keep its callbacks."""
         now = self._waiting.get(marker.name) or self._shown.get(marker.name)
         self._waiting[marker.name] = _Shown(snapshot(marker), now.callbacks if now is not None else {})
         self._moved.pop(marker.name, None)
@@ -77,7 +77,7 @@ class InteractiveMarkerServer:
             self.setCallback(marker.name, feedback_callback, feedback_type)
 
     def setPose(self, name: str, pose: Any, header: Any = None) -> bool:
-        """Move a marker, in its frame unless the header names another; return whether there is one of that name."""
+        """Move a marker; return whether it exists. The pose is in the marker's frame unless `header` names another."""
         known = self._newest(name)
         if known is None:
             return False
@@ -91,7 +91,7 @@ class InteractiveMarkerServer:
         return True
 
     def erase(self, name: str) -> bool:
-        """Remove a marker; return whether there was one of that name."""
+        """Remove a marker; return whether it existed."""
         known = self._newest(name) is not None
         self._waiting[name] = None
         self._moved.pop(name, None)
@@ -116,7 +116,7 @@ class InteractiveMarkerServer:
         return True
 
     def get(self, name: str) -> Any:
-        """Return a copy of a marker with all changes; None without one of that name."""
+        """Return a copy of a marker with all changes; None if there is no marker of that name."""
         known = self._newest(name)
         return None if known is None else snapshot(known.marker)
 

@@ -27,7 +27,7 @@ def message_type(name: str) -> type[Any]:
     receive both: a subscriber gets the class that it subscribed with. Services and actions likewise:
     `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
 
-    Raises UnsupportedApiError if the type is unknown.
+    Raise UnsupportedApiError if the type is unknown.
     """
     package, *middle, short = name.split("/") if "/" in name else ("", name)
     if middle not in ([], ["msg"], ["srv"], ["action"]) or not package or not short:
@@ -52,7 +52,7 @@ def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[A
 
 
 def class_of(kind: Kind, name: str) -> type[Any]:
-    """Return the message class of a type name, `package/Name`. Raises UnsupportedApiError if it is unknown."""
+    """Return the message class of a type name, `package/Name`. Raise UnsupportedApiError if it is unknown."""
     package, _, short = name.partition("/")
     found = find_class(kind, package, short)
     if found is None:

@@ -15,9 +15,7 @@ from pytest_tarl.ros.messages.workspace import workspace_types
 Kind = Literal["ros1", "ros2"]
 Shape = Literal["one", "array", "sequence"]
 
-DEFAULTS: Mapping[
-    str, Mapping[str, Any]
-] = {  # default values, which rosbags drops: all that common packages have
+DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
 _FILLER = "structure_needs_at_least_one_member"  # ROS 2's dummy member of empty types, hidden from programs

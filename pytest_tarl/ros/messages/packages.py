@@ -18,7 +18,10 @@ PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 
 def could_be_package(name: str) -> bool:
-    """Return whether a name could be a message package; cheap, since most imports are none."""
+    """Return whether a name could be a message package.
+
+    This check is cheap, since most imports are of other modules.
+    """
     return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 
 

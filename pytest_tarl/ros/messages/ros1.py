@@ -278,7 +278,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
 
 
 def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    """Reuse the last result if the bytes are equal: covariances hardly ever change."""
+    """Reuse the last result if the bytes are equal, since covariances rarely change."""
     pack = Struct(f"{size}d").pack
     last: tuple[bytes, Any] = (b"", ())
 

@@ -26,7 +26,7 @@ class WireError(ValueError):
 
 
 def serialize(message: Any) -> bytes:
-    """Serialise a message. Raises FieldError for a value that its field's type does not allow."""
+    """Serialise a message. Raise FieldError for a value that its field's type does not allow."""
     parts: list[bytes] = []
     copied = getattr(type(message), "_tarl_copy", None)  # an installed ROS checks while it serialises
     _write_message(message if copied is None else copied(message), parts)
@@ -36,7 +36,7 @@ def serialize(message: Any) -> bytes:
 def deserialize(kind: Any, data: bytes, find: Find) -> Any:
     """Deserialise a message of a class; `find` returns a nested class by its type name.
 
-    Raises WireError if there are too few or too many bytes.
+    Raise WireError if there are too few or too many bytes.
     """
     try:
         message, end = _read_message(kind, data, 0, find)

@@ -19,7 +19,7 @@ _STAMPS: dict[
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
-    """Copy a message for a receiver of class `wanted` (None: the same). Raises FieldError if it cannot be sent."""
+    """Copy a message for a receiver of class `wanted` (None: the same). Raise FieldError if it cannot be sent."""
     own = type(message)
     if wanted is not None and wanted is not own:
         if type_name(wanted) != type_name(own):
@@ -72,7 +72,7 @@ def _translated(value: Any, template: Any, wanted: type) -> Any:
 
 
 def _class_like(own: type, other: type) -> type[Any]:
-    """Return the class of the type of `own` in the ROS generation of `other`. Raises UnsupportedApiError."""
+    """Return the class of `own`'s type in the ROS generation of `other`. Raise UnsupportedApiError if there is none."""
     package, _, short = type_name(own).partition("/")
     found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
     if found is None:
@@ -118,7 +118,7 @@ def _stamp_parts(message: Any) -> tuple[str, str] | None:
 def _copier(own: type) -> Callable[[Any], Any]:
     """Return the copy function of a class; for an installed ROS 1, serialise and deserialise.
 
-    Raises FieldError if the class is not a message class.
+    Raise FieldError if the class is not a message class.
     """
     copier: Callable[[Any], Any] | None = getattr(own, "_tarl_copy", None)
     if copier is not None:

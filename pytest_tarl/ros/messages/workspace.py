@@ -12,7 +12,7 @@ from tarl_lint.workspace.read import read
 
 _SEARCHED: list[Path] = []  # grows with the folders of started nodes, as sys.path does
 
-_CACHES: list[Callable[[], None]] = []  # functions that empty them
+_CACHES: list[Callable[[], None]] = []  # functions that clear caches of workspace facts
 
 _KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or CATKIN_IGNORE
 

@@ -52,7 +52,7 @@ __all__ = [
 
 
 def init(*, args: list[str] | None = None, context: Any = None, **_: Any) -> Context:
-    """Initialise ROS in this program; as a context manager, shut it down at the end."""
+    """Initialise ROS in this program. As a context manager, shut ROS down on exit."""
     found = this_context("init")
     found.init(args)
     return found
@@ -83,7 +83,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Run one callback of the node; wait up to `timeout_sec` for it."""
+    """Run one callback of the node; wait up to `timeout_sec` until one is ready."""
     executor = executor or get_global_executor()
     executor.add_node(node)
     try:

@@ -30,7 +30,7 @@ class Context:
         process.at_end(self._stop)
 
     def init(self, args: list[str] | None = None, **_: Any) -> None:
-        """Initialise ROS. Raises RuntimeError if it is up already."""
+        """Initialise ROS. Raise RuntimeError if it is up already."""
         if self.initialised:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -49,7 +49,7 @@ class Context:
     def shutdown(self) -> None:
         """Shut ROS down.
 
-        Raises RuntimeError if it is not up, RCLError if the node was ended from outside.
+        Raise RuntimeError if it is not initialised, RCLError if the node was ended from outside.
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")

@@ -161,7 +161,7 @@ class Executor:
                 return None
             looks = (
                 1 if self._active < self._limit else 0
-            )  # entities refused by their group wait for the next round
+            )  # if a group refuses an entity, it waits for the next round
             while True:
                 if not batch:
                     if not looks or not self._look():
@@ -186,7 +186,7 @@ class Executor:
         return False
 
     def _look(self) -> bool:
-        """Collect ready entities: timers, and the others if any may have changed; return whether there are any."""
+        """Collect the ready timers, and other ready entities if any may have changed; return whether there are any."""
         if self._stirred:
             self._stirred = False
             self._batch.extend(self._ready())
@@ -265,7 +265,7 @@ class EventsExecutor(Executor):
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks concurrently as far as their groups allow: one that waits does not block the others."""
+    """Runs callbacks concurrently as far as their groups allow. A callback that waits does not block the others."""
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -278,7 +278,7 @@ class MultiThreadedExecutor(Executor):
             return None
 
     def _run(self, work: Entity) -> None:
-        """Start a callback in its own task and let it run until it waits."""
+        """Start a callback in its own task; it runs until it waits."""
         self._active += 1
         self._clock.spawn(self.process, self._run_beside, work)
         self._clock.yield_now()
@@ -294,7 +294,7 @@ class MultiThreadedExecutor(Executor):
 
 
 def _nothing(_: Future) -> None:
-    """Take the place of rclpy's waking callback, so that done callbacks take the same number of executor turns."""
+    """Replace rclpy's callback that wakes the executor, so that done callbacks take as many executor turns as there."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

@@ -20,7 +20,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """Which end of a topic: publisher or subscription."""
+    """The kind of a topic's end: publisher or subscription."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -108,7 +108,7 @@ class NodeGraph:
         ]
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """Return the services that a node has clients of, with types."""
+        """Return the services for which a node has clients, with types."""
         return [
             (c.srv_name, [_service_type(c.srv_type)]) for c in self._find(node_name, node_namespace).clients_
         ]

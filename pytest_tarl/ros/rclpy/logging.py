@@ -90,7 +90,7 @@ def _wanted(frame: Any, options: dict[str, Any]) -> bool:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """Return the logger of that name. Raises ValueError if the name is empty."""
+    """Return the logger of that name. Raise ValueError if the name is empty."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return RcutilsLogger(name)
@@ -101,7 +101,7 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """Return the level of a name, in any case. Raises RuntimeError for an unknown name."""
+    """Return the level of a name, in any case. Raise RuntimeError for an unknown name."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:

@@ -153,7 +153,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return self._clock
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic. Raises InvalidTopicNameException."""
+        """Return the absolute name of a topic. Raise InvalidTopicNameException."""
         if not isinstance(topic, str) or not _TOPIC.fullmatch(topic):
             raise InvalidTopicNameException(str(topic), _SAID.format("topic name"), _first_bad(str(topic)))
         if only_expand:
@@ -161,7 +161,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return names.resolve(topic, self._full_name, self._remappings)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service. Raises InvalidServiceNameException."""
+        """Return the absolute name of a service. Raise InvalidServiceNameException."""
         try:
             return self.resolve_topic_name(service, only_expand=only_expand)
         except InvalidTopicNameException as error:
@@ -229,7 +229,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return timer
 
     def create_rate(self, frequency: float, clock: Any = None) -> Rate:
-        """Create a rate in Hz. Raises ValueError unless it is positive."""
+        """Create a rate in Hz. Raise ValueError unless it is positive."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         return Rate(self, frequency)

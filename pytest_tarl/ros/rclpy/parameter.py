@@ -24,7 +24,7 @@ def parameter_dict_from_yaml_file(
 ) -> dict[str, Any]:
     """Return rcl_interfaces/Parameter messages by name from a YAML file, of all nodes or of `target_nodes`.
 
-    `use_wildcard` adds the parameters under `/**`. Raises RuntimeError if the file or a node in it is missing.
+    `use_wildcard` adds the parameters under `/**`. Raise RuntimeError if the file or a node in it is missing.
     """
     content = params_files.read(parameter_file)
     wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
@@ -46,7 +46,7 @@ def parameter_dict_from_yaml_file(
 
 
 def _named_values(section: Any, above: str) -> dict[str, Any]:
-    """Return the values of a node's section by full dotted name. Raises RuntimeError for an invalid file."""
+    """Return the values of a node's section by full dotted name. Raise RuntimeError for an invalid file."""
     found: dict[str, Any] = {}
     if not isinstance(section, dict) or "ros__parameters" not in section:
         raise RuntimeError("YAML file is not a valid ROS parameter file")
@@ -63,7 +63,7 @@ def _named_values(section: Any, above: str) -> dict[str, Any]:
 
 
 class ParameterType(IntEnum):
-    """The types of parameters with the numbers of rcl_interfaces/ParameterType."""
+    """The types of parameters, with the numbers of rcl_interfaces/ParameterType."""
 
     def __str__(self) -> str:
         return str(int(self))
@@ -84,12 +84,12 @@ class ParameterType(IntEnum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
-        """Return the type of a Python value. Raises TypeError if no parameter type fits."""
+        """Return the type of a Python value. Raise TypeError if no parameter type fits."""
         return type_of(parameter_value)
 
 
 def type_of(value: Any) -> ParameterType:
-    """Return the parameter type of a Python value. Raises TypeError if no parameter type fits."""
+    """Return the parameter type of a Python value. Raise TypeError if no parameter type fits."""
     if value is None:
         return ParameterType.NOT_SET
     for python_type, plain in _PLAIN:

@@ -57,7 +57,7 @@ class ParameterServices:
         return response
 
     def get_parameter_types(self, request: Any, response: Any) -> Any:
-        """Return types; an empty list if one is not declared."""
+        """Return types; an empty list if any parameter is not declared."""
         try:
             response.types = [int(t) for t in self._node.get_parameter_types(list(request.names))]
         except ParameterException:

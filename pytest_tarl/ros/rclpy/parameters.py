@@ -52,7 +52,7 @@ class NodeParameters:
     ) -> Parameter:
         """Declare a parameter: an override takes precedence over the default, and the type is fixed from then on.
 
-        Raises ParameterAlreadyDeclaredException, InvalidParameterException for an invalid name, and
+        Raise ParameterAlreadyDeclaredException, InvalidParameterException for an invalid name, and
         InvalidParameterTypeException for a value of another type.
         """
         if not name or not isinstance(name, str):
@@ -104,7 +104,7 @@ class NodeParameters:
     def undeclare_parameter(self, name: str) -> None:
         """Undeclare a parameter.
 
-        Raises ParameterNotDeclaredException, and ParameterImmutableException if it is read-only.
+        Raise ParameterNotDeclaredException, and ParameterImmutableException if it is read-only.
         """
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name)
@@ -118,7 +118,7 @@ class NodeParameters:
         return name in self._parameters
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter. Raises ParameterNotDeclaredException."""
+        """Return a parameter. Raise ParameterNotDeclaredException."""
         parameter = self._parameters.get(name)
         if parameter is None:
             if self._allow_undeclared:
@@ -160,7 +160,7 @@ class NodeParameters:
         return made(names=sorted(names), prefixes=sorted(parents))
 
     def describe_parameter(self, name: str) -> Any:
-        """Return a parameter's descriptor. Raises ParameterNotDeclaredException."""
+        """Return a parameter's descriptor. Raise ParameterNotDeclaredException."""
         if name not in self._parameters:
             if self._allow_undeclared:
                 return new_descriptor(name=name)

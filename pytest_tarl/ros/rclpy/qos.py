@@ -115,7 +115,7 @@ class QoSProfile:
 def as_profile(given: Any) -> QoSProfile:
     """Return a profile for an argument that is a profile or a depth.
 
-    Raises ValueError for a negative depth, TypeError for other arguments.
+    Raise ValueError for a negative depth, TypeError for other arguments.
     """
     if isinstance(given, QoSProfile):
         return given
@@ -175,5 +175,5 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Any:
-        """Return the profile of a name, in any case. Raises KeyError."""
+        """Return the profile of a name, in any case. Raise KeyError."""
         return cls[name.upper()].value

@@ -56,7 +56,7 @@ class InvalidQosOverridesError(Exception):
 
 
 class QoSOverridingOptions:
-    """Which policies parameters may override; `callback` accepts or refuses the resulting profile."""
+    """The policies that parameters may override; `callback` accepts or refuses the resulting profile."""
 
     def __init__(
         self,
@@ -73,15 +73,15 @@ class QoSOverridingOptions:
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """Let history, depth and reliability be overridden."""
+        """Return options under which parameters may override history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
 
 def overridden(node: Any, kind: str, topic: str, profile: QoSProfile, options: Any) -> QoSProfile:
-    """Return the profile of a publisher or subscription (`kind`) after its parameters, which are declared.
+    """Declare the parameters of a publisher or subscription (`kind`), and return the profile with their values.
 
-    Raises InvalidQosOverridesError for an invalid value, and if the options' callback refuses the profile.
+    Raise InvalidQosOverridesError for an invalid value, and if the options' callback refuses the profile.
     """
     if options is None:
         return profile

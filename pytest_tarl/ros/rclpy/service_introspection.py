@@ -20,7 +20,7 @@ class Introspected:
     def configure_introspection(
         self, clock: Any, service_event_qos_profile: Any, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Do nothing: the topic of service events is not published. Raises TypeError for another state."""
+        """Do nothing: the topic of service events is not published. Raise TypeError for another state."""
         del clock, service_event_qos_profile
         if not isinstance(introspection_state, ServiceIntrospectionState):
             raise TypeError(f"{introspection_state!r} is not a ServiceIntrospectionState")

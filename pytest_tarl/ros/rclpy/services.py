@@ -101,7 +101,7 @@ class Client(Introspected):
     def call_async(self, request: Any) -> Future:
         """Send a request; the future is done once an executor has handled the response.
 
-        Raises TypeError for a request of another type.
+        Raise TypeError for a request of another type.
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
@@ -126,7 +126,7 @@ class Client(Introspected):
         return future.result()
 
     def answer(self, future: Future, response: Any) -> None:
-        """Handle a response: return it from a waiting `call` at once, complete a future by the executor."""
+        """Handle a response. A waiting `call` returns it immediately; a future is completed by the executor."""
         if response is not None:
             response = adapted(response, self.srv_type.Response)
         waiting = self._calling.get(future)

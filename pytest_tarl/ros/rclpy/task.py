@@ -65,7 +65,7 @@ class Future:
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
-        """Call a function with this future when it is done: by its executor, or at once without one."""
+        """Register a function to call with this future when it is done. The executor calls it, if there is one."""
         if self.pending():
             self._callbacks.append(callback)
         elif self._executor is not None:

@@ -233,7 +233,7 @@ class Clock:
     def create_jump_callback(
         self, threshold: Any, *, pre_callback: Any = None, post_callback: Any = None
     ) -> JumpHandle:
-        """Accept callbacks for clock jumps, which never happen here. Raises ValueError if there is none."""
+        """Accept callbacks for clock jumps, which never happen here. Raise ValueError if there is none."""
         if pre_callback is None and post_callback is None:
             raise ValueError("One of pre_callback or post_callback must be callable")
         return JumpHandle()

@@ -117,7 +117,7 @@ class Rate:
         self._due = self._process.scheduler.time + self._period
 
     def sleep(self) -> None:
-        """Wait for the end of the cycle. Raises ROSInterruptException when the node is shut down."""
+        """Wait for the end of the cycle. Raise ROSInterruptException when the node is shut down."""
         clock = self._process.scheduler
         while clock.time < self._due and not self._process.ending:
             clock.wait(self._due)

@@ -47,7 +47,7 @@ class Publisher:
     topic = topic_name
 
     def publish(self, msg: Any) -> None:
-        """Publish a message. Raises TypeError for a message of another type."""
+        """Publish a message. Raise TypeError for a message of another type."""
         if self._destroyed:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
         if not isinstance(msg, self.msg_type):

@@ -31,29 +31,29 @@ def _require(pattern: str, name: str, error: type[Any], what: str) -> Literal[Tr
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
-    """Return True for a valid name of a topic. Raises InvalidTopicNameException or InvalidServiceNameException."""
+    """Return True for a valid name of a topic. Raise InvalidTopicNameException or InvalidServiceNameException."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
     return _require(_RELATIVE, name, error, "service name" if is_service else "topic name")
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
-    """Return True for a valid absolute name. Raises InvalidTopicNameException or InvalidServiceNameException."""
+    """Return True for a valid absolute name. Raise InvalidTopicNameException or InvalidServiceNameException."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
     return _require(_FULL, name, error, "service name" if is_service else "topic name")
 
 
 def validate_namespace(namespace: str) -> Literal[True]:
-    """Return True for a valid namespace. Raises InvalidNamespaceException."""
+    """Return True for a valid namespace. Raise InvalidNamespaceException."""
     return _require(rf"/|{_FULL}", namespace, InvalidNamespaceException, "namespace")
 
 
 def validate_node_name(node_name: str) -> Literal[True]:
-    """Return True for a valid name of a node. Raises InvalidNodeNameException."""
+    """Return True for a valid name of a node. Raise InvalidNodeNameException."""
     return _require(r"[A-Za-z_]\w*", node_name, InvalidNodeNameException, "node name")
 
 
 def validate_parameter_name(name: str) -> Literal[True]:
-    """Return True for a valid name of a parameter. Raises InvalidParameterException."""
+    """Return True for a valid name of a parameter. Raise InvalidParameterException."""
     if not name:
         raise InvalidParameterException(name)
     return True
@@ -70,7 +70,7 @@ def topic_or_service_is_hidden(name: str) -> bool:
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Do nothing for a class of messages, services or actions. Raises NoTypeSupportImportedException for others."""
+    """Do nothing for a class of messages, services or actions. Raise NoTypeSupportImportedException for others."""
     parts = ("_fields_and_field_types", "Request", "Goal")
     if not any(hasattr(msg_or_srv_type, part) for part in parts):
         raise NoTypeSupportImportedException

@@ -1,4 +1,4 @@
-"""rospy's logging by Python's logger `rosout`, so that pytest captures it."""
+"""rospy's logging functions; they use Python's logger `rosout`, so that pytest captures them."""
 
 # ruff: noqa: ARG001 (signatures are rospy's)
 

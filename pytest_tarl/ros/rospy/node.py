@@ -99,7 +99,7 @@ def init_node(
 ) -> None:
     """Register the node under its name.
 
-    Raises ValueError for an invalid name, ROSException on a second call with different arguments.
+    Raise ValueError for an invalid name, ROSException on a second call with different arguments.
     """
     if not name:
         raise ValueError("name must not be empty")
@@ -130,14 +130,14 @@ def signal_shutdown(reason: str) -> None:
 
 
 def on_shutdown(h: ShutdownHook) -> None:
-    """Register a function to be called at shutdown. Raises TypeError if it is not callable."""
+    """Register a function to be called at shutdown. Raise TypeError if it is not callable."""
     if not callable(h):
         raise TypeError(f"shutdown hook [{h}] must be a function or callable object: {type(h)}")
     this_node("on_shutdown").hooks.append(h)
 
 
 def spin() -> None:
-    """Wait until the node is shut down; callbacks run in the meantime. Raises ROSInitException before init_node."""
+    """Wait until the node is shut down; callbacks run in the meantime. Raise ROSInitException before init_node."""
     node = this_node("spin")
     if not node.initialised:
         raise ROSInitException("client code must call rospy.init_node() first")

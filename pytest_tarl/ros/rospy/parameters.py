@@ -19,7 +19,7 @@ def _server(api: str) -> tuple[RospyNode, ParameterServer]:
 
 
 def get_param(param_name: str, default: Any = _NOTHING) -> Any:
-    """Return a parameter. Raises KeyError if it is not set and there is no default."""
+    """Return a parameter. Raise KeyError if it is not set and there is no default."""
     asked()
     node, server = _server("get_param")
     value = server.get(node.resolve(param_name), _NOTHING)
@@ -47,7 +47,7 @@ def has_param(param_name: str) -> bool:
 
 
 def delete_param(param_name: str) -> None:
-    """Remove a parameter. Raises KeyError if it is not set."""
+    """Remove a parameter. Raise KeyError if it is not set."""
     node, server = _server("delete_param")
     if not server.delete(node.resolve(param_name)):
         raise KeyError(param_name)

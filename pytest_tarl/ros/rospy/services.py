@@ -111,7 +111,7 @@ class ServiceProxy:
         return self.call(*args, **kwds)
 
     def call(self, *args: Any, **kwds: Any) -> Any:
-        """Call the service with a request or its fields. Raises ServiceException."""
+        """Call the service with a request or its fields. Raise ServiceException."""
         request = self._request(args, kwds)
         service = self._node.process.ros.services.find(self.resolved_name)
         if service is None:
@@ -145,7 +145,7 @@ class ServiceProxy:
         return adapted(answered, self.response_class)
 
     def wait_for_service(self, timeout: float | None = None) -> None:
-        """Wait until the service is available. Raises ROSException after `timeout` seconds."""
+        """Wait until the service is available. Raise ROSException after `timeout` seconds."""
         wait_for_service(self.resolved_name, timeout)
 
     def close(self) -> None:
@@ -153,7 +153,7 @@ class ServiceProxy:
 
 
 def wait_for_service(service: str, timeout: Any = None) -> None:
-    """Wait until a service is available. Raises ROSException after `timeout` seconds."""
+    """Wait until a service is available. Raise ROSException after `timeout` seconds."""
     node = this_node("wait_for_service")
     name = node.resolve(service)
     seconds = getattr(timeout, "to_sec", lambda: timeout)()

@@ -46,7 +46,7 @@ class Time(times.Time):
 
 
 def get_rostime() -> Time:
-    """Return the current time. Raises ROSInitException before init_node."""
+    """Return the current time. Raise ROSInitException before init_node."""
     node = this_node("get_rostime")
     node.require()
     asked()
@@ -62,7 +62,7 @@ def get_time() -> float:
 
 
 def sleep(duration: Any) -> None:
-    """Wait for a Duration or a number of seconds. Raises ROSInterruptException when the node is shut down."""
+    """Wait for a Duration or a number of seconds. Raise ROSInterruptException when the node is shut down."""
     node = this_node("sleep")
     node.require()
     span = duration.to_nsec() if isinstance(duration, times.Duration) else to_nanoseconds(duration)
@@ -74,7 +74,7 @@ def _sleep_until(node: RospyNode, until: int) -> None:
     if process.ending:
         process.refuse_to_wait()
     if process.ending and node.in_hooks:
-        return  # virtual time no longer moves then
+        return  # in shutdown hooks, virtual time stands still
     if until <= process.scheduler.time:
         asked()
     if until >= process.scheduler.time and not process.ending:
@@ -111,7 +111,7 @@ class Rate:
     def sleep(self) -> None:
         """Wait for the end of the current cycle; catch up on late cycles, at most two.
 
-        Raises ROSInterruptException when the node is shut down.
+        Raise ROSInterruptException when the node is shut down.
         """
         began = self._clock.time
         until = self._last + self._period

@@ -41,7 +41,7 @@ class Inbox:
         self._busy = False
 
     def deliver(self, message: Any, origin: Any = None) -> None:
-        """Run the callbacks, or queue the message if they are still handling an earlier one."""
+        """Run the callbacks with a message; queue it while they handle an earlier message."""
         if self.process.ending:
             return
         if self.message_type is None and (kind := _with_bytes(type(message))) is not type(message):
@@ -95,7 +95,7 @@ def _with_bytes(message_type: Any) -> Any:
 
 
 def _connection_header(topic: str, message_type: Any, origin: Any) -> dict[str, str]:
-    """Return what a publisher tells a subscriber about itself and the topic; the world is the node `/world`."""
+    """Return the connection header that a subscriber gets from a publisher; the world has the node name `/world`."""
     own = getattr(origin, "connection_header", {"callerid": "/world", "latching": "0"})
     return {**own, "topic": topic, "type": message_type._type, "md5sum": message_type._md5sum}
 
@@ -182,13 +182,16 @@ class Publisher(Topic):
 
     @property
     def connection_header(self) -> dict[str, str]:
-        """Return what subscribers learn about this publisher; its node may get its name after it."""
+        """Return the connection header for subscribers.
+
+        It is computed late, since `init_node` may follow the publisher.
+        """
         return {**self._headers, "callerid": self._node.name, "latching": str(self._latch)}
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Publish a message, or create one from fields given by position or keyword.
 
-        Raises ROSSerializationException for an invalid message, ROSException if it cannot be published now.
+        Raise ROSSerializationException for an invalid message, ROSException if it cannot be published now.
         """
         if self._closed:
             raise ROSException("publish() to an unregistered() handle")
@@ -228,7 +231,7 @@ class Publisher(Topic):
             self._place.kept.pop(self, None)
 
     def _make(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
-        """Create the message from the arguments. Raises TypeError if a single message does not fit the first field."""
+        """Create the message from the arguments. Raise TypeError if a single message does not fit the first field."""
         if args and kwds:
             raise TypeError("publish() can be called with arguments or keywords, but not both.")
         if len(args) == 1 and is_message(args[0]):
@@ -281,7 +284,7 @@ class SubscribeListener:
 
 
 def wait_for_message(topic: str, topic_type: Any, timeout: float | None = None) -> Any:
-    """Wait for the next message. Raises ROSException after `timeout` seconds, ROSInterruptException at shutdown."""
+    """Wait for the next message. Raise ROSException after `timeout` seconds, ROSInterruptException at shutdown."""
     node = this_node("wait_for_message")
     clock = node.process.scheduler
     task = current_task()

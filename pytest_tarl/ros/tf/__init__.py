@@ -62,7 +62,7 @@ class TransformerROS:
         timeout: Any,
         polling_sleep_duration: Any = None,  # noqa: ARG002
     ) -> None:
-        """Wait until a look-up would succeed. Raises tf.Exception after the timeout."""
+        """Wait until a look-up would succeed. Raise tf.Exception after the timeout."""
         found, reason = self._buffer.can_transform(
             clean(target_frame), clean(source_frame), time, timeout, True
         )

@@ -29,7 +29,7 @@ class TransformRegistration:
         self._converters[key] = callback
 
     def get(self, key: Any) -> Callable[[Any, Any], Any]:
-        """Return the transformation of a type. Raises TypeException if there is none."""
+        """Return the transformation of a type. Raise TypeException if there is none."""
         if key in self._converters:
             return self._converters[key]
         geometry = import_module("pytest_tarl.ros.tf2_geometry_msgs")
@@ -80,7 +80,7 @@ class Buffer(BufferInterface):
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
         """Return the transform from `source_frame` to `target_frame`; wait up to `timeout`.
 
-        Raises TransformException if there is none.
+        Raise TransformException if there is none.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self._message(target_frame, source_frame, nanoseconds_of(time))
@@ -182,7 +182,7 @@ class Buffer(BufferInterface):
 
 
 def nanoseconds_of(time: Any) -> int:
-    """Return an instant or a span of either generation, or float seconds, in nanoseconds."""
+    """Convert a time or duration of either ROS generation, or float seconds, to nanoseconds."""
     if hasattr(time, "to_nsec"):
         return int(time.to_nsec())
     if hasattr(time, "nanoseconds"):

@@ -53,7 +53,7 @@ class BufferClient(BufferInterface):
         return self._server(None if not span else self.process.scheduler.time + span) is not None
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
-        """Return the transform from `source_frame` to `target_frame`. Raises TransformException."""
+        """Return the transform from `source_frame` to `target_frame`. Raise TransformException."""
         return self._buffer(timeout).lookup_transform(target_frame, source_frame, time, self._left(timeout))
 
     def lookup_transform_full(

@@ -64,13 +64,13 @@ class Master:
         return [[name, kind] for name, kind in graph.topic_types().items()]
 
     def lookupNode(self, node_name: str) -> str:
-        """Return the address of a node. Raises MasterError for an unknown node."""
+        """Return the address of a node. Raise MasterError for an unknown node."""
         if names.absolute(node_name) not in graph.nodes():
             raise MasterError(f"unknown node [{node_name}]")
         return "http://localhost:0/"
 
     def lookupService(self, service: str) -> str:
-        """Return the address of a service. Raises MasterError for a service that no node offers."""
+        """Return the address of a service. Raise MasterError for a service that no node offers."""
         if self._full(service) not in graph.directory():
             raise MasterError("no provider")
         return "rosrpc://localhost:0"
@@ -80,7 +80,7 @@ class Master:
         return graph.parameters().get(self._full(key), _NOTHING) is not _NOTHING
 
     def getParam(self, key: str) -> Any:
-        """Return a parameter. Raises MasterError if it is not set."""
+        """Return a parameter. Raise MasterError if it is not set."""
         value = graph.parameters().get(self._full(key), _NOTHING)
         if value is _NOTHING:
             raise MasterError(f"Parameter [{self._full(key)}] is not set")
@@ -91,7 +91,7 @@ class Master:
         graph.parameters().set(self._full(key), value)
 
     def deleteParam(self, key: str) -> None:
-        """Remove a parameter. Raises MasterError if it is not set."""
+        """Remove a parameter. Raise MasterError if it is not set."""
         if not graph.parameters().delete(self._full(key)):
             raise MasterError(f"parameter [{self._full(key)}] is not set")
 

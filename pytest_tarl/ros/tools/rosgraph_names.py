@@ -37,7 +37,7 @@ def make_caller_id(name: str) -> str:
 
 
 def make_global_ns(name: str) -> str:
-    """Return a name with slashes at its ends. Raises ValueError for a private name."""
+    """Return a name with slashes at its ends. Raise ValueError for a private name."""
     if is_private(name):
         raise ValueError(f"cannot turn [{name}] into a global name")
     return ("" if is_global(name) else SEP) + name + ("" if name.endswith(SEP) else SEP)
@@ -54,7 +54,7 @@ def is_private(name: str) -> bool:
 
 
 def namespace(name: str | None) -> str:
-    """Return the namespace of a name, with a trailing slash. Raises ValueError for None."""
+    """Return the namespace of a name, with a trailing slash. Raise ValueError for None."""
     if name is None:
         raise ValueError("name")
     return name.rstrip(SEP).rpartition(SEP)[0] + SEP
@@ -106,7 +106,7 @@ def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | Non
 
 
 def script_resolve_name(script_name: str, name: str) -> str:
-    """Return the global form of a name on the command line of a script. Raises ValueError for a private name."""
+    """Return the global form of a name on the command line of a script. Raise ValueError for a private name."""
     if is_private(name):
         raise ValueError("~name topics cannot be created on the command-line")
     return (

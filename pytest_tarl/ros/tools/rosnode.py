@@ -34,7 +34,7 @@ def rosnode_ping(
 
 
 def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
-    """Ask nodes to end; return the names of those that ran and those that did not."""
+    """Request nodes to end; return the names of the nodes that ran and of the nodes that did not."""
     there = graph.nodes()
     killed = [name for name in node_names if absolute(name) in there]
     for name in killed:

@@ -29,7 +29,7 @@ class RosParamIOException(RosParamException):
 
 
 def load_file(filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
-    """Read a YAML file of parameters. Raises RosParamException if it cannot be read."""
+    """Read a YAML file of parameters. Raise RosParamException if it cannot be read."""
     path = Path(filename)
     if not path.is_file():
         raise RosParamException(f"file [{filename}] does not exist")
@@ -39,7 +39,7 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
 def load_str(text: str, filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
     """Parse parameters from YAML; return (parameters, namespace) for each document.
 
-    Raises RosParamException for invalid YAML.
+    Raise RosParamException for invalid YAML.
     """
     try:
         import yaml
@@ -61,7 +61,7 @@ def load_str(text: str, filename: str, default_namespace: str | None = None, ver
 
 
 def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
-    """Set a dict of parameters below a namespace. Raises RosParamException for another value in `/`."""
+    """Set a dict of parameters below a namespace. Raise RosParamException for another value in `/`."""
     if absolute(ns) == "/" and not isinstance(values, dict):
         raise RosParamException("global / can only be set to a dictionary")
     if verbose:
@@ -71,7 +71,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
 
 
 def get_param(param_name: str) -> Any:
-    """Return a parameter. Raises RosParamException if it is not set."""
+    """Return a parameter. Raise RosParamException if it is not set."""
     value = graph.parameters().get(graph.resolved(param_name), _NOTHING)
     if value is _NOTHING:
         raise RosParamException(f"Parameter [{param_name}] is not set")
@@ -84,7 +84,7 @@ def set_param(param: str, value: str, verbose: bool = False) -> None:
 
 
 def delete_param(param: str, verbose: bool = False) -> None:
-    """Remove a parameter. Raises RosParamException if it is not set."""
+    """Remove a parameter. Raise RosParamException if it is not set."""
     if not graph.parameters().delete(graph.resolved(param)):
         raise RosParamException(f"Parameter [{param}] is not set")
     if verbose:

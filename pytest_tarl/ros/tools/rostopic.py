@@ -40,7 +40,7 @@ def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str 
 def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Evaluate]:
     """Return message class, topic name, and the function of `get_topic_type`.
 
-    Raises ROSTopicException if the type is unknown.
+    Raise ROSTopicException if the type is unknown.
     """
     kind, name, evaluate = get_topic_type(topic, blocking)
     if kind is None:

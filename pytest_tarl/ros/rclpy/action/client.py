@@ -53,7 +53,7 @@ class ActionClient:
     def send_goal_async(
         self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
     ) -> Future:
-        """Send a goal; the future's result is a goal handle. Raises TypeError for a goal of another type."""
+        """Send a goal; the future's result is a goal handle. Raise TypeError for a goal of another type."""
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected goal type ({self._action_type.Goal}) but received ({type(goal)})")
         goal_id = goal_uuid if goal_uuid is not None else self._directory.new_goal_id()

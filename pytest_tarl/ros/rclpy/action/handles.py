@@ -86,7 +86,7 @@ class ServerGoalHandle:
         self.action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Send feedback to the client. Raises TypeError for a message of another type."""
+        """Send feedback to the client. Raise TypeError for a message of another type."""
         if not isinstance(feedback, self.action_server.action_type.Feedback):
             raise TypeError(f"Expected {self.action_server.action_type.Feedback}, got {type(feedback)}")
         carrier = self.action_server.action_type.Impl.FeedbackMessage()
@@ -110,7 +110,7 @@ class ServerGoalHandle:
         self.status = UNKNOWN
 
     def move_to(self, status: int) -> None:
-        """Change the state. Raises RCLError for a transition that ROS does not allow."""
+        """Change the state. Raise RCLError for a transition that ROS does not allow."""
         if status not in _NEXT.get(self.status, ()):
             raise RCLError(
                 f"Failed to update goal state: goal_handle attempted invalid transition from state {self.status} "

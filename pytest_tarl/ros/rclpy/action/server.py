@@ -36,7 +36,7 @@ async def _result_of(function: Callable[..., Any], *args: Any) -> Any:
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute the goal at once."""
+    """Execute the goal immediately."""
     goal_handle.execute()
 
 
@@ -80,7 +80,7 @@ class ActionServer:
         self.register_cancel_callback(cancel_callback)
 
     def register_execute_callback(self, execute_callback: Any) -> None:
-        """Replace the execute callback. Raises TypeError if it is not callable."""
+        """Replace the execute callback. Raise TypeError if it is not callable."""
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback: Callable[[ServerGoalHandle], Any] = execute_callback

@@ -57,14 +57,14 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change(4)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Trigger the transition, which calls `on_shutdown`. Raises RCLError in a state without that transition."""
+        """Trigger the transition, which calls `on_shutdown`. Raise RCLError in a state without that transition."""
         for transition in TRANSITIONS:
             if transition.label == "shutdown" and transition.start == self._state:
                 return self._change(transition.number)
         raise RCLError("Shutdown transtion not possible")
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Add an entity that takes part in all transitions. Raises TypeError if it is not a ManagedEntity."""
+        """Add an entity that takes part in all transitions. Raise TypeError if it is not a ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.append(entity)
