@@ -151,5 +151,5 @@ NESTED = """
 
 
 @pytest.mark.parametrize("snippet", [TWO_CALLBACKS, NESTED])
-def test_reports_that_were_false_on_public_code_are_gone(snippet, tmp_path, capsys):
+def test_code_that_earlier_versions_reported_wrongly_has_no_findings(snippet, tmp_path, capsys):
     assert reported(capsys, str(workspace(tmp_path, snippet))) == []

@@ -45,11 +45,11 @@ def tracer(of: SimpleNamespace) -> Tracer:
     return found
 
 
-def test_edges_are_reversed():
+def test_reversing_a_graph_lists_the_predecessors_of_each_node():
     assert _reversed([{1, 2}, set(), {1}]) == [[], [0, 2], [0]]
 
 
-def test_a_closure_follows_all_tables_inside_a_set():
+def test_reachability_follows_data_and_control_edges_within_a_set():
     data, control = [[1], [2], [], [4], []], [[3], [], [], [], []]
     assert closure([0], [data]) == {0, 1, 2}
     assert closure([0], [data, control]) == {0, 1, 2, 3, 4}

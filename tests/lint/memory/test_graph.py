@@ -43,7 +43,7 @@ def test_a_value_that_depends_on_itself_depends_on_its_own_conditions(graph, nod
     assert graph.control[a] == {decision}
 
 
-def test_beyond_a_number_of_edges_only_few_are_added(graph, node, monkeypatch):
+def test_a_program_with_too_many_edges_gets_only_a_few_further_ones(graph, node, monkeypatch):
     monkeypatch.setattr(value_flow_graph, "MAX_EDGES", 1)
     graph.flow([node("a"), node("b")], node("c"))
     assert len(graph.data[node("c")]) == 2
@@ -97,7 +97,7 @@ def test_many_values_of_a_field_meet_in_one_node(graph, node, frame):
     assert graph.data[place] == deps | {node("new")}
 
 
-def test_what_depends_on_a_live_node_is_live_now_and_later(graph, node):
+def test_nodes_that_depend_on_a_live_node_become_live_at_any_time(graph, node):
     source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
     graph.flow([source], data)
     graph.depend(decided, [data])
@@ -166,7 +166,7 @@ def test_carriers_are_ignored_for_much_content_and_large_programs(graph, node, m
     assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
 
 
-def test_settled_carry_nodes_depend_on_their_item(graph, node):
+def test_settling_the_graph_connects_each_carry_node_to_the_content_it_stands_for(graph, node):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([carrier]))

@@ -117,7 +117,7 @@ def test_an_unset_method_of_a_library_object_is_bound_to_it(ctx, kind, name):
     assert heap.held_method(ctx, obj, name) == pointer(method)
 
 
-def test_defaults_of_unset_fields(ctx):
+def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     listed, ext = made(ctx, "sequence", "a"), recency.intern(ctx, "ext", "numpy", "numpy")
     instance = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((listed, ANY), ONE)
@@ -203,7 +203,7 @@ def test_functions_are_bound_as_their_decorator_says(ctx):
     assert heap.bind(ctx, both, obj, cls).deps == {1}
 
 
-def test_names_of_an_opened_module_are_found_directly_and_indirectly(ctx):
+def test_names_imported_with_a_star_are_found_directly_and_through_other_modules(ctx):
     (program,) = ctx.programs.values()
     module = ctx.module_objects[program.name]
     inner, outer = (recency.intern(ctx, "module", name, name) for name in ("inner", "outer"))
@@ -390,7 +390,7 @@ def test_an_object_is_interned_by_kind_and_key(ctx):
     assert recency.intern(ctx, "ext", "a") is not obj
 
 
-def test_each_turn_and_slot_has_its_own_object(ctx, frame):
+def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
     obj = recency.allocate(ctx, "sequence", frame, "slot")
     assert ctx.store.get((obj, BORN)) is BOTTOM
     ctx.store.put((obj, "[0]"), ONE)
@@ -459,7 +459,7 @@ def test_without_new_objects_only_variables_are_dropped(ctx, frame):
     assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) is delta
 
 
-def test_objects_come_together_with_their_whole_and_their_definition():
+def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
     whole, receiver, named, default = (Obj("lib", key) for key in ("a", "b", "c", "d"))
     bound = Obj("bound", "m")
     bound.info = (receiver, [pointer(default)], {"k": named.sub("x")})

@@ -126,7 +126,7 @@ def test_objects_come_in_order_of_creation():
 # --- objects ------------------------------------------------------------------------------------------
 
 
-def test_a_part_knows_its_path_and_its_whole():
+def test_an_embedded_object_has_an_access_path_and_an_outermost_object():
     message = Obj("message", "m")
     part = message.sub("pose").sub("x")
     assert part is message.sub("pose").sub("x")

@@ -66,7 +66,7 @@ def test_two_recordings_are_compared_by_reward_cells_and_sites() -> None:
     assert (same.moved, same.loss, same.same_sensors) == ((), 0.0, True)
 
 
-def test_the_lines_of_a_difference() -> None:
+def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings() -> None:
     one, two = recording("t", 4, 3.0), recording("u", 2, 1.0)
     found = difference(gone=(SITE,), new=(AWAY,), moved=(Moved(SITE, MOVED), Moved(SITE, AWAY)))
     assert [*diff.lines(one, two, found)] == [

@@ -96,7 +96,7 @@ def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
 
 
 @pytest.mark.parametrize(("world", "limit", "expected"), [(5.0, 4.9, 6), (5.0, 5.0, 8), (5.0, 6.0, 8)])
-def test_missions_before_the_onset_by_the_question_with_more_evidence(
+def test_the_onset_of_a_robot_comes_from_the_test_with_the_most_evidence(
     world: float, limit: float, expected: int
 ) -> None:
     told = status(evidence(2.0, 7), (), evidence(1.0, 4), evidence(3.0, 9))
@@ -138,7 +138,7 @@ def test_a_map_has_at_least_the_noise_of_as_many_recorded_visits() -> None:
     assert halved.variance[known] == pytest.approx(world.variance[:-1][known])
 
 
-def test_columns_of_robots_side_by_side() -> None:
+def test_the_processes_of_all_robots_are_stored_in_one_array_and_split_by_robot() -> None:
     processes = restarts.begun(np.array([1.0] * 6))
     peak = np.array([1.0, 2.0, 10.0, 11.0, 20.0, 21.0])  # a bound of both robots, two scores of each
     some = Watched(ints(4, 7), replace(processes, peak=peak), ints(1, 2, 3, 4), 1)
@@ -209,7 +209,7 @@ def test_rows_of_several_files_are_sorted_by_all_columns(
 
 
 @given(ROWS, st.sets(st.integers(0, 3), min_size=1))
-def test_the_transitions_of_some_missions(
+def test_transitions_can_be_selected_by_mission(
     rows: list[tuple[int, int, int, int, float]], some: set[int]
 ) -> None:
     every = partitions.sorted_rows([transitions(*rows)])
@@ -221,7 +221,7 @@ def test_the_transitions_of_some_missions(
     assert listed(every.between(low, high)) == [row for row in sorted(rows) if low <= row[0] < high]
 
 
-def test_cells_that_the_recording_lacks_become_one() -> None:
+def test_unrecorded_cells_of_a_chain_are_merged_into_one_cell() -> None:
     """Cells 2 and 3 are not recorded: their transitions of one mission are joined where they become equal."""
     rows = transitions(
         (0, 0, 2, 1, 1.0), (0, 0, 3, 2, 2.0), (0, 2, 3, 1, 4.0), (0, 3, END, 1, 8.0), (1, 2, 3, 1, 16.0)
@@ -254,7 +254,7 @@ def test_robots_are_divided_by_the_number_of_their_missions(monkeypatch: pytest.
     assert [one.tolist() for one in robots.portions(ends)] == [[4, 10], [11], [35, 40]]
 
 
-def test_the_mean_of_e_values_in_logarithms() -> None:
+def test_the_weighted_mean_of_e_values_is_computed_from_logarithms_without_overflow() -> None:
     assert robots._mean(np.array([]), np.array([])) == -1.0
     assert robots._mean(np.array([3.0, 1.0]), np.array([1.0, 3.0])) == pytest.approx(log2((8 + 3 * 2) / 4))
     assert robots._mean(np.array([2000.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
@@ -315,7 +315,7 @@ def test_clusters_are_sorted_by_size_and_the_unclear_named() -> None:
     assert clusters.of(maps[3:], np.array([0.0]), ((3,),), 0.05).found == ()
 
 
-def test_the_inverse_of_a_singular_matrix() -> None:
+def test_a_singular_matrix_gets_its_pseudo_inverse_and_rank() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))

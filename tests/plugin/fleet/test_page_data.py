@@ -74,7 +74,7 @@ def test_the_period_is_that_of_the_missions_or_unknown() -> None:
         ),
     ],
 )
-def test_the_headline_counts_groups_that_differ_at_once_or_in_time(
+def test_the_headline_counts_groups_that_always_differed_or_changed_later(
     groups: tuple[str | None, ...], found: tuple[str, ...], expected: str
 ) -> None:
     watched = [robot(f"g{n}") for n in range(len(groups))]
@@ -104,7 +104,7 @@ def test_a_cluster_links_thirty_robots_and_counts_the_rest() -> None:
     assert second == {"count": 30, "names": names[:30], "more": 0, "where": "no common cell", "residual": ""}
 
 
-def test_the_missions_with_the_lowest_reward() -> None:
+def test_the_page_lists_the_missions_with_the_lowest_reward() -> None:
     lowest = (Mission(1.5 * DAY, False, -12.3456789, 7), Mission(0.0, True, 3.0, 1))
     assert variables(answer(lowest=lowest))["lowest"] == [
         {"time": "1970-01-02 12:00", "result": "failed", "total": "-12.3457", "steps": 7},
@@ -112,7 +112,7 @@ def test_the_missions_with_the_lowest_reward() -> None:
     ]
 
 
-def test_the_formulas_of_each_group() -> None:
+def test_the_page_lists_the_violations_of_each_formula_by_group() -> None:
     one = group("north", formulas=(Judged("always(x > 1)", 1000, 10, -0.5678),))
     assert variables(answer(groups=(one,)))["formulas"] == [
         {"formula": "always(x > 1)", "group": "north", "violated": "10 of 1,000", "least": "-0.568"}
@@ -215,7 +215,7 @@ def test_the_onset_is_that_of_the_question_with_more_evidence(
     )
 
 
-def test_an_onset_without_a_time_or_a_mission() -> None:
+def test_an_onset_may_lack_a_time_and_a_robot_may_lack_an_onset() -> None:
     assert html._since(robot("r1")) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0)))) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0, 3)))) == (3, 0.0)
@@ -267,7 +267,7 @@ def test_cells_are_counted_over_named_robots_and_groups_that_differ() -> None:
     ]
 
 
-def test_a_group_on_the_map() -> None:
+def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     watched = robot("south", 5.126, 2.0, told)
     one = group("south", result="degraded", mean=bound(-inf, 2.75))

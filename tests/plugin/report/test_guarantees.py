@@ -64,5 +64,5 @@ def test_a_share_is_never_rounded_up(share: float) -> None:
     assert share - 0.001 < shown <= share + 1e-9
 
 
-def test_a_bound_that_is_not_finite_is_nothing() -> None:
+def test_an_infinite_bound_is_printed_as_nothing() -> None:
     assert figure(float("-inf")) == "nothing"

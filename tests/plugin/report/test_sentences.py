@@ -38,7 +38,7 @@ WORDS = "5 → 12 at a.py:3, KP × 0.5 at b.py:4, a new guard at c.py:5"
     [(0.1, "0.10"), (0.0999, "0.0999"), (999.99, "999.99"), (1000.0, "1000"), (999_999.0, "999999"),
      (-1e6, "-1e+06"), (-0.1, "-0.10"), (math.inf, "n/a"), (-math.inf, "n/a")],
 )  # fmt: skip
-def test_amounts_at_the_ends_of_their_formats(value: float, text: str) -> None:
+def test_amounts_change_their_format_at_the_stated_limits(value: float, text: str) -> None:
     assert amounts.amount(value) == text
 
 
@@ -92,7 +92,7 @@ def test_a_partial_repair_states_its_gain_with_bounds(varied: Varied) -> None:
     assert repair_words.partial_words(partial, varied(permanent=True)) == expected.format("old world")
 
 
-def test_ways_out_of_a_repair_that_only_the_designed_world_refuses(varied: Varied) -> None:
+def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(varied: Varied) -> None:
     refused = Repair(False, "", EDITS[:1], reason="nominal gets worse")
     told = repair_words.ways_out(varied(repair=refused))
     assert told.startswith(
@@ -179,7 +179,7 @@ def test_code_is_cut_only_beyond_the_width() -> None:
     assert words.one_line("x" * 18 + " yz", 20) == "x" * 18 + "…"
 
 
-def test_the_row_of_a_comparison(varied: Varied) -> None:
+def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Varied) -> None:
     one = varied(totals={"offline": (1.0, 3.0), "online": (0.0,)})
     assert table.row(one) == (
         "tests/test_traveller.py::test_delivers",

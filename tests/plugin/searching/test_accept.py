@@ -100,7 +100,7 @@ def test_a_failure_among_the_first_missions_refuses_without_spending_the_risk(
     assert [one.passed for one in (found.drifted if drifted else found.nominal)].count(False) == 1
 
 
-def test_a_refused_candidate_is_told_by_all_of_its_missions() -> None:
+def test_the_report_of_a_refused_candidate_includes_its_screening_missions() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert not found.accepted
     assert found.seeds == tuple(seeds(0)[: len(found.drifted)])

@@ -78,7 +78,7 @@ def test_the_better_near_factor_of_each_other_unit_is_tried_first() -> None:
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
-def test_the_best_unit_is_added_while_it_gains_more_than_the_slack() -> None:
+def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_slack() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 4.0 * ("A" in by) + 3.0 * (by.get("B") == 2.2) + 5.5 * ("B" in by and "C" in by)
 
@@ -108,7 +108,7 @@ def test_a_combination_that_cannot_be_written_has_no_gain() -> None:
     assert finished(chosen.fewest(joint((A, 2.2)))) == ([], None)
 
 
-def test_parts_are_balanced_one_by_one() -> None:
+def test_the_values_of_a_combination_are_refined_one_after_the_other() -> None:
     chosen = selection(lambda by: -abs(log(by["A"] / 3.3)) - abs(log(by["B"] / 0.26)))
     _, (best, gain) = finished(chosen._balanced(joint((A, 2.2), (B, 0.4)), -9.0))
     assert best.parts == ((A, 3.3), (B, 0.26))
@@ -126,7 +126,7 @@ def test_the_fewest_parts_that_suffice() -> None:
     assert found == []  # more than three parts
 
 
-def test_the_first_part_is_joined_with_the_next_ones_then_with_a_third() -> None:
+def test_the_best_constant_is_paired_with_others_before_three_are_combined() -> None:
     chosen = selection(lambda by: {1: 1.0, 2: 5.0 + ("B" in by), 3: 10.0}.get(len(by), 0.0), (A, B, C, D))
     found, _ = finished(chosen.unions([(A, 2.2), (B, 2.2), (C, 2.2), (D, 0.4)], ALWAYS))
     assert found
@@ -180,7 +180,7 @@ def test_a_surrogate_of_equal_values_predicts_them() -> None:
     assert deviation[0] < 0.3
 
 
-def test_the_best_points_that_are_not_close_to_each_other() -> None:
+def test_the_best_points_are_chosen_with_a_minimum_distance() -> None:
     points = np.array([[0.0, 0.0], [0.1, 0.1], [0.0, 0.2], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]])
     values = np.array([9.0, 8.0, 7.0, 6.0, 6.0, 10.0])
     assert _best_apart(points, values).tolist() == [[3.0, 0.0], [0.0, 0.0], [0.0, 0.2], [1.0, 0.0]]
@@ -212,14 +212,14 @@ def test_a_joint_search_finds_a_pair_and_ends_after_its_episodes() -> None:
     assert search.trials.spent <= EPISODES + 1
 
 
-def test_the_value_of_a_trial_is_its_share_of_the_gain_less_its_deviation() -> None:
+def test_the_joint_search_subtracts_the_deviation_from_the_share_of_the_gain() -> None:
     search = jointly(lambda _: 0.0)
     assert search._valued(4.5, 0.25) == 0.25
     assert search._valued(99.0, 0.0) == 1.0
     assert search._valued(-99.0, 9.0) == -1.0 - 2.0
 
 
-def test_a_point_that_was_refused_on_other_seeds_counts_less() -> None:
+def test_the_joint_search_lowers_the_value_of_a_point_that_failed_on_other_seeds() -> None:
     search = jointly(lambda _: 6.3)
     one = joint((A, 2.2))
     _, value = finished(search._value(one, 9.0))

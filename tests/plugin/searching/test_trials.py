@@ -73,7 +73,7 @@ def test_an_episode_reaches_the_goal_by_its_total_and_its_mission(
     assert goal.enough_on([0, 1]) == 9.0 - harder / 2
 
 
-def test_an_episode_is_charged_once_and_labelled() -> None:
+def test_a_repeated_request_for_an_episode_costs_no_budget() -> None:
     ran = trials({ONE: {0: 1.0, 1: 2.0}})
     assert ran(ONE, 0).total == 1.0
     assert (ran.spent, ran.totals, ran.labels) == (2, [1.0, 2.0], ["line 3: 2.0 → 4.4"] * 2)
@@ -151,7 +151,7 @@ def test_a_candidate_moves_what_its_reward_or_its_length_shows() -> None:
         assert ran.steps(TWO, pairs) == []
 
 
-def test_candidates_with_the_same_outcomes_on_common_seeds() -> None:
+def test_candidates_count_as_equal_on_the_seeds_where_their_outcomes_agree() -> None:
     ran = trials({ONE: {0: 1.0, 1: 2.0, 2: 3.0}, TWO: {1: 2.0, 2: 3.0, 3: 9.0}, THREE: {2: 4.0, 1: 2.0}})
     assert ran.same_as(ONE, TWO) == 2
     assert ran.same_as(ONE, THREE) == 0
@@ -209,7 +209,7 @@ def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing
     assert ran.spent == 0
 
 
-def test_the_deviation_from_designed_missions_charges_each_of_them_once() -> None:
+def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
     assert (ran.spent, ran.beside) == (2, 0)

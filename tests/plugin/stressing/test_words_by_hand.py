@@ -194,7 +194,7 @@ def test_directions_hold_alone_if_no_failure_was_found_up_to_there(changed: Curv
     assert told.endswith("although each alone holds.") is alone
 
 
-def test_shares_of_the_variance_the_most_important_first() -> None:
+def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
     shares = (Share("a", -0.001, 0.1, 0.25, 0.05), Share("b", 0.5, 0.1, 0.75, 0.1))
     (told,) = words.sobol_words(stress(sobol=Sobol(99, shares)))
     assert told == (
@@ -255,7 +255,7 @@ def test_promises_are_broken_inside_their_range(one: Curve, must_hold: dict[str,
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
 
 
-def test_failures_of_all_kinds_the_nearest_first() -> None:
+def test_failures_are_sorted_by_their_distance_from_nominal() -> None:
     both = combined(mud=3.9, slope=0.05)
     found = stress(
         curve(MUD, confirmed=0.5), curve(FLAT, GOOD), curve(DOWN, confirmed=1.0), combinations=(both,)
