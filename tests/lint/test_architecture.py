@@ -42,7 +42,7 @@ def reported(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[s
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
-def test_rules_find_only_what_their_snippets_declare(code, name, text, tmp_path, capsys):
+def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, name, text, tmp_path, capsys):
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert (code in {one["code"] for one in found}) == (name == "INVALID"), found
 

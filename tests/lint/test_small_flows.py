@@ -278,7 +278,7 @@ def test_a_wrapper_has_the_argument_places_of_its_model_by_default():
         ("something else", "Something else."),
     ],
 )  # fmt: skip
-def test_mistakes_on_the_command_line_are_sentences(message, sentence):
+def test_mistakes_on_the_command_line_give_one_sentence(message, sentence):
     assert _sentence(message, KNOWN) == sentence
 
 

@@ -21,12 +21,12 @@ def node(graph, frame):
     return made
 
 
-def test_a_node_is_made_once_per_key(graph, node):
+def test_asking_for_a_key_twice_gives_the_same_node(graph, node):
     assert node("a") == node("a") != node("b")
     assert graph.made == len(graph.places) == 2
 
 
-def test_data_flows_along_edges_once(graph, node):
+def test_repeated_data_edges_are_stored_once(graph, node):
     a, b = node("a"), node("b")
     graph.flow([a, a], b)
     graph.flow([a], b)
@@ -69,7 +69,7 @@ def test_a_value_chosen_by_a_branch_depends_on_its_decision_through_a_gate(graph
     assert graph.control[same] == set()
 
 
-def test_a_copy_without_choice_has_the_data_but_not_the_decision(graph, node):
+def test_a_copy_of_a_node_without_its_branches_has_the_data_but_not_the_conditions(graph, node):
     decision = node("if")
     chosen, after = node("a", (decision, "then")), node("b")
     copy = graph.unchosen(chosen)
@@ -81,7 +81,7 @@ def test_a_copy_without_choice_has_the_data_but_not_the_decision(graph, node):
     assert graph.control[after] == set()
 
 
-def test_many_values_of_a_field_meet_in_one_node(graph, node, frame):
+def test_many_values_of_a_field_are_merged_into_one_node(graph, node, frame):
     deps = frozenset(node(n) for n in range(MANY + 1))
     assert graph.meets("field", deps, carriers=False)
     assert not graph.meets("field", frozenset(list(deps)[1:]), carriers=False)
@@ -140,7 +140,7 @@ def test_content_passes_through_each_carrier_that_held_it(graph, node):
     assert graph.through(frozenset([item]), frozenset()) == {item}
 
 
-def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypatch):
+def test_cached_and_uncached_queries_of_content_give_the_same_result(graph, node, monkeypatch):
     item, other, carrier = (node(key) for key in ("item", "other", "carrier"))
     graph.hold(carrier, frozenset([item]))
     carry = carrier
@@ -154,7 +154,7 @@ def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypat
     assert graph.arriving_through(item, {carrier}) == {item}
 
 
-def test_carriers_are_ignored_for_much_content_and_large_programs(graph, node, monkeypatch):
+def test_large_programs_do_not_track_the_carriers_of_content(graph, node, monkeypatch):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     assert not graph.large()

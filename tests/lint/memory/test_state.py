@@ -172,7 +172,7 @@ def test_reads_of_what_the_call_stored_itself_do_not_count(store, obj):
     assert store.reads.stored == {other}
 
 
-def test_a_peek_is_not_recorded(store, obj):
+def test_peeking_at_a_value_records_no_read(store, obj):
     store.put((obj, "x"), ONE)
     store.reads = Reads()
     assert store.peek((obj, "x")) is ONE
@@ -335,7 +335,7 @@ def test_stores_of_others_during_a_wait_exclude_the_roots_own(shared, obj):
     assert shared.others(key, other) == ONE
 
 
-def test_a_changed_store_marks_its_readers_dirty(shared, obj):
+def test_changing_a_stored_value_reruns_the_roots_that_read_it(shared, obj):
     reader, writer = Root("reader", "callback"), Root("writer", "callback", once=True)
     key = (obj, "x")
     shared.entry(key, reader)
@@ -357,7 +357,7 @@ def test_a_root_that_can_run_concurrently_with_itself_reads_its_own_stores(share
     assert shared.dirty == {mine}
 
 
-def test_a_new_field_marks_the_watchers_of_the_object_and_of_its_whole_dirty(shared):
+def test_a_new_field_reruns_the_roots_that_read_the_object_or_its_enclosing_object(shared):
     whole, watcher, writer = Obj("message", "m"), Root("watcher", "callback"), Root("writer", "timer")
     shared.look(whole, watcher)
     shared.leave(shared.ends, writer, (whole.sub("pose"), BORN), BOTTOM)
@@ -419,7 +419,7 @@ def test_only_an_object_that_the_current_path_made_is_isolated_and_only_before_a
 # --- waits --------------------------------------------------------------------------------------------
 
 
-def test_after_a_wait_reads_heed_the_stores_of_other_roots(store, obj):
+def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
     key, other = (obj, "x"), Root("other", "callback")
     store.put(key, ONE)
     store.shared.leave(store.shared.ends, other, key, TWO)

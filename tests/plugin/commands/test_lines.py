@@ -41,7 +41,7 @@ def test_a_recording_is_worse_by_a_significant_loss_beyond_what_is_allowed(
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
 
 
-def test_a_recording_changed_if_its_sites_or_sensors_did() -> None:
+def test_two_recordings_differ_if_their_sites_or_sensors_differ() -> None:
     assert not difference(moved=(Moved(SITE, MOVED),)).changed
     for one in ({"gone": (SITE,)}, {"new": (SITE,)}, {"same_sensors": False}):
         assert difference(**one).changed

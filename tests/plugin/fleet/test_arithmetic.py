@@ -277,7 +277,7 @@ def test_distances_are_the_largest_difference_in_standard_errors() -> None:
     assert np.diag(found).tolist() == [inf] * 4
 
 
-def test_cells_stand_out_after_correction_for_their_number() -> None:
+def test_significant_cells_are_corrected_for_the_number_of_cells() -> None:
     p = erfc(2.0 / sqrt(2.0))  # 0.0455
     mean, variance = np.array([2.0, 0.0, np.nan, -4.0]), np.array([1.0, 0.0, 1.0, 1.0])
     assert clusters._standing_out(mean, variance, 3.1 * p).tolist() == [0, 3]
@@ -303,7 +303,7 @@ def test_a_cluster_pools_its_maps_by_the_inverse_of_their_variances() -> None:
     assert found.residuals == pytest.approx((-4.0, -4.0))  # (-3·10 - 6·5) / 15
 
 
-def test_clusters_are_sorted_by_size_and_the_unclear_named() -> None:
+def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() -> None:
     def one(name: str, mean: float) -> ResidualMap:
         return ResidualMap(name, np.array([mean]), np.array([0.01]))
 
@@ -344,7 +344,7 @@ def test_a_map_has_the_missions_of_a_robot_from_its_onset_on(monkeypatch: pytest
     assert found == [("20", "first"), ("30", "second"), ("40", "third")]
 
 
-def test_robots_with_most_evidence_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_clustering_compares_the_robots_with_the_most_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
     compared: list[str] = []
 
     def maps(*arguments: Any) -> list[ResidualMap]:

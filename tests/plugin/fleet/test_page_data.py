@@ -46,7 +46,7 @@ def data(found: Answer) -> dict[str, Any]:
     return html._data(found, Vocabulary(SENSORS, CELLS))
 
 
-def test_the_title_names_the_robot_in_question() -> None:
+def test_the_title_of_the_page_names_the_requested_robot() -> None:
     assert variables(answer())["title"] == "data"
     assert variables(answer(question=Question("data", robot="r1")))["title"] == "data, r1"
 
@@ -124,7 +124,7 @@ def test_notes_lose_their_mark() -> None:
     assert first.startswith("ranges are one-sided bounds")
 
 
-def test_components_have_a_share_where_they_are_known() -> None:
+def test_components_of_unknown_variance_have_no_share() -> None:
     site = Component("site", 0.3, 0.15, 0.6, 2, (-0.25, 0.25))
     parts = Decomposition(
         "month",
@@ -153,7 +153,7 @@ def test_components_have_a_share_where_they_are_known() -> None:
     assert variables(answer())["components"] == []
 
 
-def test_repairs_with_their_intervals_or_the_reason_why_there_is_none() -> None:
+def test_the_page_shows_repairs_with_an_interval_or_the_reason_for_its_absence() -> None:
     helps, nothing = variables(
         answer(repairs=(effect(values=("wet",)), unknown()), accepted={"guard-1": "mud"})
     )["repairs"]
@@ -177,7 +177,7 @@ def test_repairs_with_their_intervals_or_the_reason_why_there_is_none() -> None:
     assert (harms["tag"], none["tag"], none["verdict"]) == ("harms", "no-difference", "no effect shown")
 
 
-def test_the_data_hold_robots_as_columns_and_named_ones_by_their_index() -> None:
+def test_the_page_stores_robots_in_columns_and_refers_to_them_by_index() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     every = (robot("r1"), robot("r2", 9.123, 1.0, told), robot("r3", 3.0, 2.0))
     found = data(
@@ -205,7 +205,7 @@ def test_the_data_hold_robots_as_columns_and_named_ones_by_their_index() -> None
 
 
 @pytest.mark.parametrize(("world", "limit", "mission"), [(5.0, 4.9, 7), (5.0, 5.0, 9), (5.0, 6.0, 9)])
-def test_the_onset_is_that_of_the_question_with_more_evidence(
+def test_the_onset_on_the_page_comes_from_the_test_with_the_most_evidence(
     world: float, limit: float, mission: int
 ) -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, DAY), evidence(3.0, 9, 5 * DAY))
@@ -309,6 +309,6 @@ def test_too_many_groups_leave_those_that_differ_and_those_with_the_lowest_rewar
     assert [one["values"] for one in data(found)["groups"]] == [["b"], ["c"], ["d"]]
 
 
-def test_a_page_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
+def test_an_unwritable_page_gives_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(FleetError, match=r"The page .* cannot be written"):
         html.write(answer(), tmp_path / "missing" / "folder" / ("x" * 300))

@@ -31,7 +31,7 @@ from tests.plugin.fleet.answers import (
 PLACE = ((2, 0), (2, 1))
 
 
-def test_a_quiet_fleet_is_a_table_and_three_sentences() -> None:
+def test_a_fleet_without_alarms_is_reported_in_a_table_and_three_sentences() -> None:
     assert [*words.lines(answer())] == [
         "data: 40 missions of 1 robot, compared with 10 episodes of test_walk.py::test_walk",
         "",
@@ -86,7 +86,7 @@ def test_the_table_names_the_region_with_new_cells() -> None:
     assert [*words.lines(found)][3].endswith("drifted (p 0.03)  x 2-3")
 
 
-def test_a_group_that_changed_is_told_by_the_question_with_more_evidence() -> None:
+def test_the_sentence_about_a_changed_group_uses_the_test_with_the_most_evidence() -> None:
     told = status(
         evidence(2.0, 7, 3 * DAY), PLACE, evidence(1.0, 4, 2 * DAY), None, evidence(3.0, 9, 5 * DAY)
     )
@@ -134,7 +134,7 @@ def test_named_robots_are_counted_and_at_most_twenty_listed() -> None:
         assert sum("evidence 32" in line for line in below) == 20
 
 
-def test_a_robot_below_a_bound_is_told_by_the_bound() -> None:
+def test_a_robot_below_a_bound_is_described_by_that_bound() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, None))
     one = robot("r1", 5.0, 4.0, told)
     lines = [*words.lines(answer(robots=robots(one, below=(one,))))]
@@ -200,7 +200,7 @@ def test_each_note_appears_only_if_its_condition_holds() -> None:
     ]
 
 
-def test_the_effect_of_a_repair_is_told_with_intervals_and_counts() -> None:
+def test_the_effect_of_a_repair_is_printed_with_intervals_and_counts() -> None:
     some = (
         effect(values=("wet",)),
         replace(effect("guard-2", -0.5, -0.75), reward_bound=bound(-0.75, -0.25)),

@@ -165,7 +165,9 @@ def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_moments_keep_every_nth_time_whatever_the_portions(portions: list[int], most: int) -> None:
+def test_the_times_of_every_nth_mission_are_kept_however_missions_arrive(
+    portions: list[int], most: int
+) -> None:
     most *= 2
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(moments, "MOST", most)
@@ -181,7 +183,7 @@ def test_moments_keep_every_nth_time_whatever_the_portions(portions: list[int], 
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_no_moment_is_known_before_the_first() -> None:
+def test_before_the_first_kept_mission_no_time_is_known() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 
@@ -309,7 +311,7 @@ def test_a_monitor_notes_missing_bounds_and_incomplete_missions(monitor: Monitor
     ]
 
 
-def test_edges_lie_midway_between_values_and_tails_double() -> None:
+def test_bin_edges_lie_midway_between_values_and_bins_double_towards_the_tails() -> None:
     found = conformal.edges(np.array([0.0, 1.0, 1.0, 4.0]), 1.0)
     finite = found[np.isfinite(found)]
     spread = 4.0
@@ -322,7 +324,7 @@ def test_edges_lie_midway_between_values_and_tails_double() -> None:
     assert conformal.edges(np.empty(0), 0.0)[0] == -1.0
 
 
-def test_scores_join_the_pool_in_their_bins() -> None:
+def test_each_score_is_counted_in_its_bin() -> None:
     pool = np.zeros((2, conformal.BINS), np.int64)
     found = conformal.joined(pool, np.array([[3, -1], [3, 5]]))
     assert (found[0, 3], found[1, 5], found.sum()) == (2, 1, 3)

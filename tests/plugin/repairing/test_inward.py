@@ -52,7 +52,7 @@ def test_the_value_goes_back_to_where_all_missions_hold(low: float, high: float)
     assert spent <= 8
 
 
-def test_nothing_is_proposed_without_a_window_or_without_a_lost_mission() -> None:
+def test_without_a_window_or_a_lost_mission_no_value_is_proposed() -> None:
     assert inward(4.0, 3.0)[0] == []
     assert inward(2.4, 3.4, lost=False) == ([], 0)
 

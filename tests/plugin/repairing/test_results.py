@@ -77,7 +77,7 @@ def test_the_best_candidate_is_reported_unless_one_was_refused_on_fresh_seeds() 
     assert found.progress("sweep") == "sweep (best so far +4.5 of 8)"
 
 
-def test_candidates_that_were_near_once_and_ran_more_than_twice_were_not_confirmed() -> None:
+def test_a_candidate_with_one_good_mission_of_more_than_two_counts_as_unconfirmed() -> None:
     one, two, far, examined = (scaled(by) for by in (2.0, 3.0, 4.0, 5.0))
     runs = [(two, 0, 8.0), (two, 1, 1.0)]  # twice only
     for candidate, first in ((one, 8.0), (far, 7.9), (examined, 9.0)):
@@ -326,7 +326,7 @@ def test_promising_candidates_are_the_best_refused_one_and_those_that_gained_mos
     assert [*_promising(examined(furthest=best), found)] == [best, harmful, more]
 
 
-def test_a_mild_candidate_loses_at_most_the_margin_in_recorded_missions() -> None:
+def test_a_mild_candidate_loses_at_most_the_tolerance_in_recorded_missions() -> None:
     def mutants(lost: float, permanent: bool = False) -> Any:
         sample = SimpleNamespace(seeds=(4, 5, 6, 7), total=np.array([10.0, 11.0, 12.0, 13.0]))
         order = SimpleNamespace(permanent=permanent, reference=MARGIN, fixture=SimpleNamespace(sample=sample))

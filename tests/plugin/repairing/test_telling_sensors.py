@@ -84,7 +84,9 @@ if __name__ == "__main__":
 """
 
 
-def test_what_is_published_is_a_place_for_a_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_templates_with_a_delay_apply_to_published_values(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "sprayer.py").write_text(SENDING)
     monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: {})
     asked: Any = order(0, 5)

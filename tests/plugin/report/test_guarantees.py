@@ -59,7 +59,7 @@ def test_equal_episodes_are_one_world_and_give_no_bounds() -> None:
 
 
 @given(st.floats(0.0, 1.0))
-def test_a_share_is_never_rounded_up(share: float) -> None:
+def test_percentages_in_guarantees_are_rounded_down(share: float) -> None:
     shown = float(percent(share).removesuffix(" %")) / 100
     assert share - 0.001 < shown <= share + 1e-9
 

@@ -253,12 +253,12 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("empty.launch.xml", {}, r"empty\.launch\.xml starts no node with these arguments"),
     ],
 )  # fmt: skip
-def test_mistakes_are_sentences(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
+def test_user_mistakes_give_one_sentence(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
     with pytest.raises(SettingsError, match=said):
         tarl.launch(file, **options)
 
 
-def test_an_import_that_no_package_serves_is_a_sentence(tarl: Tarl, tmp_path: Path) -> None:
+def test_an_import_without_a_package_gives_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
     with pytest.raises(
         NodeError, match=r"No module named 'controllers' .*The package controllers is in the works"
     ):

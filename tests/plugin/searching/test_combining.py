@@ -72,7 +72,7 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
     assert both.without(A).parts == ((B, 3.0),)
 
 
-def test_the_better_near_factor_of_each_other_unit_is_tried_first() -> None:
+def test_joining_a_constant_begins_with_its_better_small_factor() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
     added = [one.parts[-1] for one in chosen._with_another(joint((A, 2.2)))]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
@@ -134,7 +134,7 @@ def test_the_best_constant_is_paired_with_others_before_three_are_combined() -> 
     assert {"A", "B"} <= found[0].keys()
 
 
-def test_hidden_units_are_added_to_a_pair_that_gains_much() -> None:
+def test_constants_without_an_effect_alone_are_added_to_a_pair_that_gains_much() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 10.0 if {"A", "B", "D"} <= by.keys() else {1: 1.0, 2: 6.0}.get(len(by), 0.0)
 
@@ -243,7 +243,7 @@ def test_proposals_move_one_to_three_coordinates_within_a_factor_of_twenty() -> 
     assert often[:4].min() > 1.5 * often[4:].max() > 0
 
 
-def test_constants_to_move_jointly_and_those_that_may_be_hidden() -> None:
+def test_the_joint_search_moves_constants_that_gain_and_some_without_an_effect_alone() -> None:
     gains = Gains(0.5)
     literal = Unit((constant(9, "9.0"),))
     for unit, gain in ((A, 0.6), (B, -3.0), (C, 0.5), (D, 0.1), (literal, 9.0)):

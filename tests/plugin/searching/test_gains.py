@@ -190,7 +190,7 @@ def test_a_constant_of_nature_with_its_sign_flipped_stays_one() -> None:
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
-def test_plainer_changes_come_first_those_that_gain_before_untried_ones() -> None:
+def test_more_readable_changes_come_first_and_those_with_a_gain_before_untried_ones() -> None:
     literal = Unit((LITERAL,))
     found = gains()
     assert plainer(Oddness.VARIABLE, found.under(ALWAYS), [C, B, A, literal], 4.0) == [A, literal]
@@ -299,7 +299,9 @@ def test_a_new_arm_lies_between_neighbouring_factors_of_the_same_constant() -> N
 @given(
     st.dictionaries(st.integers(0, 5), st.floats(-9, 9)), st.dictionaries(st.integers(0, 5), st.floats(-9, 9))
 )
-def test_an_arm_is_behind_only_on_three_common_seeds(one: dict[int, float], other: dict[int, float]) -> None:
+def test_an_arm_counts_as_worse_only_after_three_common_seeds(
+    one: dict[int, float], other: dict[int, float]
+) -> None:
     differences = paired(one, other)
     assert differences == [one[seed] - other[seed] for seed in one if seed in other]
     if len(differences) < 3:
@@ -309,7 +311,7 @@ def test_an_arm_is_behind_only_on_three_common_seeds(one: dict[int, float], othe
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_interval_of_a_lead_is_students() -> None:
+def test_the_confidence_interval_of_a_lead_is_that_of_student() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 

@@ -330,7 +330,7 @@ def test_each_kind_of_boundary_has_its_sentence(side: Margin, expected: str) -> 
     assert boundary_words(side) == expected
 
 
-def test_rows_of_a_comparison_are_in_the_order_of_the_new_file() -> None:
+def test_compared_margins_are_listed_in_the_order_of_the_new_file() -> None:
     up, gone = replace(SIDE, end=2.0), Margin("camera='down'", 0.0, 1.0, None, None)
     before = Margins("t", "w", 0.9, 0.5, 0.9, (gone, SIDE))
     found = compared([before], [replace(before, sides=(up, SIDE))])
