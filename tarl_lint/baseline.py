@@ -54,8 +54,7 @@ def missing(
     """Return the accepted findings that were not found, as (vanished, kept), each with the number of missing findings.
 
     `judged` tells whether this run analysed everything that an entry needs. It did not if a file of the entry was not
-    analysed or is
-    unreadable; such entries are kept.
+    analysed or is unreadable; such entries are kept.
     """
     counts = ((entry, entry.count - found.get(entry.fingerprint.digest(), 0)) for entry in baseline.entries)
     lacking = [replace(entry, count=count) for entry, count in counts if count > 0]

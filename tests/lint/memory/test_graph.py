@@ -127,7 +127,7 @@ def test_a_carrier_counts_what_it_passed_on(graph, node):
     assert not graph.as_passed({carrier: 0})
 
 
-def test_content_passes_through_each_carrier_that_held_it(graph, node):
+def test_content_depends_on_every_carrier_that_contained_it(graph, node):
     item, other, first, second = (node(key) for key in ("item", "other", "first", "second"))
     graph.hold(first, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([first]))

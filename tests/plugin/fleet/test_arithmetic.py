@@ -123,7 +123,7 @@ def test_the_residuals_of_the_recording_itself_are_zero_on_average() -> None:
     assert world.of_visit[known].tolist() == (variance * visits)[known].tolist()
 
 
-def test_a_map_has_at_least_the_noise_of_as_many_recorded_visits() -> None:
+def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> None:
     recorded = fixture()
     world = residual_maps.designed(recorded)
     own = replace(recorded.sample, cells=((),) * (len(recorded.sample.cells) + 1))
@@ -201,7 +201,7 @@ ROWS = st.lists(
 
 
 @given(ROWS, st.integers(0, 12))
-def test_rows_of_several_files_are_sorted_by_all_columns(
+def test_rows_from_several_files_are_merged_and_sorted(
     rows: list[tuple[int, int, int, int, float]], cut: int
 ) -> None:
     parts = [transitions(*some) for some in (rows[:cut], rows[cut:]) if some]

@@ -151,7 +151,7 @@ def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 
 
-def test_a_bet_is_hopeless_once_no_further_episodes_can_win_it() -> None:
+def test_a_betting_test_stops_once_no_further_episodes_can_decide_it() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     even = [0.5, -0.5] * 10
     best = 1.0  # the bound of the mean at 0.5 % lies well below it
@@ -200,7 +200,7 @@ def test_bisection_finds_the_largest_value_that_the_test_refutes(edge: float) ->
     assert coarse == int(edge * 8) / 8
 
 
-def test_looks_double_and_spend_the_square_of_their_share() -> None:
+def test_each_check_spends_the_square_of_its_share_of_alpha() -> None:
     assert planned(40, 3) == (Look(10, 1 / 16), Look(20, 3 / 16), Look(40, 3 / 4))
     assert planned(39, 3) == (Look(19, (19 / 39) ** 2), Look(39, 1 - (19 / 39) ** 2))
     assert planned(5, 3) == (Look(5, 1.0),)
@@ -210,7 +210,7 @@ def difference(**changes: Any) -> Difference:
     return Difference(replace(VERDICT, **changes), Region(((1,),)), {})
 
 
-def test_a_sequence_of_looks_adjusts_p_values_and_confidence() -> None:
+def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
     interval = LossInterval(0.1, 0.9, 0.98)
     seen = [
         (Look(10, 0.25), difference(p_loss=0.01, p_drift=0.2)),
@@ -234,7 +234,9 @@ def test_a_sequence_of_looks_adjusts_p_values_and_confidence() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_look_is_certain_with_a_loss_and_its_place(result: Any, region: Region, expected: bool) -> None:
+def test_a_check_is_decisive_only_with_a_loss_and_its_region(
+    result: Any, region: Region, expected: bool
+) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
 
 

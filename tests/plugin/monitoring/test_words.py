@@ -294,7 +294,7 @@ def test_a_monitor_without_missions_has_no_lead_and_no_onset(monitor: Monitor) -
     assert found.world.now == pytest.approx(found.world.highest)
 
 
-def test_new_cells_are_named_from_two_missions_on(monitor: Monitor) -> None:
+def test_new_cells_are_named_once_two_missions_visited_them(monitor: Monitor) -> None:
     found = replace(changed(monitor), new={(9, 1): 2, (8, 0): 2, (7, 0): 1})
     assert module.status(found).new == ((8, 0), (9, 1))
 

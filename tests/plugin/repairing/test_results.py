@@ -234,7 +234,9 @@ MARGIN = Reference([10.0, 10.0], 1.0, 1.0, 0.0)
     ("by", "expected"),
     [(2.0, 2.6), (1.2, 1.2 * 1.3**3), (6.0, 6.0 / 1.3**2), (5.2, 4.0), (4.4, 4.4), (3.4, 3.4), (0.5, 0.5)],
 )
-def test_a_value_climbs_while_it_loses_more_than_a_third_of_the_margin(by: float, expected: float) -> None:
+def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
+    by: float, expected: float
+) -> None:
     """A mission earns 10 less 0.8 for each doubling between the factor and 3.4; below 1 it fails."""
 
     def run(one: Candidate, seed: int) -> Outcome:

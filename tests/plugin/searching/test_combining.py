@@ -115,7 +115,7 @@ def test_the_values_of_a_combination_are_refined_one_after_the_other() -> None:
     assert gain == pytest.approx(0.0)
 
 
-def test_the_fewest_parts_that_suffice() -> None:
+def test_the_search_keeps_the_fewest_changes_that_restore_the_reward() -> None:
     needs = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, _ = finished(needs.fewest(joint(*((unit, 2.2) for unit in (A, B, C, D)))))
     assert found == [{"A": 2.2, "B": 2.2}]
@@ -172,7 +172,7 @@ def test_the_improvement_expected_of_a_normal_value() -> None:
     assert found[1] == pytest.approx(1.0 * 0.6914625 + 2.0 * density, rel=1e-6)
 
 
-def test_a_surrogate_of_equal_values_predicts_them() -> None:
+def test_a_surrogate_fitted_to_equal_values_predicts_that_value() -> None:
     found = Surrogate(np.array([[0.0], [1.0]]), np.array([5.0, 5.0]), np.array([1.0]))
     mean, deviation = found.predict(np.array([[0.0], [99.0]]))
     assert mean == pytest.approx([5.0, 5.0])

@@ -62,7 +62,7 @@ def gains(slack: float = 0.5) -> Gains:
     return found
 
 
-def test_the_unchanged_constant_gains_nothing_unless_it_is_a_proposal() -> None:
+def test_the_unchanged_constant_has_gain_zero_unless_it_was_proposed() -> None:
     found = gains()
     assert found.of(A, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 0.4: -3.0, 5.0: 5.0}
     assert found.of(A, WET) == {}
@@ -84,7 +84,7 @@ def test_a_search_has_a_gain_only_if_it_exceeds_the_slack(slack: float, expected
     assert gains(slack).anything() is expected
 
 
-def test_a_proposal_is_idle_if_it_changed_no_episode_as_proposed() -> None:
+def test_a_proposal_counts_as_ineffective_if_it_changed_no_episode() -> None:
     found = Gains(0.5, proposed=True)
     found.enter((A, ALWAYS), 1.0, 0.0)
     found.enter((A, ALWAYS), 2.2, 3.0)
@@ -141,7 +141,7 @@ def test_the_best_factor_of_each_unit_under_some_guards() -> None:
     assert found.best_under([]) == []
 
 
-def test_each_site_has_one_leader() -> None:
+def test_each_statement_contributes_only_its_best_change() -> None:
     found = gains()
     twin = Unit((replace(constant(1, "TWIN"), site=A.operands[0].site),))
     found.enter((twin, ALWAYS), 2.2, 7.0)
@@ -349,7 +349,7 @@ LINE = Sensor("x", topic="/x", field="data", low=0, high=8, bins=8)
     ("cells", "line", "arc"),
     [((2, 3, 5), (2, 5), (2, 5)), ((0, 1, 7), (0, 7), (7, 9)), ((4,), (4, 4), (4, 4)), ((), None, None)],
 )
-def test_the_hull_of_some_bins_is_the_shortest_arc_of_an_angle(
+def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
     cells: tuple[int, ...], line: tuple[int, int] | None, arc: tuple[int, int] | None
 ) -> None:
     some = [(one,) for one in cells]

@@ -175,7 +175,7 @@ def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_k
     assert most_passed(GIVEN, 32, 0.01) == 23  # 9 failures or more: 0.0038, 8 or more: 0.012
 
 
-def test_a_test_is_hopeless_if_neither_failures_nor_losses_come_near_what_refutes() -> None:
+def test_a_test_stops_early_if_failures_and_losses_are_far_from_refuting() -> None:
     nominal = [Outcome(True, 10.0)] * 16
 
     def ends(failed: int, loss: float) -> bool:
@@ -198,7 +198,7 @@ def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, direction
     assert min(risks.each, risks.combinations) > 0.0
 
 
-def test_little_is_lost_if_the_bound_is_below_the_tolerance() -> None:
+def test_a_loss_is_acceptable_only_if_its_upper_bound_is_below_the_tolerance() -> None:
     assert little_lost(GIVEN, [Outcome(True, 9.7), Outcome(True, 9.8)] * 8, [FINE] * 16, 0.05)
     assert not little_lost(GIVEN, [Outcome(True, 9.2), Outcome(True, 9.9)] * 8, [FINE] * 16, 0.05)
     declared = replace(GIVEN, declared=Range(0.0, 100.0))
@@ -227,7 +227,7 @@ def test_a_drift_kept_from_an_earlier_run_counts_only_if_it_fails_again(
     assert _fails(outcomes, GIVEN) is expected
 
 
-def test_values_to_confirm_are_clearly_failing_ones_and_some_beyond() -> None:
+def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_ones() -> None:
     option = curve(DOWN, {1.0: -1.0})
     assert _candidates(option, GIVEN, 0.1) == [1.0]
     assert _candidates(curve(MUD, {1.0: 1.0}), GIVEN, 0.1) == []
