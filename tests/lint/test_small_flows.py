@@ -241,7 +241,7 @@ def test_the_outline_of_a_module_knows_its_locks_and_names():
     ]
 
 
-def test_calls_are_found_by_their_whole_position():
+def test_a_call_is_found_by_its_start_and_end_position():
     found = Outline(ast.parse("f(1)(2)\ng()\n"))
     outer, inner = found.call((1, 0, 1, 7)), found.call((1, 0, 1, 4))
     assert outer is not None

@@ -78,7 +78,7 @@ def world(episode: Episode, environment: Any, **more: Any) -> GymnasiumWorld:
     return GymnasiumWorld(episode, environment, **{**ends, "idle": [0.0], **more})  # type: ignore[arg-type]
 
 
-def test_observations_go_out_and_actions_come_in_until_the_environment_ends() -> None:
+def test_an_environment_publishes_observations_and_receives_actions_until_it_ends() -> None:
     episode, environment = Episode([None, 0.25, 9.0, 9.0]), Environment()
     ours = world(episode, environment, options={"a": 1})
     begun = ours.observation

@@ -277,7 +277,7 @@ def test_an_item_of_the_attributes_is_an_attribute_unless_the_object_is_a_dictio
 # --- stores -------------------------------------------------------------------------------------------
 
 
-def test_a_weak_update_keeps_the_value_before_even_if_unset(ctx):
+def test_a_weak_update_keeps_the_former_value_or_the_default(ctx):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     updates.weaken(ctx, obj, "x", TWO)

@@ -404,7 +404,7 @@ def test_a_path_that_did_not_make_an_object_joins_the_stores_of_others_without_r
     assert shared.dirty == {mine}
 
 
-def test_only_an_object_that_the_current_path_made_is_isolated_and_only_before_a_wait(store, obj):
+def test_an_object_created_on_the_current_path_is_invisible_to_others_until_a_wait(store, obj):
     assert not store.isolated(obj)
     store.push()
     store.put((obj, BORN), BOTTOM)

@@ -71,7 +71,7 @@ def test_a_watch_without_an_alarm_prints_evidence_and_error_rate() -> None:
     )
 
 
-def test_an_alarm_has_its_moment_onset_score_and_places() -> None:
+def test_an_alarm_is_printed_with_time_onset_score_and_cells() -> None:
     found = status(
         world=LOUD,
         lead=Score("residual", (2, 1), "lower"),
@@ -116,7 +116,7 @@ def test_evidence_is_printed_with_the_alarm_that_it_raised(evidence: Evidence | 
     assert words.found(evidence, 0.05) == expected
 
 
-def test_bounds_scores_and_promises_in_words() -> None:
+def test_bounds_scores_and_guarantees_are_described_in_words() -> None:
     assert words.stated(TOTAL) == "a mission earns at least 2.5 on average (90 % confidence)"
     some = Vocabulary(missions.SENSORS, ((0, 0), (0, 1)))
     assert (

@@ -208,7 +208,7 @@ def test_a_value_is_moved_if_it_belongs_to_one_site() -> None:
     assert found == pytest.approx([2.5, 1.6, 2.24, 1.78])
 
 
-def test_the_ratio_of_two_candidates_that_differ_in_one_value() -> None:
+def test_two_candidates_that_differ_in_one_value_have_a_ratio() -> None:
     assert ratio_of(scaled(3.0), scaled(2.0)) == pytest.approx(1.5)
     for other in (scaled(2.0, WET), scaled(2.0, of=OTHER), scaled(-2.0)):
         assert ratio_of(scaled(3.0), other) is None

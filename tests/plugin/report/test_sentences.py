@@ -145,7 +145,7 @@ def test_a_loss_has_interval_confidence_and_size(varied: Varied) -> None:
         assert words.loss_words(varied(totals=totals | few, verdict=verdict)) == ""
 
 
-def test_parts_of_the_reward_that_got_worse_the_largest_loss_first(varied: Varied) -> None:
+def test_worsened_parts_of_the_reward_are_listed_with_the_largest_loss_first(varied: Varied) -> None:
     parts = {"a": (5.0, 3.0), "b": (1.0, 9.0), "c": (0.0, -8.0), "tiny": (0.0, -0.09), "same": (1.0, 1.0)}
     one = varied(parts=parts, lost={"c": ((12, 1),), "b": ((12, 1),)})
     assert words.lost_parts(one) == [("c", -8.0), ("a", -2.0)]
@@ -216,7 +216,7 @@ def test_attempts_before_an_accepted_repair_are_counted_others_listed(
     assert [*terminal._repair(varied(repair=None))] == []
 
 
-def test_the_share_of_the_loss_that_a_repair_restores(varied: Varied) -> None:
+def test_a_repair_states_the_share_of_the_loss_that_it_restores(varied: Varied) -> None:
     totals = {"offline": (8.0,), "online": (4.0,), "repaired": (7.0,)}
     assert html._share(varied(totals=totals)) == 75.0
     assert html._share(varied(totals=totals | {"online": (8.0,)})) is None
@@ -237,7 +237,7 @@ def test_the_designed_curve_is_clipped_at_the_longest_other(lengths: tuple[int, 
     assert not html._clipped([{"kind": "online", "mean": [0.0]}])
 
 
-def test_the_largest_change_of_a_figure_in_words() -> None:
+def test_the_page_describes_the_largest_change_of_a_figure_in_words() -> None:
     row = {"title": "", "offline": [[1.0, None]], "online": [[0.5, 9.0]]}
     figure = {"sites": [[30, "vel = (\n 5)", "a.py"]], "axis": {"names": ["x 0-1", "x 1-2"]}, "rows": [row]}
     assert html._largest_change(figure) == (

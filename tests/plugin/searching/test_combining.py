@@ -158,13 +158,13 @@ def test_a_candidate_is_confirmed_once() -> None:
     assert (settled.held, settled.tried) == ({one}, {one, refused})
 
 
-def test_the_kernel_is_matern_five_halves() -> None:
+def test_the_covariance_equals_the_matern_kernel_of_order_five_halves() -> None:
     found = _kernel(np.array([[[0.0], [4.0]]]), np.array([2.0]))
     scaled = sqrt(5.0)  # at a distance of one length
     assert found == pytest.approx(np.array([[1.0, (1 + scaled + 5 / 3) * exp(-scaled)]]))
 
 
-def test_the_improvement_expected_of_a_normal_value() -> None:
+def test_the_expected_improvement_equals_its_formula() -> None:
     mean, deviation = np.array([3.0, 4.0]), np.array([2.0, 2.0])
     found = expected_improvement(mean, deviation, 3.0)
     assert found[0] == pytest.approx(2.0 / sqrt(2 * pi))  # at the best value, σ φ(0)

@@ -134,7 +134,7 @@ def test_constants_are_sorted_by_their_gain_with_a_factor() -> None:
     assert found.leading(2.2, ALWAYS, [A, B, C], -1.0, inert=True) == [A, C, B]
 
 
-def test_the_best_factor_of_each_unit_under_some_guards() -> None:
+def test_the_best_factor_of_each_constant_is_found_under_the_given_guards() -> None:
     found = gains()
     assert found.best_under([ALWAYS, WET]) == [(A, 5.0), (B, 0.4)]
     assert found.best_under([ALWAYS]) == [(A, 5.0)]
@@ -166,7 +166,7 @@ GRAVITY = constant(8, "GRAVITY", 9.81)
         (operand(9, "9.81", 9.81), Oddness.NATURE),
     ],
 )
-def test_the_order_in_which_operands_are_tried(one: Operand, tried: Oddness) -> None:
+def test_operands_are_tried_in_the_documented_order(one: Operand, tried: Oddness) -> None:
     assert writing(one) is tried
 
 

@@ -208,7 +208,7 @@ def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
     assert [*words.sobol_words(stress())] == []
 
 
-def test_statements_that_ran_only_in_failures() -> None:
+def test_statements_that_ran_only_in_failures_are_listed() -> None:
     only = tuple(Executed("n.py", n, f"x = {n}", 9 - n) for n in range(6))
     told = [*words.statement_words(stress(statements=Statements(9, 30, only)))]
     assert told[0] == "n.py:0 ran in 9 of 9 failing episodes and in none of 30 others: x = 0"
