@@ -166,7 +166,7 @@ GRAVITY = constant(8, "GRAVITY", 9.81)
         (operand(9, "9.81", 9.81), Oddness.NATURE),
     ],
 )
-def test_operands_are_tried_in_the_documented_order(one: Operand, tried: Oddness) -> None:
+def test_each_kind_of_operand_has_its_rank_in_the_search_order(one: Operand, tried: Oddness) -> None:
     assert writing(one) is tried
 
 
