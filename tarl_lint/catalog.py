@@ -270,7 +270,7 @@ MAY_BE_NONE: Final = frozenset(
 )  # library functions that return None if they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
 
-STATES: Final = "smach"  # when such a state runs, it receives the data that all states share
+STATES: Final = "smach"  # a state with such a base receives the data shared by all states when it runs
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")

@@ -93,7 +93,7 @@ def test_a_repair_by_hand_fits_its_files(task: Path, tmp_path: Path) -> None:
             compile(text, name, "exec")
 
 
-def test_the_second_half_has_every_kind() -> None:
+def test_the_second_half_of_the_tasks_has_every_kind_of_defect() -> None:
     kinds = [answer(task)["kind"] for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_2"]
     assert {kind: kinds.count(kind) for kind in kinds} == {
         "permanent": 2,
@@ -106,7 +106,7 @@ def test_the_second_half_has_every_kind() -> None:
     }
 
 
-def test_the_third_set_has_every_kind_and_says_where_drifts_occur() -> None:
+def test_the_third_set_has_every_kind_of_defect_and_states_where_drifts_occur() -> None:
     third = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
     kinds = [known["kind"] for known in third]
     assert {kind: kinds.count(kind) for kind in kinds} == {
@@ -165,7 +165,7 @@ KINDS = {  # of the tasks of each set
 
 
 @pytest.mark.parametrize("folder", KINDS)
-def test_a_set_has_every_kind_and_says_where_drifts_occur(folder: str) -> None:
+def test_each_set_has_every_kind_of_defect_and_states_where_drifts_occur(folder: str) -> None:
     known = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == folder]
     assert sorted(one["kind"] for one in known) == KINDS[folder]
     assert all(one["practice"] for one in known)

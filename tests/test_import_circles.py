@@ -44,7 +44,7 @@ def circles(imports: dict[str, set[str]]) -> Iterator[frozenset[str]]:
         ({"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": {"e"}, "e": {"d"}}, [{"d", "e"}, {"a", "b", "c"}]),
     ],
 )
-def test_circles_are_found(imports: dict[str, set[str]], found: list[set[str]]) -> None:
+def test_import_cycles_are_found(imports: dict[str, set[str]], found: list[set[str]]) -> None:
     assert list(circles(imports)) == found
 
 

@@ -39,7 +39,7 @@ def started(file: Path) -> Iterator[str]:
         yield from (str(word).partition(".")[0] for flag, word in pairwise(words) if flag == "-m" and word)
 
 
-def test_there_are_jobs_to_look_at() -> None:
+def test_the_ci_configuration_has_jobs() -> None:
     assert {"lower-bounds", "benchmarks", "newer-pythons"} <= JOBS.keys()
 
 

@@ -94,7 +94,7 @@ def test_linting_executes_no_linted_code(tmp_path: Path) -> None:
     assert not [one for one in kinds(seen, "subprocess.Popen") if "'git'" not in one[1]]
 
 
-def test_nobody_unpickles() -> None:
+def test_no_module_uses_pickle_to_read_data() -> None:
     unsafe = re.compile(r"^(pickle|cPickle|shelve|dill|cloudpickle|joblib)$")
     for path in [*(ROOT / "pytest_tarl").rglob("*.py"), *(ROOT / "tarl_lint").rglob("*.py")]:
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):

@@ -52,7 +52,7 @@ def mutated(sown: Any, folder: Path, code: str) -> set[str]:
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize(("piece", "faulty"), PIECES.items())
-def test_a_fault_is_found_wherever_its_code_stands(
+def test_an_injected_fault_is_located_anywhere_in_a_file(
     sown: Any, tmp_path: Path, place: str, piece: str, faulty: str
 ) -> None:
     text = "def f(a, b, c, x, y):\n" + place
@@ -61,7 +61,7 @@ def test_a_fault_is_found_wherever_its_code_stands(
 
 
 @pytest.mark.parametrize("operator", ["+", "-", "*", "/", "//"])
-def test_arithmetic_in_place_is_a_place_for_a_fault(sown: Any, tmp_path: Path, operator: str) -> None:
+def test_faults_are_injected_into_augmented_assignments(sown: Any, tmp_path: Path, operator: str) -> None:
     text = f"def f(x, y):\n    x {operator}= y\n    return x\n"
     assert mutated(sown, tmp_path, text)
 

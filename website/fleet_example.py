@@ -18,7 +18,7 @@ from tests.plugin.monitoring.missions import fixture, log, walks
 BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
 APART = 7.5 * 3600  # s between two missions of a robot
 ROBOTS, DRIFTED = 32, (4, 9)
-SLIGHT = 0.4  # size of the drift of the second site, where that of single robots is 1
+SLIGHT = 0.4  # drift of every robot of the second site; a drifted single robot has 1
 
 
 def write(folder: Path) -> None:

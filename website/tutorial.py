@@ -103,7 +103,7 @@ class Shell(AbstractContextManager["Shell"]):
         self._shell.communicate()
 
     def run(self, line: str) -> str:
-        """Return what a command prints. Raises EOFError where it ends the shell."""
+        """Return what a command prints. Raises EOFError if the command ends the shell."""
         assert self._shell.stdin is not None
         assert self._shell.stdout is not None
         self._shell.stdin.write(

@@ -21,7 +21,7 @@ def made_alongside(graph: Graph) -> dict[int, list[int]]:
 
 
 def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[int]]) -> Iterator[Entrance]:
-    """Yield those conditions among the nodes that choose a value, which may be made in another function.
+    """Yield the conditions among the nodes that choose a value; another function may compute this value.
 
     `calls` returns the calls between the frames of condition and value. `alongside` is the result of
     `made_alongside`.

@@ -143,7 +143,7 @@ class Tracer:
         return found
 
     def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
-        """Add the nodes from which a value is made that are under the conditions that choose the value."""
+        """Add those inputs of a value that are computed under the conditions that choose the value."""
         data, branches, stands_for = self.graph.data, self.graph.branches, self.graph.stands_for
         pending = [dep] if ways else []
         while pending:
@@ -289,7 +289,7 @@ class Tracer:
         return known
 
     def before(self, node: int) -> Sequence[int]:
-        """Return the nodes that a node is made from or depends on; skip through nodes without a statement."""
+        """Return the inputs and conditions of a node; skip nodes without a statement."""
         formers = self.formers(node)
         merged = self._merged
         if merged.isdisjoint(formers):

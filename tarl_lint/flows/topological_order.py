@@ -16,8 +16,8 @@ def in_order(
 ) -> list[T]:
     """Return the keys in an order in which `before` precedes `after` for each edge, as far as cycles allow.
 
-    A key without predecessors is placed as late as possible, unless it is in `first`. Without `first`, all keys count
-    as being in it.
+    A key without predecessors is placed as late as possible, unless it is in `first`. Without `first`, every
+    key is placed as early as possible.
     """
     after: dict[T, set[T]] = {key: set() for key in spans}
     waiting = dict.fromkeys(spans, 0)

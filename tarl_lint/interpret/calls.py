@@ -51,7 +51,7 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
 def _noted(
     ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
 ) -> Value:
-    """Give a number passed by keyword its own node, so that queries find it in the object that the call makes."""
+    """Give a number passed by keyword its own node, so that queries find it in the new object."""
     if not ctx.thorough:
         return value
     return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))

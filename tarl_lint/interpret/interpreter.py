@@ -67,7 +67,7 @@ class Interpreter:
         self.settings: dict[Obj, tuple[str, ir.Pos]] = {}
         self.patient = True  # whether a later root may still store values that are unknown now
         self.waiting: dict[Root, None] = {}  # roots that read such an unknown value
-        # node that no source reached → roots that relied on it being unreached
+        # node that no source reached → roots that ignored it for this reason
         self.doubts: dict[int, dict[Root, None]] = {}
         self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
         self.work = Work()

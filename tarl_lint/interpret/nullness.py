@@ -16,7 +16,7 @@ COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may copy 
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
-    """Return the nodes that decide `x is None` if the test only asks whether x is set; None if it tests data.
+    """Return the nodes that decide `x is None` if the test only checks whether x is set, else None.
 
     Whether a message has arrived is not data; the conditions under which it was stored are.
     """

@@ -39,7 +39,7 @@ class Run:
     escapes: list[Escape]
     delta: Delta
     edges: int  # number of edges that the run made
-    noted: bool  # whether the stores of `delta` were already made one by one
+    noted: bool  # whether the stores in `delta` have already been made, one by one
     heard: dict[Key, Value]  # values that other roots may store at its waits
 
 

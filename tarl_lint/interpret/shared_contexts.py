@@ -1,8 +1,8 @@
 """Shared call contexts: if a root calls one function very often, further calls of it share a context.
 
 Separate contexts distinguish callers, but the number of contexts multiplies along call chains. Calls that share a
-context are analysed like iterations of a loop: their arguments and conditions are joined. No flow is missed, but data
-of one caller may be reported to reach the effects of another.
+context are analysed like iterations of a loop: their arguments and conditions are joined. No flow is missed,
+but the report may connect data of one caller with effects of another caller.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
 
 
 def show(ctx: Interpreter, but: Set[Key] = frozenset()) -> list[Key]:
-    """Publish the stores since the last wait to other roots; return the keys stored to."""
+    """Publish the stores made since the last wait to other roots; return their keys."""
     store, root, exchanged = ctx.store, ctx.store.root, ctx.store.exchanged
     store.waited = True
     changed = [

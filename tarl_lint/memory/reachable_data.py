@@ -107,8 +107,8 @@ def _deep(ctx: Interpreter, obj: Obj, visit: Visit, depth: int, *, counted: bool
 def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
     """Return the parts of an object that can hold data of their own.
 
-    An empty part is left out, since it holds only data of the whole; readers of the whole are notified when a field
-    is added to it.
+    Parts without fields are left out, since they hold only data of the enclosing object. If such a part gets
+    a field later, readers of the enclosing object are notified.
     """
     if not obj.subs:
         return []

@@ -114,7 +114,7 @@ class Shared:
             current.inside.clear()
 
     def _appeared(self, obj: Obj, root: Root) -> None:
-        """Mark the roots dirty that have read the set of fields of an object or of one around it: a field is new."""
+        """Re-run the roots that have read the set of fields of this object or of an enclosing one."""
         inside: Obj | None = obj
         while inside is not None:
             self.dirty |= self._others(self.watchers.get(inside), root)

@@ -80,7 +80,7 @@ class Graph:
     )  # (carry node, item), in order of creation
     edges: int = 0  # data edges of the current program
     made: int = 0  # nodes of the current program
-    grown: int = 0  # how often a `held` set has grown
+    grown: int = 0  # number of times that any `held` set has grown
     live: set[int] = field(default_factory=set)  # nodes that a source reaches by data or control
     onward: dict[int, list[int]] = field(default_factory=dict)  # node that is not live yet → its successors
     asked: int = 0  # graph operations, charged as work

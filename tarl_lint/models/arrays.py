@@ -26,7 +26,7 @@ def computed(
 ) -> Value | None:
     """Return the new array that an arithmetic operator makes of an array; None if no operand is one.
 
-    Data may already be in the operands, but the result is as new as they are: a library may fill it as well.
+    The result counts as made without data even if the operands hold data: a library may fill it as well.
     """
     if expr.operator not in ARITHMETIC:
         return None

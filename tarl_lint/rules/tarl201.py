@@ -154,7 +154,7 @@ VALID: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether no state can be guarded in one place and unguarded in another.
+    """Return whether the group certainly has no state that is guarded in only some places.
 
     This is so if the group creates no lock, or if each state is guarded at all of its uses or at none of them.
     """

@@ -126,7 +126,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription that only its name keeps from a publisher."""
+    """Yield a hazard for each subscription that differs from a publisher only in the name of the topic."""
     if not system.complete:
         return
     published, subscribed = (

@@ -108,7 +108,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each subscription that cannot be connected with a publisher of its topic."""
+    """Yield a hazard for each subscription that ROS 2 does not connect with a publisher of its topic."""
     for name, who, end in system.ends("subscribes"):
         for other, them, offered in system.ends("publishes"):
             if other == name:

@@ -83,7 +83,7 @@ _OF_ROS: Final = frozenset(
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each parameter that none of the nodes has for which it is set."""
+    """Yield a hazard for each parameter setting that applies only to nodes without this parameter."""
     carriers: dict[Setting, list[Instance]] = {}
     for instance in system.instances:
         for setting in instance.node.settings:

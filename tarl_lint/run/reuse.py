@@ -1,4 +1,4 @@
-"""Reports of an editor session that still hold after an edit, because their analysis did not read what was edited.
+"""Reuse reports in an editor session: a report remains valid if its analysis did not read the edited code.
 
 An edit of comments, of blank lines, or of functions that a program does not use only moves lines.
 """
@@ -35,7 +35,8 @@ class _Analysis:
 class Analyses:
     """The last analyses of each program in an editor session, by the path of its last file, newest first.
 
-    Several are kept for the case that an edit is undone: the next edit is then compared with the analysis before it.
+    Several are kept because edits are often undone: the restored text then equals that of an earlier
+    analysis.
     """
 
     def __init__(self, config: Config) -> None:

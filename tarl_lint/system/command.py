@@ -46,7 +46,7 @@ FORMATS: Final = ("text", "json", "mermaid", "svg")
 
 @dataclass(frozen=True)
 class Request:
-    """A user's request: a launch file, `all`, or "" for all nodes without launch files, and the arguments."""
+    """A user's request: the arguments, and a launch file, `all`, or "" for all nodes without launch files."""
 
     launch: str = ""
     arguments: tuple[tuple[str, str], ...] = ()

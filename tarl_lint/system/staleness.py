@@ -48,7 +48,7 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
 
 
 def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
-    """Return whether the publish call of a flow runs outside of its callback and of the callbacks of other messages."""
+    """Return whether the publish call of a flow runs outside of all callbacks of messages."""
     if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
         return False
     callbacks = {name.strip() for name in flow.source.callback.split(",")}

@@ -22,7 +22,7 @@ _LISTS: Final = (
 
 
 def xml_tree(text: str) -> Element:
-    """Parse XML and return the root element; attribute `LINE` of each element is its line.
+    """Parse XML and return the root element; each element has its line in the attribute `LINE`.
 
     Raises UnreadableError for entities, ExpatError for invalid XML.
     """

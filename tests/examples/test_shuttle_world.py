@@ -65,7 +65,7 @@ def test_every_mission_is_delivered_as_designed(node: str) -> None:
         assert 9.0 < sum(rewards) < 10.0
 
 
-def test_there_and_back_is_delivered_as_designed() -> None:
+def test_the_shuttle_delivers_there_and_back_in_the_designed_world() -> None:
     for seed in SEEDS:
         world = SHUTTLE.World(random(seed), goals=(G2, G1))
         rewards = drive("shuttle/traveller.py", world)

@@ -42,7 +42,7 @@ def reported(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[s
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
-def test_rules_find_only_what_their_snippets_declare(code, name, text, tmp_path, capsys):
+def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, name, text, tmp_path, capsys):
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert (code in {one["code"] for one in found}) == (name == "INVALID"), found
 
@@ -151,5 +151,5 @@ NESTED = """
 
 
 @pytest.mark.parametrize("snippet", [TWO_CALLBACKS, NESTED])
-def test_reports_that_were_false_on_public_code_are_gone(snippet, tmp_path, capsys):
+def test_code_that_earlier_versions_reported_wrongly_has_no_findings(snippet, tmp_path, capsys):
     assert reported(capsys, str(workspace(tmp_path, snippet))) == []

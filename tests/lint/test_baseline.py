@@ -56,7 +56,7 @@ def test_a_method_that_subscribes_belongs_to_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
 
-def test_more_flows_than_accepted_report_the_whole_group(example):
+def test_more_flows_with_a_fingerprint_than_accepted_make_all_of_them_new(example):
     finding = replace(example.finding(), fingerprint="a")
     assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
     assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]

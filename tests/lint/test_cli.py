@@ -60,7 +60,7 @@ def test_json_is_the_document_of_the_schema(node, capsys):
     assert json.loads(out)["diagnostics"][0]["path"] == "node.py"
 
 
-def test_the_report_goes_to_a_file_when_asked(node, capsys):
+def test_the_output_option_writes_the_report_to_a_file(node, capsys):
     code, out, _ = lint(capsys, "--format", "json", "--output-file", "report.json")
     assert (code, out) == (1, "")
     assert json.loads(Path("report.json").read_text())["files"] == 1

@@ -67,17 +67,17 @@ def test_each_node_has_the_topics_of_its_own_arguments(arm, capsys):
     ]
 
 
-def test_an_argument_that_only_the_robot_knows_stays_unknown(arm, capsys):
+def test_an_argument_known_only_on_the_robot_stays_unknown(arm, capsys):
     source = DIRECT.replace("sys.argv[2]", '"out"')
     for given in ("$(env SCAN) /b", "it's /b"):
         assert system(arm, capsys, source, given) == ["? → /n0 → /out  explicit"]
 
 
-def test_arguments_that_are_selected_and_grouped_stay_pairs(arm, capsys):
+def test_grouping_command_line_arguments_in_pairs_keeps_the_pairs(arm, capsys):
     assert system(arm, capsys, PAIRS, "/a /x /d /y") == ["/a → /n0 → /x  explicit", "/d → /n0 → /y  explicit"]
 
 
-def test_arguments_for_ros_are_not_the_node_s_own(arm, capsys):
+def test_arguments_for_ros_are_removed_from_the_nodes_arguments(arm, capsys):
     assert system(arm, capsys, OWN, "/a /x", "verbose /x") == [
         "/a → /n0 → /x  explicit",
         "/loud → /n1 → /x  explicit",

@@ -63,14 +63,14 @@ def modules(folder: Path, config: Config) -> list[Module]:
 
 
 @pytest.mark.parametrize("group", GROUPS, ids=lambda name: name or "top")
-def test_all_findings_have_the_recorded_steps(group):
+def test_steps_of_all_findings_equal_the_gold_files(group):
     config = Config(root=CASES, select=RULES)
     lines = list(described(engine.lint(modules(CASES / group, config), config)))
     assert lines == expected(f"flows/{group or 'top'}.txt", "\n".join(lines) + "\n")
 
 
 @pytest.mark.parametrize("case", PROBED)
-def test_constants_and_conditions_are_the_recorded_ones(case):
+def test_constants_and_conditions_equal_the_gold_files(case):
     analysis = analyse([CASES / "combined" / f"{case}.py"], root=CASES)
 
     def listed(steps: tuple[Step, ...]) -> list[str]:

@@ -55,7 +55,7 @@ def output(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_each_format_is_as_recorded(name, folder, monkeypatch, capsys):
+def test_reports_in_each_format_equal_the_gold_files(name, folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     text = output(capsys, *FILES, "--format", name)
     if name == "sarif":  # without the texts of the rules; one result a line
@@ -65,14 +65,14 @@ def test_each_format_is_as_recorded(name, folder, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("name", OPTIONS)
-def test_each_selection_of_steps_is_as_recorded(name, folder, monkeypatch, capsys):
+def test_selected_steps_equal_the_gold_files(name, folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
     text = output(capsys, *FILES, *OPTIONS[name])
     assert text.splitlines() == expected(f"reports/text_{name}.txt", text)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_each_picture_of_a_system_is_as_recorded(name, workspace, monkeypatch, capsys):
+def test_pictures_of_systems_equal_the_gold_files(name, workspace, monkeypatch, capsys):
     monkeypatch.chdir(workspace)
     text = output(capsys, ".", "--launch", "all", *SYSTEMS[name])
     assert text.splitlines() == expected(f"systems/{name}.txt", text)
@@ -81,7 +81,7 @@ def test_each_picture_of_a_system_is_as_recorded(name, workspace, monkeypatch, c
 @pytest.mark.parametrize(
     ("option", "topic"), [("--from", "/scout/rear/scan"), ("--to", "/scout/cmd_vel"), ("--to", "/unknown")]
 )
-def test_each_query_about_a_topic_is_as_recorded(option, topic, workspace, monkeypatch, capsys):
+def test_answers_about_topics_equal_the_gold_files(option, topic, workspace, monkeypatch, capsys):
     monkeypatch.chdir(workspace)
     text = output(capsys, ".", "--launch", "all", option, topic)
     assert text.splitlines() == expected(f"systems/{option[2:]}{topic.replace('/', '_')}.txt", text)

@@ -95,7 +95,7 @@ def test_all_launch_files_are_those_of_packages_that_are_not_hidden(folder: Path
     assert not any("legs" in str(problem.file) for one in found for problem in one.problems)
 
 
-def test_without_markers_there_is_no_note(folder: Path) -> None:
+def test_without_hidden_packages_the_report_has_no_note(folder: Path) -> None:
     (folder / "arms/CATKIN_IGNORE").unlink()
     (system,) = launched(folder, str(folder / "robot/launch/a.launch"))
     assert (flows(system), system.problems) == ([("/arm", "/in", "/out")], ())

@@ -172,7 +172,7 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_is_carried_only_by_nodes_that_passed_on_its_object_then(ctx, frame):
+def test_content_depends_on_a_carrier_only_if_it_was_inside_when_the_object_was_passed_on(ctx, frame):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])

@@ -134,7 +134,7 @@ def test_names_pass_through_attributes_tables_functions_and_string_operations(ar
     ]
 
 
-def test_declared_parameters_of_ros2(arm, capsys):
+def test_topic_names_use_declared_ros2_parameters(arm, capsys):
     source = "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import Float64\n" + ROS2
     write(arm, {"arm/package.xml": MANIFEST.format("arm", "ament_python"), "arm/relay.py": source,
                 "arm/config/p.yaml": "/r1/relay:\n  ros__parameters: {topics: {out: /end}}\n",

@@ -50,7 +50,7 @@ def test_sections_may_be_nested_in_namespaces_and_later_ones_take_precedence():
     assert [is_wildcard(one) for one in ("/**", "/robot/*", "/**/gate")] == [True, True, False]
 
 
-def test_text_that_is_not_yaml_and_a_missing_pyyaml_are_told_apart(monkeypatch):
+def test_invalid_yaml_and_a_missing_pyyaml_give_different_messages(monkeypatch):
     with pytest.raises(UnreadableError, match="it is not YAML: "):
         parsed("{kp: ")
     monkeypatch.setitem(sys.modules, "yaml", None)

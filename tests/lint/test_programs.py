@@ -94,7 +94,7 @@ def test_an_edit_analyses_only_the_programs_that_read_the_file(tmp_path, monkeyp
     assert sorted(analysed) == ["one.py", "two.py"]
 
 
-def test_what_programs_share_is_reported_once(tmp_path, monkeypatch):
+def test_an_error_in_a_shared_helper_is_reported_once(tmp_path, monkeypatch):
     for name, text in {"one": NODE, "two": NODE, "helper": HELPER + "def broken(:\n"}.items():
         Path(tmp_path, f"{name}.py").write_text(text)
     monkeypatch.chdir(tmp_path)

@@ -66,11 +66,11 @@ def test_only_a_long_list_of_steps_is_reduced_to_its_chain(example):
         ("é" + "\u0301" * 3, 1, "é" + "\u0301" * 3),
     ],
 )
-def test_a_text_is_cropped_to_columns(text, width, shown):
+def test_a_text_is_shortened_to_a_width_in_columns(text, width, shown):
     assert crop(text, width, "…") == shown
 
 
-def test_widths_of_text_with_tabs_and_line_ends():
+def test_text_widths_count_tabs_and_escaped_line_ends():
     assert [columns(text) for text in ("abc", "漢", "e\u0301", "é")] == [3, 2, 1, 1]
     assert tabs("\tx") == "    x"
     assert location(Span("a\nb.py", 2, 3, 4, 5)) == "a\\nb.py:2:3"

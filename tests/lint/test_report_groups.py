@@ -70,7 +70,7 @@ def test_paths_of_tests_and_examples_are_recognised(path, aside):
     assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
 
 
-def test_the_map_lists_for_each_published_topic_the_topics_that_it_carries_and_that_decide_it():
+def test_the_map_lists_the_data_and_the_conditions_of_each_published_topic():
     flows = [
         flow("/scan", "/cmd", 1),
         flow("/odom", "/cmd", 2),
@@ -104,7 +104,7 @@ def test_names_of_a_map_are_wrapped_at_the_width_and_many_are_abbreviated():
     assert _few(()) == "?"
 
 
-def test_levels_of_flows_hazards_and_failing_rules():
+def test_a_finding_that_fails_the_run_is_an_error_whatever_its_own_level():
     result = SimpleNamespace(failing={"TARL101"})
     assert [own_level(code) for code in ("TARL101", "TARL201", "TARL001")] == ["note", "warning", "warning"]
     assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]
@@ -226,7 +226,7 @@ def test_colours_are_used_on_terminals_unless_refused(environment, terminal, exp
 @pytest.mark.parametrize(
     ("encoding", "ascii_only"), [("utf-8", False), ("ascii", True), (None, True), ("no-such", True)]
 )
-def test_signs_are_those_of_the_encoding(encoding, ascii_only):
+def test_a_stream_that_cannot_encode_unicode_gets_ascii_signs(encoding, ascii_only):
     assert (glyphs_for(Stream(encoding)) == ASCII) is ascii_only
 
 
@@ -235,7 +235,7 @@ def test_a_stream_without_a_terminal_has_no_width():
     assert width_of(Stream("utf-8", True)) > 0
 
 
-def test_control_characters_and_marks_of_direction_are_shown_not_passed_on():
+def test_control_characters_and_direction_marks_are_escaped():
     stream = Stream("ascii")
     write([(("a\x1b[31m\u202eb", "error"), ("\tc\x9f\x7f", ""))], stream, colour=False)
     assert stream.text == "a\\x1b[31m\\u202eb\tc\\x9f\\x7f\n"
@@ -245,7 +245,7 @@ def test_control_characters_and_marks_of_direction_are_shown_not_passed_on():
     assert Counter(wide.text)["\n"] == 2
 
 
-def test_omitted_findings_and_shortened_flows_are_told_where_there_are_any():
+def test_the_report_counts_omitted_findings_and_shortened_flows_only_if_there_are_any():
     assert sarif._left_out(0) == []
     (told,) = sarif._left_out(2)
     assert told["message"]["text"] == "2 findings omitted: servers limit the size of a report."
@@ -259,7 +259,7 @@ def test_omitted_findings_and_shortened_flows_are_told_where_there_are_any():
     assert told["message"]["text"].startswith("2 flows reduced to the shortest chain of statements")
 
 
-def test_new_and_severe_findings_are_the_gravest():
+def test_new_findings_come_before_accepted_ones_and_severe_before_minor():
     failing = SimpleNamespace(failing={"TARL201"})
     accepted, silenced = finding(status="accepted"), finding(code="TARL101")
     order = [finding(), finding(code="TARL202"), finding(code="TARL102"), accepted, silenced]

@@ -149,7 +149,9 @@ def test_accepted_flows_stay_accepted_when_lines_move(example, in_directory, lin
     assert result.vanished == ()
 
 
-def test_a_further_flow_in_an_accepted_group_reports_the_group(example, in_directory, lint, accept):
+def test_a_new_flow_with_an_accepted_fingerprint_reports_all_flows_with_it(
+    example, in_directory, lint, accept
+):
     root = in_directory({"node.py": example.text})
     accept()
     twice = example.text.replace(
@@ -168,7 +170,7 @@ def test_a_missing_flow_is_reported_as_vanished(example, in_directory, lint, acc
     assert [e.fingerprint.source for e in lint().vanished] == ["odom"]
 
 
-def test_flows_of_unread_files_are_kept(example, in_directory, lint, accept):
+def test_accepted_flows_of_unreadable_files_stay_in_the_baseline(example, in_directory, lint, accept):
     root = in_directory({"a/node.py": example.text, "b/other.py": "x = 1\n"})
     path = accept()
     before = path.read_bytes()

@@ -114,7 +114,7 @@ def test_data_anywhere_in_an_object_is_seen_in_its_parts(store, obj):
     assert not same(store, reads)
 
 
-def test_a_part_is_seen_when_something_is_stored_in_it_or_deeper(store, obj):
+def test_a_store_into_a_part_or_below_it_prevents_the_replay(store, obj):
     reads = noted(store, obj)
     inner = obj.sub("x").sub("y")
     assert same(store, reads)

@@ -45,11 +45,11 @@ def tracer(of: SimpleNamespace) -> Tracer:
     return found
 
 
-def test_edges_are_reversed():
+def test_reversing_a_graph_lists_the_predecessors_of_each_node():
     assert _reversed([{1, 2}, set(), {1}]) == [[], [0, 2], [0]]
 
 
-def test_a_closure_follows_all_tables_inside_a_set():
+def test_reachability_follows_data_and_control_edges_within_a_set():
     data, control = [[1], [2], [], [4], []], [[3], [], [], [], []]
     assert closure([0], [data]) == {0, 1, 2}
     assert closure([0], [data, control]) == {0, 1, 2, 3, 4}
@@ -241,7 +241,7 @@ def test_the_outline_of_a_module_knows_its_locks_and_names():
     ]
 
 
-def test_calls_are_found_by_their_whole_position():
+def test_a_call_is_found_by_its_start_and_end_position():
     found = Outline(ast.parse("f(1)(2)\ng()\n"))
     outer, inner = found.call((1, 0, 1, 7)), found.call((1, 0, 1, 4))
     assert outer is not None
@@ -278,7 +278,7 @@ def test_a_wrapper_has_the_argument_places_of_its_model_by_default():
         ("something else", "Something else."),
     ],
 )  # fmt: skip
-def test_mistakes_on_the_command_line_are_sentences(message, sentence):
+def test_mistakes_on_the_command_line_give_one_sentence(message, sentence):
     assert _sentence(message, KNOWN) == sentence
 
 

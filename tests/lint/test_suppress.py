@@ -47,7 +47,7 @@ def test_a_comment_on_the_line_silences_the_rule(comment):
         "",
     ],
 )
-def test_other_rules_and_other_tools_comments_silence_nothing(comment):
+def test_comments_for_another_rule_or_tool_silence_nothing(comment):
     assert kept(f"pub.publish(x)  {comment}\n", finding(1)) == ["TARL101"]
 
 

@@ -63,12 +63,12 @@ def test_log_statements_that_call_or_bind_are_not_effect_free(text):
     assert not only_tells(ast.parse(text, mode="eval").body, prints=True)
 
 
-def test_a_log_message_that_publishes_is_followed():
+def test_a_call_that_publishes_inside_a_log_message_is_analysed():
     assert flows("print(send(msg.data))") == 1
     assert flows("rospy.loginfo(send(msg.data))") == 1
 
 
-def test_a_log_message_is_no_flow():
+def test_data_in_a_log_message_is_not_a_flow():
     assert flows("print(msg.data)") == flows("rospy.loginfo(msg.data)") == 0
 
 

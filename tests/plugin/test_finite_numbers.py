@@ -21,7 +21,7 @@ OTHERS: list[Any] = [
 
 
 @pytest.mark.parametrize("value", NUMBERS, ids=repr)
-def test_a_finite_number_of_any_kind_is_taken(value: Any) -> None:
+def test_finite_numbers_of_any_type_are_accepted(value: Any) -> None:
     found = finite_number(value)
     assert type(found) is float
     assert found == float(value)
@@ -32,7 +32,7 @@ def test_a_finite_number_of_any_kind_is_taken(value: Any) -> None:
 
 
 @pytest.mark.parametrize("value", OTHERS, ids=repr)
-def test_anything_else_is_refused_with_a_sentence(value: Any) -> None:
+def test_values_that_are_not_finite_numbers_give_one_sentence(value: Any) -> None:
     assert finite_number(value) is None
     for give in (
         lambda: Drift.range(value, 5.0),

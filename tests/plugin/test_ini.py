@@ -44,7 +44,9 @@ def test_the_command_line_overrides_the_ini_file(pytester: pytest.Pytester) -> N
 
 
 @pytest.mark.parametrize(("text", "said"), [("true", True), ("Yes", True), ("off", False), ("0", False)])
-def test_switches(pytester: pytest.Pytester, text: str, *, said: bool) -> None:
+def test_an_ini_switch_accepts_every_spelling_of_true_and_false(
+    pytester: pytest.Pytester, text: str, *, said: bool
+) -> None:
     assert read(pytester, f"tarl_constants = {text}", "--tarl-online")["constants"] is said
 
 

@@ -41,5 +41,5 @@ def test_progress_is_written_at_most_ten_times_a_second() -> None:
 @pytest.mark.parametrize(
     ("seconds", "text"), [(-1, "0 s"), (7.6, "8 s"), (200, "3 min 20 s"), (7500, "2 h 5 min")]
 )
-def test_durations(seconds: float, text: str) -> None:
+def test_durations_are_printed_in_seconds_minutes_or_hours(seconds: float, text: str) -> None:
     assert duration(seconds) == text

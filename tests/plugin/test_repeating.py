@@ -77,7 +77,7 @@ def test_a_test_without_the_fixture_tarl_is_refused_before_it_runs(tank: pytest.
     told.stdout.no_fnmatch_line("*ran*")
 
 
-def test_a_method_of_unittest_is_told_how_to_take_the_fixture(tank: pytest.Pytester) -> None:
+def test_a_unittest_method_gets_advice_on_how_to_use_the_fixture(tank: pytest.Pytester) -> None:
     tank.path.joinpath("test_case.py").write_text(
         """
 import unittest

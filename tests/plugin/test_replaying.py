@@ -19,7 +19,7 @@ from tests.plugin.tank import RECORD, changed
         ("", False),
     ],
 )
-def test_what_a_bag_says_of_durability_is_understood(profiles: str, latched: bool) -> None:
+def test_durability_is_read_from_the_qos_profiles_of_a_bag(profiles: str, latched: bool) -> None:
     assert _transient(profiles) is latched
 
 

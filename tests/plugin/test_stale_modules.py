@@ -58,11 +58,11 @@ def test_a_module_that_imports_a_dropped_one_is_found(kind: str, package: Path) 
 
 
 @pytest.mark.parametrize("kind", OTHERS)
-def test_other_modules_are_left(kind: str, package: Path) -> None:
+def test_modules_without_a_stale_import_stay_imported(kind: str, package: Path) -> None:
     assert found(package, OTHERS[kind], "user_of_nothing") == []
 
 
-def test_modules_are_found_through_others(package: Path) -> None:
+def test_stale_modules_are_found_through_indirect_imports(package: Path) -> None:
     (package.parent / "first_user.py").write_text("from dropped.inner import RATE")
     (package.parent / "second_user.py").write_text("from first_user import RATE")
     importlib.import_module("second_user")

@@ -78,7 +78,7 @@ def world(episode: Episode, environment: Any, **more: Any) -> GymnasiumWorld:
     return GymnasiumWorld(episode, environment, **{**ends, "idle": [0.0], **more})  # type: ignore[arg-type]
 
 
-def test_observations_go_out_and_actions_come_in_until_the_environment_ends() -> None:
+def test_an_environment_publishes_observations_and_receives_actions_until_it_ends() -> None:
     episode, environment = Episode([None, 0.25, 9.0, 9.0]), Environment()
     ours = world(episode, environment, options={"a": 1})
     begun = ours.observation
@@ -115,13 +115,13 @@ def test_an_environment_without_a_time_step_needs_one() -> None:
     assert world(Episode([]), environment, dt=0.5).dt == 0.5
 
 
-def test_a_missing_gymnasium_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_gymnasium_gives_the_install_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "gymnasium", None)
     with pytest.raises(SettingsError, match=r"needs Gymnasium: run pip install .*\[gymnasium\]"):
         world(Episode([]), "CartPole-v1")
 
 
-def test_real_environments_are_worlds() -> None:
+def test_environments_of_gymnasium_can_be_used_as_worlds() -> None:
     pytest.importorskip("gymnasium")
     cart = world(Episode([1.0, -1.0]), "CartPole-v1", act=lambda u: int(u > 0), observe=list)
     assert (cart.dt, cart.step(), cart.step()) == (0.02, 1.0, 1.0)

@@ -1,4 +1,4 @@
-"""Find threads of which only one is started: callbacks registered in opposite branches of an `if`."""
+"""Find pairs of callbacks that never run together: an `if` registers one or the other."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def lock_name(expr: ast.expr, outline: Outline) -> str:
 
 
 def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
-    """Return the locks that the function takes after a node that only decides whether to return early.
+    """Return the locks that the function takes after a test that only decides whether to return early.
 
     In `if self.stamp == self.seen: return` before `with self.lock:`, the test only saves time. The value that counts
     is read later, under the lock.

@@ -48,7 +48,7 @@ def used() -> frozenset[str]:
 
 
 @pytest.mark.parametrize("name", [module.name for module in pkgutil.iter_modules(memory.__path__)])
-def test_each_operation_has_a_unit_test(name):
+def test_every_operation_of_the_graph_has_a_unit_test(name):
     module = importlib.import_module(f"{memory.__name__}.{name}")
     names = list(operations(module))
     missing = [one for one in names if one.rpartition(".")[2] not in used()]

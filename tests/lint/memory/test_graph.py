@@ -21,12 +21,12 @@ def node(graph, frame):
     return made
 
 
-def test_a_node_is_made_once_per_key(graph, node):
+def test_asking_for_a_key_twice_gives_the_same_node(graph, node):
     assert node("a") == node("a") != node("b")
     assert graph.made == len(graph.places) == 2
 
 
-def test_data_flows_along_edges_once(graph, node):
+def test_repeated_data_edges_are_stored_once(graph, node):
     a, b = node("a"), node("b")
     graph.flow([a, a], b)
     graph.flow([a], b)
@@ -43,7 +43,7 @@ def test_a_value_that_depends_on_itself_depends_on_its_own_conditions(graph, nod
     assert graph.control[a] == {decision}
 
 
-def test_beyond_a_number_of_edges_only_few_are_added(graph, node, monkeypatch):
+def test_a_program_with_too_many_edges_gets_only_a_few_further_ones(graph, node, monkeypatch):
     monkeypatch.setattr(value_flow_graph, "MAX_EDGES", 1)
     graph.flow([node("a"), node("b")], node("c"))
     assert len(graph.data[node("c")]) == 2
@@ -69,7 +69,7 @@ def test_a_value_chosen_by_a_branch_depends_on_its_decision_through_a_gate(graph
     assert graph.control[same] == set()
 
 
-def test_a_copy_without_choice_has_the_data_but_not_the_decision(graph, node):
+def test_a_copy_of_a_node_without_its_branches_has_the_data_but_not_the_conditions(graph, node):
     decision = node("if")
     chosen, after = node("a", (decision, "then")), node("b")
     copy = graph.unchosen(chosen)
@@ -81,7 +81,7 @@ def test_a_copy_without_choice_has_the_data_but_not_the_decision(graph, node):
     assert graph.control[after] == set()
 
 
-def test_many_values_of_a_field_meet_in_one_node(graph, node, frame):
+def test_many_values_of_a_field_are_merged_into_one_node(graph, node, frame):
     deps = frozenset(node(n) for n in range(MANY + 1))
     assert graph.meets("field", deps, carriers=False)
     assert not graph.meets("field", frozenset(list(deps)[1:]), carriers=False)
@@ -97,7 +97,7 @@ def test_many_values_of_a_field_meet_in_one_node(graph, node, frame):
     assert graph.data[place] == deps | {node("new")}
 
 
-def test_what_depends_on_a_live_node_is_live_now_and_later(graph, node):
+def test_nodes_that_depend_on_a_live_node_become_live_at_any_time(graph, node):
     source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
     graph.flow([source], data)
     graph.depend(decided, [data])
@@ -127,7 +127,7 @@ def test_a_carrier_counts_what_it_passed_on(graph, node):
     assert not graph.as_passed({carrier: 0})
 
 
-def test_content_passes_through_each_carrier_that_held_it(graph, node):
+def test_content_depends_on_every_carrier_that_contained_it(graph, node):
     item, other, first, second = (node(key) for key in ("item", "other", "first", "second"))
     graph.hold(first, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([first]))
@@ -140,7 +140,7 @@ def test_content_passes_through_each_carrier_that_held_it(graph, node):
     assert graph.through(frozenset([item]), frozenset()) == {item}
 
 
-def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypatch):
+def test_cached_and_uncached_queries_of_content_give_the_same_result(graph, node, monkeypatch):
     item, other, carrier = (node(key) for key in ("item", "other", "carrier"))
     graph.hold(carrier, frozenset([item]))
     carry = carrier
@@ -154,7 +154,7 @@ def test_content_arrives_alike_with_and_without_the_cache(graph, node, monkeypat
     assert graph.arriving_through(item, {carrier}) == {item}
 
 
-def test_carriers_are_ignored_for_much_content_and_large_programs(graph, node, monkeypatch):
+def test_large_programs_do_not_track_the_carriers_of_content(graph, node, monkeypatch):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     assert not graph.large()
@@ -166,7 +166,7 @@ def test_carriers_are_ignored_for_much_content_and_large_programs(graph, node, m
     assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
 
 
-def test_settled_carry_nodes_depend_on_their_item(graph, node):
+def test_settling_the_graph_connects_each_carry_node_to_the_content_it_stands_for(graph, node):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([carrier]))

@@ -110,14 +110,14 @@ def test_an_attribute_of_a_function_is_stored_apart_from_its_defaults(ctx):
         ("goal", "publish_feedback"),
     ],
 )
-def test_an_unset_method_of_a_library_object_is_bound_to_it(ctx, kind, name):
+def test_an_unset_attribute_of_a_library_object_is_its_bound_method(ctx, kind, name):
     obj = made(ctx, kind, "a")
     (method,) = heap.default(ctx, obj, name).pts
     assert (method.kind, method.info) == ("method", (obj, name))
     assert heap.held_method(ctx, obj, name) == pointer(method)
 
 
-def test_defaults_of_unset_fields(ctx):
+def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     listed, ext = made(ctx, "sequence", "a"), recency.intern(ctx, "ext", "numpy", "numpy")
     instance = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((listed, ANY), ONE)
@@ -181,7 +181,7 @@ def test_attributes_of_a_replaced_dictionary_are_read_and_stored_there(ctx):
     assert ctx.store.get((table, "['x']")) == BOTH
 
 
-def test_functions_are_bound_as_their_decorator_says(ctx):
+def test_decorators_decide_whether_a_function_is_bound_to_class_or_instance(ctx):
     cls = a_class(ctx, "A")
     obj = an_instance(ctx, cls)
     plain, static, of_class = (
@@ -203,7 +203,7 @@ def test_functions_are_bound_as_their_decorator_says(ctx):
     assert heap.bind(ctx, both, obj, cls).deps == {1}
 
 
-def test_names_of_an_opened_module_are_found_directly_and_indirectly(ctx):
+def test_names_imported_with_a_star_are_found_directly_and_through_other_modules(ctx):
     (program,) = ctx.programs.values()
     module = ctx.module_objects[program.name]
     inner, outer = (recency.intern(ctx, "module", name, name) for name in ("inner", "outer"))
@@ -218,7 +218,7 @@ def test_names_of_an_opened_module_are_found_directly_and_indirectly(ctx):
     assert heap.opened(ctx, module, "y") is BOTTOM
 
 
-def test_any_element_of_a_container_is_one_of_the_known_or_unknown_ones(ctx):
+def test_an_unknown_index_reads_the_join_of_all_elements(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "[0]"), ONE)
     ctx.store.put((obj, "x"), Value(frozenset([9])))
@@ -227,7 +227,7 @@ def test_any_element_of_a_container_is_one_of_the_known_or_unknown_ones(ctx):
     assert heap.read_any(ctx, obj) == BOTH
 
 
-def test_any_element_of_a_library_object_is_a_part_of_it(ctx):
+def test_an_unknown_index_of_a_library_object_reads_a_part_of_it(ctx):
     obj = made(ctx, "lib", "a")
     first = obj.sub("[0]")
     assert heap.read_any(ctx, obj).pts == {first, obj.sub("[]")}
@@ -236,7 +236,7 @@ def test_any_element_of_a_library_object_is_a_part_of_it(ctx):
     assert reachable_data.deep(ctx, heap.read_any(ctx, obj).pts) == {1}
 
 
-def test_a_read_through_a_pointer_has_the_data_of_the_pointer(ctx):
+def test_a_read_through_a_pointer_includes_the_data_of_the_pointer(ctx):
     one, two = made(ctx, "sequence", "a"), made(ctx, "sequence", "b")
     ctx.store.put((one, "x"), ONE)
     ctx.store.put((two, "x"), TWO)
@@ -277,7 +277,7 @@ def test_an_item_of_the_attributes_is_an_attribute_unless_the_object_is_a_dictio
 # --- stores -------------------------------------------------------------------------------------------
 
 
-def test_a_weak_update_keeps_the_value_before_even_if_unset(ctx):
+def test_a_weak_update_keeps_the_former_value_or_the_default(ctx):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     updates.weaken(ctx, obj, "x", TWO)
@@ -339,7 +339,7 @@ def test_a_store_under_one_of_several_keys_hits_only_those(ctx):
 # --- joins --------------------------------------------------------------------------------------------
 
 
-def test_the_join_of_one_continuation_is_that_continuation(ctx):
+def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     obj = made(ctx, "sequence", "a")
     delta = {(obj, "x"): ONE}
     assert joins.joined(ctx, [delta]) is delta
@@ -362,7 +362,7 @@ def test_an_object_made_on_one_path_only_has_no_value_on_the_other(ctx):
     assert joins.joined(ctx, [ctx.store.pop(), {}])[obj, "[0]"] is ONE
 
 
-def test_several_paths_without_a_store_join_the_former_value_once(ctx):
+def test_paths_that_do_not_store_contribute_the_former_value_once(ctx):
     obj = made(ctx, "sequence", "a")
     ctx.store.put((obj, "x"), ONE)
     assert joins.joined(ctx, [{(obj, "x"): TWO}, {}, {}])[obj, "x"] == BOTH
@@ -383,14 +383,14 @@ def test_a_zero_stored_on_one_path_equals_the_unset_field_of_a_new_message(ctx, 
 # --- creation, copies ---------------------------------------------------------------------------------
 
 
-def test_an_object_is_interned_by_kind_and_key(ctx):
+def test_the_same_kind_and_key_give_the_same_object(ctx):
     obj = recency.intern(ctx, "lib", "a", "name")
     assert recency.intern(ctx, "lib", "a") is obj
     assert obj.name == "name"
     assert recency.intern(ctx, "ext", "a") is not obj
 
 
-def test_each_turn_and_slot_has_its_own_object(ctx, frame):
+def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
     obj = recency.allocate(ctx, "sequence", frame, "slot")
     assert ctx.store.get((obj, BORN)) is BOTTOM
     ctx.store.put((obj, "[0]"), ONE)
@@ -459,7 +459,7 @@ def test_without_new_objects_only_variables_are_dropped(ctx, frame):
     assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) is delta
 
 
-def test_objects_come_together_with_their_whole_and_their_definition():
+def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
     whole, receiver, named, default = (Obj("lib", key) for key in ("a", "b", "c", "d"))
     bound = Obj("bound", "m")
     bound.info = (receiver, [pointer(default)], {"k": named.sub("x")})

@@ -80,7 +80,7 @@ def test_the_stores_since_a_depth_are_those_of_the_layers_above_it(store, obj):
     assert store.since(0) == {first: ONE}
 
 
-def test_an_absorbed_layer_is_stored_and_undone_with_the_one_that_absorbs_it(store, obj):
+def test_absorbed_stores_are_undone_when_the_absorbing_layer_closes(store, obj):
     key = (obj, "x")
     store.put(key, ONE)
     store.push()
@@ -112,7 +112,7 @@ def test_variables_are_private_unless_a_closure_captures_them(store, obj, frame)
     assert store.own() == [(frame, "x"), (obj, "x")]
 
 
-def test_many_nodes_of_a_summary_field_are_gathered(store, obj):
+def test_many_nodes_of_a_summary_field_are_merged_into_one(store, obj):
     store.gather = lambda _, value: Value(frozenset([9]), value.pts)
     for name, gathered in [("*", True), ("<keys>", True), ("<length>", True), ("x", False)]:
         store.put((obj, name), BOTH)
@@ -151,7 +151,7 @@ def test_holders_of_library_objects_are_recorded(store, obj):
     assert obj.holders == {}
 
 
-def test_replacing_the_attributes_of_an_object_begins_a_new_edition(store, obj):
+def test_assigning_the_dict_of_an_object_increments_the_edition(store, obj):
     store.put((obj, "x"), ONE)
     assert store.shared.edition == 0
     store.put((obj, "__dict__"), ONE)
@@ -172,7 +172,7 @@ def test_reads_of_what_the_call_stored_itself_do_not_count(store, obj):
     assert store.reads.stored == {other}
 
 
-def test_a_peek_is_not_recorded(store, obj):
+def test_peeking_at_a_value_records_no_read(store, obj):
     store.put((obj, "x"), ONE)
     store.reads = Reads()
     assert store.peek((obj, "x")) is ONE
@@ -188,7 +188,7 @@ def test_the_values_of_recorded_reads_are_found(store, obj):
     assert store.found_by(reads) == ({here: ONE, gone: None, unset: None}, {here: True, unset: False})
 
 
-def test_a_look_records_the_first_stamp_and_registers_the_reader(store, obj):
+def test_reading_the_fields_of_an_object_records_its_first_stamp_and_the_reader(store, obj):
     store.look(obj)
     obj.changed("x")
     store.look(obj)
@@ -198,7 +198,7 @@ def test_a_look_records_the_first_stamp_and_registers_the_reader(store, obj):
     assert store.shared.doubters == {obj: {store.root}}
 
 
-def test_an_answer_is_recorded_once():
+def test_a_recorded_query_keeps_its_first_answer():
     reads, list_ = Reads(), [1]
     reads.ask(len, tuple(list_))
     assert reads.facts == {(len, (1,)): 1}
@@ -217,7 +217,7 @@ def test_a_wait_records_what_was_stored_before_the_first_one(obj):
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_admitted_values_are_joined(obj):
+def test_values_taken_in_at_waits_are_joined_per_key(obj):
     reads = Reads()
     reads.admit((obj, "x"), ONE)
     reads.admit((obj, "x"), TWO)
@@ -250,7 +250,7 @@ def test_reads_are_merged_again_only_after_a_path_was_left(obj):
     assert outer.keys == {key}
 
 
-def test_only_missing_entries_are_completed():
+def test_complete_adds_missing_entries_and_keeps_existing_ones():
     mine = {"a": 1}
     complete(mine, {"a": 2, "b": 3})
     assert mine == {"a": 1, "b": 3}
@@ -335,7 +335,7 @@ def test_stores_of_others_during_a_wait_exclude_the_roots_own(shared, obj):
     assert shared.others(key, other) == ONE
 
 
-def test_a_changed_store_marks_its_readers_dirty(shared, obj):
+def test_changing_a_stored_value_reruns_the_roots_that_read_it(shared, obj):
     reader, writer = Root("reader", "callback"), Root("writer", "callback", once=True)
     key = (obj, "x")
     shared.entry(key, reader)
@@ -357,7 +357,7 @@ def test_a_root_that_can_run_concurrently_with_itself_reads_its_own_stores(share
     assert shared.dirty == {mine}
 
 
-def test_a_new_field_marks_the_watchers_of_the_object_and_of_its_whole_dirty(shared):
+def test_a_new_field_reruns_the_roots_that_read_the_object_or_its_enclosing_object(shared):
     whole, watcher, writer = Obj("message", "m"), Root("watcher", "callback"), Root("writer", "timer")
     shared.look(whole, watcher)
     shared.leave(shared.ends, writer, (whole.sub("pose"), BORN), BOTTOM)
@@ -404,7 +404,7 @@ def test_a_path_that_did_not_make_an_object_joins_the_stores_of_others_without_r
     assert shared.dirty == {mine}
 
 
-def test_only_an_object_that_the_current_path_made_is_isolated_and_only_before_a_wait(store, obj):
+def test_an_object_created_on_the_current_path_is_invisible_to_others_until_a_wait(store, obj):
     assert not store.isolated(obj)
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -419,7 +419,7 @@ def test_only_an_object_that_the_current_path_made_is_isolated_and_only_before_a
 # --- waits --------------------------------------------------------------------------------------------
 
 
-def test_after_a_wait_reads_heed_the_stores_of_other_roots(store, obj):
+def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
     key, other = (obj, "x"), Root("other", "callback")
     store.put(key, ONE)
     store.shared.leave(store.shared.ends, other, key, TWO)
@@ -441,7 +441,7 @@ def test_a_store_without_news_from_others_does_not_rerun_the_root(store, obj):
     assert store.shared.dirty == set()
 
 
-def test_variables_are_not_heeded(store, frame):
+def test_a_read_of_a_local_variable_after_a_wait_does_not_subscribe_to_other_roots(store, frame):
     store.put((frame, "x"), ONE)
     store.waited = True
     assert store.get((frame, "x")) is ONE

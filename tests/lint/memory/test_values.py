@@ -56,7 +56,7 @@ def test_a_join_has_the_nodes_objects_and_constants_of_both():
     assert both == Value(frozenset([1, 2]), frozenset([one, two]), frozenset(["a", "b"]))
 
 
-def test_bottom_is_neutral_in_a_join_and_unknown_constants_absorb():
+def test_joining_with_bottom_changes_nothing_and_with_unknown_constants_gives_unknown():
     value = constants(1)
     assert join(value, BOTTOM) is value
     assert join(BOTTOM, value) is value
@@ -75,7 +75,7 @@ def test_values_are_equal_only_if_all_three_parts_are(change):
     assert join(Value(**parts), Value(**{**parts, **change})) != Value(**parts)
 
 
-def test_more_strings_than_other_constants_stay_known():
+def test_a_value_may_have_more_string_constants_than_other_constants():
     few, many = frozenset(range(MAX_CONSTS)), frozenset(map(str, range(MAX_TEXTS)))
     assert join_consts(few, frozenset([0])) is few
     assert join_consts(few, frozenset([MAX_CONSTS])) is None
@@ -126,7 +126,7 @@ def test_objects_come_in_order_of_creation():
 # --- objects ------------------------------------------------------------------------------------------
 
 
-def test_a_part_knows_its_path_and_its_whole():
+def test_an_embedded_object_has_an_access_path_and_an_outermost_object():
     message = Obj("message", "m")
     part = message.sub("pose").sub("x")
     assert part is message.sub("pose").sub("x")
@@ -137,7 +137,7 @@ def test_a_part_knows_its_path_and_its_whole():
     assert part.laden
 
 
-def test_deep_parts_and_nested_elements_fold_into_one():
+def test_parts_beyond_the_maximum_depth_share_one_object():
     deep = Obj("lib", "a")
     for _ in range(MAX_DEPTH):
         assert deep.sub("x") is not deep
@@ -184,7 +184,7 @@ def test_a_released_object_refers_to_no_other():
 # --- classes ------------------------------------------------------------------------------------------
 
 
-def test_the_lineage_of_a_class_visits_a_shared_base_once_and_last():
+def test_the_method_resolution_order_has_a_shared_base_once_and_last():
     base = made_class("base")
     left, right = made_class("left", base), made_class("right", base)
     assert lineage(made_class("both", left, right))[1:] == [left, right, base]
@@ -194,7 +194,7 @@ def test_the_lineage_of_a_class_visits_a_shared_base_once_and_last():
     assert lineage(inner := made_class("inner", unknown, base)) == [inner, unknown, base]
 
 
-def test_the_lineage_of_a_class_has_a_bounded_length():
+def test_the_method_resolution_order_has_a_bounded_length():
     cls = made_class("0")
     for number in range(1, 80):
         cls = made_class(str(number), cls)

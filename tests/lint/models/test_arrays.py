@@ -20,12 +20,12 @@ def fills(made: str) -> str:
 
 
 @pytest.mark.parametrize("name", sorted(catalog.RESERVING))
-def test_a_library_fills_an_array_that_the_program_reserved(name):
+def test_a_library_call_fills_an_array_that_was_created_without_data(name):
     assert differing(in_callback(fills(f"{name}(4)"), HEAD)) == {}
 
 
 @pytest.mark.parametrize("operator", sorted(ARITHMETIC))
-def test_an_array_that_was_computed_from_a_reserved_one_is_filled_too(operator):
+def test_an_array_computed_from_one_without_data_is_filled_too(operator):
     assert differing(in_callback(fills(f"np.ones(4) {operator} 2"), HEAD)) == {}
 
 

@@ -41,7 +41,7 @@ def test_a_recording_is_worse_by_a_significant_loss_beyond_what_is_allowed(
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
 
 
-def test_a_recording_changed_if_its_sites_or_sensors_did() -> None:
+def test_two_recordings_differ_if_their_sites_or_sensors_differ() -> None:
     assert not difference(moved=(Moved(SITE, MOVED),)).changed
     for one in ({"gone": (SITE,)}, {"new": (SITE,)}, {"same_sensors": False}):
         assert difference(**one).changed
@@ -66,7 +66,7 @@ def test_two_recordings_are_compared_by_reward_cells_and_sites() -> None:
     assert (same.moved, same.loss, same.same_sensors) == ((), 0.0, True)
 
 
-def test_the_lines_of_a_difference() -> None:
+def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings() -> None:
     one, two = recording("t", 4, 3.0), recording("u", 2, 1.0)
     found = difference(gone=(SITE,), new=(AWAY,), moved=(Moved(SITE, MOVED), Moved(SITE, AWAY)))
     assert [*diff.lines(one, two, found)] == [

@@ -31,7 +31,7 @@ def raising(problem: BaseException) -> Callable[[Namespace], int]:
     ],
     ids=["check", "extra", "refused", "error", "interrupted"],
 )
-def test_the_status_tells_how_a_command_ended(
+def test_the_exit_status_shows_how_a_command_ended(
     run: Callable[[Namespace], int],
     missing: str | None,
     status: int,
@@ -45,7 +45,7 @@ def test_the_status_tells_how_a_command_ended(
     assert capsys.readouterr().err == said
 
 
-def test_ingest_stores_what_it_is_not_given_as_unknown() -> None:
+def test_ingest_stores_missing_metadata_as_unknown() -> None:
     given = cli.parser().parse_args(["ingest", "a.log", "--to", "d", "--fixture", "f", "--robot", "r"])
     assert (given.version, given.site) == ("unknown", "unknown")
     assert (given.repair, given.hash_robots) == ("", "")

@@ -88,7 +88,7 @@ TEST = """
     ("simulator", "limit", "status"),
     [("waits", 60.0, -2), ("ignores", 0.1, -9), ("leaves", 60.0, -2), ("orphans", 60.0, -2)],
 )
-def test_a_group_has_ended_with_all_its_descendants(
+def test_a_process_group_counts_as_ended_only_with_all_its_descendants(
     tmp_path: Path, simulator: str, limit: float, status: int
 ) -> None:
     done = subprocess.run(
@@ -142,7 +142,7 @@ def test_nothing_survives_a_killed_test(tmp_path: Path, do: str) -> None:
         assert comes_free(lock)
 
 
-def test_nothing_survives_a_guardian_that_the_middleware_holds(tmp_path: Path) -> None:
+def test_no_process_survives_if_the_middleware_blocks_the_guardian(tmp_path: Path) -> None:
     lock = tmp_path / "held"
     with running(lock, block=600.0, last=0.1) as test:
         test.kill()

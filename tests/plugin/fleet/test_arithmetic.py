@@ -96,7 +96,7 @@ def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
 
 
 @pytest.mark.parametrize(("world", "limit", "expected"), [(5.0, 4.9, 6), (5.0, 5.0, 8), (5.0, 6.0, 8)])
-def test_missions_before_the_onset_by_the_question_with_more_evidence(
+def test_the_onset_of_a_robot_comes_from_the_test_with_the_most_evidence(
     world: float, limit: float, expected: int
 ) -> None:
     told = status(evidence(2.0, 7), (), evidence(1.0, 4), evidence(3.0, 9))
@@ -123,7 +123,7 @@ def test_the_residuals_of_the_recording_itself_are_zero_on_average() -> None:
     assert world.of_visit[known].tolist() == (variance * visits)[known].tolist()
 
 
-def test_a_map_has_at_least_the_noise_of_as_many_recorded_visits() -> None:
+def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> None:
     recorded = fixture()
     world = residual_maps.designed(recorded)
     own = replace(recorded.sample, cells=((),) * (len(recorded.sample.cells) + 1))
@@ -138,7 +138,7 @@ def test_a_map_has_at_least_the_noise_of_as_many_recorded_visits() -> None:
     assert halved.variance[known] == pytest.approx(world.variance[:-1][known])
 
 
-def test_columns_of_robots_side_by_side() -> None:
+def test_the_processes_of_all_robots_are_stored_in_one_array_and_split_by_robot() -> None:
     processes = restarts.begun(np.array([1.0] * 6))
     peak = np.array([1.0, 2.0, 10.0, 11.0, 20.0, 21.0])  # a bound of both robots, two scores of each
     some = Watched(ints(4, 7), replace(processes, peak=peak), ints(1, 2, 3, 4), 1)
@@ -201,7 +201,7 @@ ROWS = st.lists(
 
 
 @given(ROWS, st.integers(0, 12))
-def test_rows_of_several_files_are_sorted_by_all_columns(
+def test_rows_from_several_files_are_merged_and_sorted(
     rows: list[tuple[int, int, int, int, float]], cut: int
 ) -> None:
     parts = [transitions(*some) for some in (rows[:cut], rows[cut:]) if some]
@@ -209,7 +209,7 @@ def test_rows_of_several_files_are_sorted_by_all_columns(
 
 
 @given(ROWS, st.sets(st.integers(0, 3), min_size=1))
-def test_the_transitions_of_some_missions(
+def test_transitions_can_be_selected_by_mission(
     rows: list[tuple[int, int, int, int, float]], some: set[int]
 ) -> None:
     every = partitions.sorted_rows([transitions(*rows)])
@@ -221,7 +221,7 @@ def test_the_transitions_of_some_missions(
     assert listed(every.between(low, high)) == [row for row in sorted(rows) if low <= row[0] < high]
 
 
-def test_cells_that_the_recording_lacks_become_one() -> None:
+def test_unrecorded_cells_of_a_chain_are_merged_into_one_cell() -> None:
     """Cells 2 and 3 are not recorded: their transitions of one mission are joined where they become equal."""
     rows = transitions(
         (0, 0, 2, 1, 1.0), (0, 0, 3, 2, 2.0), (0, 2, 3, 1, 4.0), (0, 3, END, 1, 8.0), (1, 2, 3, 1, 16.0)
@@ -254,7 +254,7 @@ def test_robots_are_divided_by_the_number_of_their_missions(monkeypatch: pytest.
     assert [one.tolist() for one in robots.portions(ends)] == [[4, 10], [11], [35, 40]]
 
 
-def test_the_mean_of_e_values_in_logarithms() -> None:
+def test_the_weighted_mean_of_e_values_is_computed_from_logarithms_without_overflow() -> None:
     assert robots._mean(np.array([]), np.array([])) == -1.0
     assert robots._mean(np.array([3.0, 1.0]), np.array([1.0, 3.0])) == pytest.approx(log2((8 + 3 * 2) / 4))
     assert robots._mean(np.array([2000.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
@@ -277,7 +277,7 @@ def test_distances_are_the_largest_difference_in_standard_errors() -> None:
     assert np.diag(found).tolist() == [inf] * 4
 
 
-def test_cells_stand_out_after_correction_for_their_number() -> None:
+def test_significant_cells_are_corrected_for_the_number_of_cells() -> None:
     p = erfc(2.0 / sqrt(2.0))  # 0.0455
     mean, variance = np.array([2.0, 0.0, np.nan, -4.0]), np.array([1.0, 0.0, 1.0, 1.0])
     assert clusters._standing_out(mean, variance, 3.1 * p).tolist() == [0, 3]
@@ -303,7 +303,7 @@ def test_a_cluster_pools_its_maps_by_the_inverse_of_their_variances() -> None:
     assert found.residuals == pytest.approx((-4.0, -4.0))  # (-3·10 - 6·5) / 15
 
 
-def test_clusters_are_sorted_by_size_and_the_unclear_named() -> None:
+def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() -> None:
     def one(name: str, mean: float) -> ResidualMap:
         return ResidualMap(name, np.array([mean]), np.array([0.01]))
 
@@ -315,7 +315,7 @@ def test_clusters_are_sorted_by_size_and_the_unclear_named() -> None:
     assert clusters.of(maps[3:], np.array([0.0]), ((3,),), 0.05).found == ()
 
 
-def test_the_inverse_of_a_singular_matrix() -> None:
+def test_a_singular_matrix_gets_its_pseudo_inverse_and_rank() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))
@@ -344,7 +344,7 @@ def test_a_map_has_the_missions_of_a_robot_from_its_onset_on(monkeypatch: pytest
     assert found == [("20", "first"), ("30", "second"), ("40", "third")]
 
 
-def test_robots_with_most_evidence_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_clustering_compares_the_robots_with_the_most_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
     compared: list[str] = []
 
     def maps(*arguments: Any) -> list[ResidualMap]:

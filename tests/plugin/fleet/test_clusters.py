@@ -34,7 +34,7 @@ def maps(seed: int, kinds: list[dict[int, float]], each: int) -> list[ResidualMa
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_kinds_of_drift_become_clusters_with_their_cells(seed: int) -> None:
+def test_robots_with_the_same_drift_form_a_cluster_with_its_cells(seed: int) -> None:
     kinds = [{3: -1.0, 4: -1.0}, {7: -1.0}, {7: 1.0}]
     found = of(maps(seed, kinds, 6), np.full(len(CELLS), 1e-4), CELLS, 0.05)
     large = [one for one in found.found if len(one.robots) >= 3]

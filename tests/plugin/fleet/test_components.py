@@ -83,7 +83,7 @@ def test_balanced_missions_give_the_analysis_of_variance() -> None:
     assert between.variance == pytest.approx(float(table.mean(axis=1).var(ddof=1)) - expected / 25)
 
 
-def test_a_version_that_came_with_a_season_everywhere_cannot_be_told_apart() -> None:
+def test_the_effects_of_a_version_and_a_season_that_always_coincide_cannot_be_separated() -> None:
     robot, levels, reward, _ = missions(1, 40, 20, 1.0)
     levels[:, 0] = levels[:, 2] >= 2
     totals = summed(robot, levels, reward, (2, *SIZES[1:]))

@@ -33,7 +33,7 @@ def test_a_failure_of_the_stores_client_names_the_file_and_the_advice(reads: boo
     assert "\n" not in text
 
 
-def test_a_failure_without_words_is_named() -> None:
+def test_an_exception_without_a_message_is_reported_by_its_class() -> None:
     def fail(*_: object) -> None:
         raise TimeoutError
 

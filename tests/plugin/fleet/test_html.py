@@ -90,7 +90,7 @@ def many(found: Answer) -> Answer:
     return replace(found, robots=replace(found.robots, every=(*found.robots.every, *more)))
 
 
-def test_the_page_holds_what_the_report_says(found: Answer) -> None:
+def test_the_page_contains_the_figures_of_the_text_report(found: Answer) -> None:
     text = html.render(found)
     told = drawn(text)
     assert [one["values"] for one in told["groups"]] == [["1", "north"], ["1", "south"]]

@@ -232,7 +232,7 @@ def test_a_log_that_does_not_fit_is_named_and_the_others_are_ingested(
         (["{log}", "--robot", "r", "--to", "{log}/data"], "cannot be"),
     ],
 )
-def test_wrong_input_is_one_sentence(
+def test_invalid_input_gives_one_sentence(
     argv: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, logs = world(tmp_path)
@@ -269,7 +269,7 @@ def test_a_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert err.count("\n") == 1
 
 
-def test_a_missing_package_is_one_sentence(
+def test_a_missing_package_gives_one_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("pytest_tarl.extras.FLEET", ("no_such_package",))

@@ -73,7 +73,7 @@ def test_an_episode_in_two_recordings_counts_once(tmp_path: Path) -> None:
     assert [(one.episodes, one.known) for one in parts] == [(3, 0), (2, 1)]
 
 
-def test_the_bounds_are_those_of_all_episodes(tmp_path: Path) -> None:
+def test_a_merged_recording_states_bounds_over_all_episodes(tmp_path: Path) -> None:
     found, _ = merged([recording(tmp_path, "a", [*range(9)]), recording(tmp_path, "b", [*range(9, 30)])])
     assert found.stated is not None
     assert found.stated.episodes == 30
@@ -87,7 +87,7 @@ def test_the_bounds_are_those_of_all_episodes(tmp_path: Path) -> None:
     ({"lists": tuple(replace(one, source="/other") for one in example().lists)}, "statements"),
     ({"design": ("worn",)}, "permanent drifts"),
 ])  # fmt: skip
-def test_recordings_that_do_not_fit_are_named_and_why(
+def test_recordings_that_cannot_be_merged_are_named_with_the_reason(
     changes: dict[str, object], named: str, tmp_path: Path
 ) -> None:
     first, second = recording(tmp_path, "a", [1, 2]), tmp_path / "b.npz"
@@ -152,7 +152,7 @@ def test_the_command_writes_a_recording_that_can_be_compared_and_merged(
 
 
 @pytest.mark.parametrize("kind", ["absent", "text", "log alone", "unfinished"])
-def test_what_cannot_be_merged_is_one_sentence_and_nothing_is_written(
+def test_recordings_that_cannot_be_merged_give_one_sentence_and_no_file(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, other, to = tmp_path / "test.npz", tmp_path / "other.log", tmp_path / "fleet.npz"

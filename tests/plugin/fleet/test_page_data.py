@@ -46,7 +46,7 @@ def data(found: Answer) -> dict[str, Any]:
     return html._data(found, Vocabulary(SENSORS, CELLS))
 
 
-def test_the_title_names_the_robot_in_question() -> None:
+def test_the_title_of_the_page_names_the_requested_robot() -> None:
     assert variables(answer())["title"] == "data"
     assert variables(answer(question=Question("data", robot="r1")))["title"] == "data, r1"
 
@@ -74,7 +74,7 @@ def test_the_period_is_that_of_the_missions_or_unknown() -> None:
         ),
     ],
 )
-def test_the_headline_counts_groups_that_differ_at_once_or_in_time(
+def test_the_headline_counts_groups_that_always_differed_or_changed_later(
     groups: tuple[str | None, ...], found: tuple[str, ...], expected: str
 ) -> None:
     watched = [robot(f"g{n}") for n in range(len(groups))]
@@ -104,7 +104,7 @@ def test_a_cluster_links_thirty_robots_and_counts_the_rest() -> None:
     assert second == {"count": 30, "names": names[:30], "more": 0, "where": "no common cell", "residual": ""}
 
 
-def test_the_missions_with_the_lowest_reward() -> None:
+def test_the_page_lists_the_missions_with_the_lowest_reward() -> None:
     lowest = (Mission(1.5 * DAY, False, -12.3456789, 7), Mission(0.0, True, 3.0, 1))
     assert variables(answer(lowest=lowest))["lowest"] == [
         {"time": "1970-01-02 12:00", "result": "failed", "total": "-12.3457", "steps": 7},
@@ -112,7 +112,7 @@ def test_the_missions_with_the_lowest_reward() -> None:
     ]
 
 
-def test_the_formulas_of_each_group() -> None:
+def test_the_page_lists_the_violations_of_each_formula_by_group() -> None:
     one = group("north", formulas=(Judged("always(x > 1)", 1000, 10, -0.5678),))
     assert variables(answer(groups=(one,)))["formulas"] == [
         {"formula": "always(x > 1)", "group": "north", "violated": "10 of 1,000", "least": "-0.568"}
@@ -124,7 +124,7 @@ def test_notes_lose_their_mark() -> None:
     assert first.startswith("ranges are one-sided bounds")
 
 
-def test_components_have_a_share_where_they_are_known() -> None:
+def test_components_of_unknown_variance_have_no_share() -> None:
     site = Component("site", 0.3, 0.15, 0.6, 2, (-0.25, 0.25))
     parts = Decomposition(
         "month",
@@ -153,7 +153,7 @@ def test_components_have_a_share_where_they_are_known() -> None:
     assert variables(answer())["components"] == []
 
 
-def test_repairs_with_their_intervals_or_the_reason_why_there_is_none() -> None:
+def test_the_page_shows_repairs_with_an_interval_or_the_reason_for_its_absence() -> None:
     helps, nothing = variables(
         answer(repairs=(effect(values=("wet",)), unknown()), accepted={"guard-1": "mud"})
     )["repairs"]
@@ -177,7 +177,7 @@ def test_repairs_with_their_intervals_or_the_reason_why_there_is_none() -> None:
     assert (harms["tag"], none["tag"], none["verdict"]) == ("harms", "no-difference", "no effect shown")
 
 
-def test_the_data_hold_robots_as_columns_and_named_ones_by_their_index() -> None:
+def test_the_page_stores_robots_in_columns_and_refers_to_them_by_index() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     every = (robot("r1"), robot("r2", 9.123, 1.0, told), robot("r3", 3.0, 2.0))
     found = data(
@@ -205,7 +205,7 @@ def test_the_data_hold_robots_as_columns_and_named_ones_by_their_index() -> None
 
 
 @pytest.mark.parametrize(("world", "limit", "mission"), [(5.0, 4.9, 7), (5.0, 5.0, 9), (5.0, 6.0, 9)])
-def test_the_onset_is_that_of_the_question_with_more_evidence(
+def test_the_onset_on_the_page_comes_from_the_test_with_the_most_evidence(
     world: float, limit: float, mission: int
 ) -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, DAY), evidence(3.0, 9, 5 * DAY))
@@ -215,7 +215,7 @@ def test_the_onset_is_that_of_the_question_with_more_evidence(
     )
 
 
-def test_an_onset_without_a_time_or_a_mission() -> None:
+def test_an_onset_may_lack_a_time_and_a_robot_may_lack_an_onset() -> None:
     assert html._since(robot("r1")) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0)))) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0, 3)))) == (3, 0.0)
@@ -267,7 +267,7 @@ def test_cells_are_counted_over_named_robots_and_groups_that_differ() -> None:
     ]
 
 
-def test_a_group_on_the_map() -> None:
+def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), PLACE)
     watched = robot("south", 5.126, 2.0, told)
     one = group("south", result="degraded", mean=bound(-inf, 2.75))
@@ -309,6 +309,6 @@ def test_too_many_groups_leave_those_that_differ_and_those_with_the_lowest_rewar
     assert [one["values"] for one in data(found)["groups"]] == [["b"], ["c"], ["d"]]
 
 
-def test_a_page_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
+def test_an_unwritable_page_gives_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(FleetError, match=r"The page .* cannot be written"):
         html.write(answer(), tmp_path / "missing" / "folder" / ("x" * 300))

@@ -110,7 +110,9 @@ def test_counts_and_bounds_are_those_of_the_missions(found: Answer) -> None:
 
 
 @pytest.mark.parametrize("robot", [1, 3])
-def test_the_evidence_is_that_of_the_watch(folder: Path, tmp_path: Path, found: Answer, robot: int) -> None:
+def test_tarl_fleet_and_tarl_watch_compute_the_same_evidence(
+    folder: Path, tmp_path: Path, found: Answer, robot: int
+) -> None:
     path = tmp_path / "state.npz"
     log = folder / f"r{robot}" / "missions.log"
     one = watch.begun([log], folder / "test.npz", path, alpha=found.robots.q, seed=0)
@@ -125,7 +127,7 @@ def test_the_evidence_is_that_of_the_watch(folder: Path, tmp_path: Path, found: 
     )
 
 
-def test_the_verdict_is_that_of_the_comparison_of_one_log(folder: Path, found: Answer) -> None:
+def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Path, found: Answer) -> None:
     fixture = load(folder / "test.npz")
     own = merge([one for _, one in logged_samples(folder / DRIFTED / "missions.log", fixture)])
     expected = compare(
@@ -182,7 +184,7 @@ def test_files_of_schema_1_are_read_beside_newer_ones(folder: Path, found: Answe
     assert again.groups[0].mean == found.groups[2].mean
 
 
-def test_an_object_store_gives_the_same(folder: Path, found: Answer) -> None:
+def test_the_answer_from_an_object_store_equals_that_from_a_folder(folder: Path, found: Answer) -> None:
     add(folder, [*range(ROBOTS)], "memory://fleet/one")
     again = answer(Question("memory://fleet/one"))
     assert document.text(again) == document.text(found)
@@ -264,7 +266,7 @@ def test_the_command_reports_and_fails_by_its_rules(
         (["nosuch://x"], "nosuch://x cannot be opened"),
     ],
 )
-def test_wrong_input_is_one_sentence(
+def test_invalid_input_gives_one_sentence(
     argv: list[str], said: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     filled = [one.replace("{data}", str(folder / "data")).replace("{empty}", str(tmp_path)) for one in argv]
@@ -368,7 +370,7 @@ def dying(marker: str, *arguments: object) -> object:
     return COMPARED(*arguments)  # type: ignore[arg-type]
 
 
-def test_an_unreachable_cluster_is_one_sentence(
+def test_an_unreachable_cluster_gives_one_sentence(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     pytest.importorskip("distributed")

@@ -72,7 +72,7 @@ def test_equal_arms_give_the_difference_of_their_means() -> None:
     assert found.reward == pytest.approx(total[arm == 1].mean() - total[arm == 0].mean())
 
 
-def test_the_command_tells_which_repair_helps_which_group(
+def test_tarl_fleet_prints_which_repair_helps_which_group(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, data = tmp_path / "test.npz", str(tmp_path / "data")

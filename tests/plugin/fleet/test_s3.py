@@ -69,7 +69,7 @@ def said(copies: bool = False) -> str:
     return document.text(replace(found, copies=0))
 
 
-def test_a_sound_store_says_what_a_folder_says(s3: Faults, fleet: tuple[Order, str]) -> None:
+def test_an_object_store_and_a_folder_give_the_same_answer(s3: Faults, fleet: tuple[Order, str]) -> None:
     order, expected = fleet
     assert sum(one.missions for one in ingest(order)) == 15
     assert said() == expected
@@ -96,7 +96,7 @@ def test_a_request_that_fails_once_is_repeated(s3: Faults, fleet: tuple[Order, s
 
 
 @pytest.mark.parametrize("fault", ["503", "expired", "half", "lost"])
-def test_what_ends_a_run_is_one_sentence_and_the_next_run_completes_it(
+def test_a_failing_request_ends_ingest_with_one_sentence_and_the_next_run_completes_it(
     s3: Faults, fleet: tuple[Order, str], fault: str
 ) -> None:
     order, expected = fleet
@@ -136,7 +136,7 @@ def test_a_question_to_a_store_that_refuses_is_one_sentence(
     assert said() == expected
 
 
-def test_files_that_are_not_listed_yet_count_once(
+def test_files_missing_from_a_stale_listing_are_counted_once(
     s3: Faults, fleet: tuple[Order, str], tmp_path: Path
 ) -> None:
     order, expected = fleet

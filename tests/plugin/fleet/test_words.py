@@ -31,7 +31,7 @@ from tests.plugin.fleet.answers import (
 PLACE = ((2, 0), (2, 1))
 
 
-def test_a_quiet_fleet_is_a_table_and_three_sentences() -> None:
+def test_a_fleet_without_alarms_is_reported_in_a_table_and_three_sentences() -> None:
     assert [*words.lines(answer())] == [
         "data: 40 missions of 1 robot, compared with 10 episodes of test_walk.py::test_walk",
         "",
@@ -86,7 +86,7 @@ def test_the_table_names_the_region_with_new_cells() -> None:
     assert [*words.lines(found)][3].endswith("drifted (p 0.03)  x 2-3")
 
 
-def test_a_group_that_changed_is_told_by_the_question_with_more_evidence() -> None:
+def test_the_sentence_about_a_changed_group_uses_the_test_with_the_most_evidence() -> None:
     told = status(
         evidence(2.0, 7, 3 * DAY), PLACE, evidence(1.0, 4, 2 * DAY), None, evidence(3.0, 9, 5 * DAY)
     )
@@ -134,7 +134,7 @@ def test_named_robots_are_counted_and_at_most_twenty_listed() -> None:
         assert sum("evidence 32" in line for line in below) == 20
 
 
-def test_a_robot_below_a_bound_is_told_by_the_bound() -> None:
+def test_a_robot_below_a_bound_is_described_by_that_bound() -> None:
     told = status(evidence(2.0, 7, 3 * DAY), (), evidence(1.0, 4, None))
     one = robot("r1", 5.0, 4.0, told)
     lines = [*words.lines(answer(robots=robots(one, below=(one,))))]
@@ -176,7 +176,7 @@ def test_formulas_with_more_violations_come_first() -> None:
     assert "No mission violates a formula." not in [*words.lines(answer())]
 
 
-def test_the_missions_of_one_robot_with_the_lowest_reward() -> None:
+def test_the_report_of_a_robot_lists_its_missions_with_the_lowest_reward() -> None:
     lowest = (Mission(1.5 * DAY, False, -12.3456789, 7), Mission(0.0, True, 3.0, 1))
     lines = [*words.lines(answer(question=Question("data", by=("site",), robot="r1"), lowest=lowest))]
     start = lines.index("missions of r1 with the lowest reward")
@@ -184,7 +184,7 @@ def test_the_missions_of_one_robot_with_the_lowest_reward() -> None:
     assert lines[start + 2] == "  no time  passed  reward 3  1 steps"
 
 
-def test_notes_state_each_condition_once_it_holds() -> None:
+def test_each_note_appears_only_if_its_condition_holds() -> None:
     quiet = [*words.notes(answer())]
     assert len(quiet) == 2
     groups = (group("a", compared=39, outside=1200), group("b", outside=34), group("c"))
@@ -200,7 +200,7 @@ def test_notes_state_each_condition_once_it_holds() -> None:
     ]
 
 
-def test_the_effect_of_a_repair_is_told_with_intervals_and_counts() -> None:
+def test_the_effect_of_a_repair_is_printed_with_intervals_and_counts() -> None:
     some = (
         effect(values=("wet",)),
         replace(effect("guard-2", -0.5, -0.75), reward_bound=bound(-0.75, -0.25)),
@@ -237,7 +237,7 @@ def test_a_repair_without_an_interval_says_why() -> None:
 @pytest.mark.parametrize(
     ("found", "expected"), [(bound(0.01, 0.09), "+1 to +9"), (Bound(-inf, inf, 0.95, "t", False, 0), "")]
 )
-def test_an_interval_in_its_unit(found: Bound, expected: str) -> None:
+def test_a_confidence_interval_is_printed_in_the_unit_of_its_score(found: Bound, expected: str) -> None:
     assert repair_words.interval(found, 100) == expected
 
 
@@ -279,7 +279,7 @@ def test_no_level_is_the_lowest_if_the_variance_may_be_none() -> None:
     assert decomposition_words.lowest(replace(site, effects=(0.3, -0.3, 0.0, 0.0)), levels) == "b -0.3"
 
 
-def test_components_of_no_variance_at_all() -> None:
+def test_without_any_variance_each_component_has_a_share_of_zero() -> None:
     still = component("mission", 0.0, low=0.0, high=0.0)
     parts = Decomposition("week", (still, still), ())
     assert [*decomposition_words.lines(parts)][1] == "  within a robot    0.0 %  0 (0 to 0)"

@@ -78,7 +78,7 @@ def edited(places: list[str], forms: list[str]) -> None:
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
-def test_an_edited_file_is_run_through_any_chain_of_imports(data: st.DataObject) -> None:
+def test_an_edited_module_is_executed_even_if_imported_indirectly(data: st.DataObject) -> None:
     places = data.draw(st.lists(st.sampled_from(PLACES), min_size=1, max_size=4), "places")
     forms = data.draw(st.lists(st.sampled_from(sorted(FORMS)), min_size=4, max_size=4), "forms")
     edited(places, forms)
@@ -88,7 +88,7 @@ def test_a_constant_that_an_installed_function_took_from_an_edited_file_is_compu
     edited(["workspace", "site", "workspace"], ["number", "inside", "constant"])
 
 
-def test_a_helper_kept_by_another_module_is_reported(tmp_path: Path) -> None:
+def test_an_edited_helper_that_another_module_still_holds_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     kept: list[Any] = []
 

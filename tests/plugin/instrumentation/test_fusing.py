@@ -98,7 +98,7 @@ NOT_FUSED = {
 
 
 @pytest.mark.parametrize("kind", NOT_FUSED)
-def test_these_statements_are_not_fused(kind):
+def test_statements_that_may_fail_or_run_other_code_are_not_recorded_together(kind):
     assert "extend" not in written(NOT_FUSED[kind], "f(1.0)")[0]
 
 
@@ -119,7 +119,7 @@ FUSED = {
 
 
 @pytest.mark.parametrize("kind", FUSED)
-def test_these_statements_are_fused(kind):
+def test_consecutive_float_arithmetic_is_recorded_in_one_call(kind):
     calls, entries = written(FUSED[kind], "f(2.0)")
     assert calls.count("extend") == 1
     assert {-2.0, 2.0, -4.0} <= {entry for entry in entries if type(entry) is float}

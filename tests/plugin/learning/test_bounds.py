@@ -68,7 +68,7 @@ def test_a_binomial_tail_is_the_sum_of_its_terms(n: int, k: int, p: float) -> No
 
 @given(st.integers(1, 30), st.integers(0, 30), st.floats(0.01, 0.99))
 @settings(deadline=None)
-def test_the_evidence_is_a_mixture_of_likelihood_ratios_over_higher_rates(
+def test_evidence_against_a_rate_is_a_mixture_of_likelihood_ratios_of_higher_rates(
     n: int, passed: int, least: float
 ) -> None:
     passed = min(passed, n)

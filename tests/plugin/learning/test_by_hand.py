@@ -151,7 +151,7 @@ def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 
 
-def test_a_bet_is_hopeless_once_no_further_episodes_can_win_it() -> None:
+def test_a_betting_test_stops_once_no_further_episodes_can_decide_it() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     even = [0.5, -0.5] * 10
     best = 1.0  # the bound of the mean at 0.5 % lies well below it
@@ -183,7 +183,7 @@ def test_only_sensors_with_bins_to_learn_get_edges() -> None:
     }
 
 
-def test_binomial_probabilities() -> None:
+def test_binomial_coefficients_probabilities_and_tails_equal_known_values() -> None:
     assert np.exp(log_choose(4)) == pytest.approx([1, 4, 6, 4, 1])
     assert probabilities(2, 0.25) == pytest.approx([0.5625, 0.375, 0.0625])
     assert BinomialTail(1, 2)(0.25) == pytest.approx(0.9375)
@@ -193,14 +193,14 @@ def test_binomial_probabilities() -> None:
 
 
 @given(st.floats(0.01, 0.99))
-def test_a_root_is_the_largest_refuted_value(edge: float) -> None:
+def test_bisection_finds_the_largest_value_that_the_test_refutes(edge: float) -> None:
     assert root(lambda value: value <= edge, 0.0, 1.0) == pytest.approx(edge, abs=1e-12)
     assert root(lambda _: False, 0.0, 1.0) == 0.0
     coarse = root(lambda value: value <= edge, 0.0, 1.0, 3)
     assert coarse == int(edge * 8) / 8
 
 
-def test_looks_double_and_spend_the_square_of_their_share() -> None:
+def test_each_check_spends_the_square_of_its_share_of_alpha() -> None:
     assert planned(40, 3) == (Look(10, 1 / 16), Look(20, 3 / 16), Look(40, 3 / 4))
     assert planned(39, 3) == (Look(19, (19 / 39) ** 2), Look(39, 1 - (19 / 39) ** 2))
     assert planned(5, 3) == (Look(5, 1.0),)
@@ -210,7 +210,7 @@ def difference(**changes: Any) -> Difference:
     return Difference(replace(VERDICT, **changes), Region(((1,),)), {})
 
 
-def test_a_sequence_of_looks_adjusts_p_values_and_confidence() -> None:
+def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
     interval = LossInterval(0.1, 0.9, 0.98)
     seen = [
         (Look(10, 0.25), difference(p_loss=0.01, p_drift=0.2)),
@@ -234,7 +234,9 @@ def test_a_sequence_of_looks_adjusts_p_values_and_confidence() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_look_is_certain_with_a_loss_and_its_place(result: Any, region: Region, expected: bool) -> None:
+def test_a_check_is_decisive_only_with_a_loss_and_its_region(
+    result: Any, region: Region, expected: bool
+) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
 
 
@@ -252,7 +254,7 @@ def test_episodes_vary_if_any_of_them_differs_in_anything() -> None:
     assert varies(replace(same, chain=replace(same.chain, count=np.array([1, 1, 1, 2]))))
 
 
-def test_stated_bounds_of_a_recording() -> None:
+def test_a_recording_states_bounds_on_success_mean_and_quantile() -> None:
     found = stated([True] * 59 + [False], [1.0, 3.0] * 30)
     assert (found.episodes, found.passed, found.average, found.needed) == (60, 59, 2.0, 59)
     assert found.success.confidence == 0.95
@@ -297,7 +299,7 @@ def test_rows_are_in_the_given_order_then_by_name() -> None:
     assert {name: one.violated for name, one in added[0].worlds.items()} == {"online": 0, "repaired": 1}
 
 
-def test_judgements_of_picked_episodes() -> None:
+def test_formula_judgements_follow_the_selected_episodes() -> None:
     base = episodes([(0,)], [(0,)])
     both = stacked([[GOOD], [BAD]])
     samples = [replace(base, judgements=both), base]
@@ -331,7 +333,7 @@ def test_cells_without_a_sensor_are_joined() -> None:
     assert short.chain.next_cell.tolist() == [END] * 3
 
 
-def test_unknown_utilities_are_lent_by_similar_cells_weighted_by_visits() -> None:
+def test_an_unknown_utility_is_the_mean_of_similar_cells_weighted_by_visits() -> None:
     table = np.array([[1.0], [4.0], [nan], [nan]])
     visits = Visits(
         np.zeros(3, np.int64), np.array([0, 1, 2]), np.array([9, 1, 2]), *(np.zeros(3) for _ in range(4))
@@ -343,7 +345,7 @@ def test_unknown_utilities_are_lent_by_similar_cells_weighted_by_visits() -> Non
     assert found[:, 0].tolist() == pytest.approx([1.0, 4.0, 3.0, nan], nan_ok=True)
 
 
-def test_parts_of_the_reward_per_episode() -> None:
+def test_parts_of_the_reward_are_averaged_per_episode_in_both_worlds() -> None:
     one, two = episodes([(0,), (2,)], [(2,)]), replace(episodes([(0,)]), part_names=("a", "c"))
     assert means(one, two) == {"a": (3.0, 2.0), "b": (-1.0, 0.0), "c": (0.0, 0.0)}
 

@@ -11,7 +11,7 @@ from pytest_tarl.learning.multiple_testing import holm
 P_VALUES = st.lists(st.floats(0.0, 1.0), max_size=8)
 
 
-def test_a_worked_example() -> None:
+def test_holms_correction_equals_a_worked_example() -> None:
     assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx((0.03, 0.06, 0.06, 0.02))
 
 

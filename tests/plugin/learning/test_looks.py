@@ -20,7 +20,9 @@ def found(p_drift: float, p_loss: float, loss: float = 2.0, cells: int = 1) -> D
 
 
 @pytest.mark.parametrize(("episodes", "looks"), [(40, 3), (40, 1), (200, 5), (12, 3), (3, 3)])
-def test_the_looks_spend_the_whole_alpha_and_the_last_one_has_all_episodes(episodes: int, looks: int) -> None:
+def test_the_checks_spend_the_whole_alpha_and_the_last_one_has_all_episodes(
+    episodes: int, looks: int
+) -> None:
     plan = planned(episodes, looks)
     assert plan[-1].episodes == episodes
     assert sum(look.share for look in plan) == pytest.approx(1.0)
@@ -28,17 +30,17 @@ def test_the_looks_spend_the_whole_alpha_and_the_last_one_has_all_episodes(episo
     assert len(plan) <= looks
 
 
-def test_forty_episodes_have_looks_after_ten_and_twenty() -> None:
+def test_forty_episodes_are_checked_after_ten_and_twenty() -> None:
     assert [look.episodes for look in planned(40, 3)] == [10, 20, 40]
 
 
-def test_a_look_ends_the_run_once_the_loss_and_its_region_are_certain() -> None:
+def test_a_check_ends_the_run_once_the_loss_and_its_region_are_certain() -> None:
     assert certain(found(0.001, 0.001))
     assert not certain(found(0.001, 0.001, cells=0))
     assert not certain(found(0.001, 0.9))
 
 
-def test_p_values_are_corrected_for_the_number_of_looks() -> None:
+def test_p_values_are_corrected_for_the_number_of_checks() -> None:
     seen = [(Look(20, 0.25), found(0.5, 0.02)), (Look(40, 0.75), found(0.3, 0.03))]
     verdict = concluded(seen, 0.05).verdict
     assert verdict.p_loss == pytest.approx(0.04)
@@ -50,7 +52,7 @@ def test_p_values_are_corrected_for_the_number_of_looks() -> None:
     )
 
 
-def test_several_looks_do_not_raise_the_rate_of_false_alarms() -> None:
+def test_several_checks_do_not_raise_the_rate_of_false_alarms() -> None:
     """Without a difference, p-values are uniform; here they are correlated like those of growing samples."""
     draws = generator(0, "looks")
     plan = planned(40, 3)

@@ -51,7 +51,7 @@ def watch() -> Any:
     return SimpleNamespace(fixture=fixture, digest="d", known=known, problems=("p",))
 
 
-def test_a_quiet_watch() -> None:
+def test_a_watch_without_an_alarm_prints_evidence_and_error_rate() -> None:
     assert [*words.lines(watch(), status())] == [
         "t.py::test_a: 1,000 missions, 950 passed (95 %)",
         "  bound   at least 90 % of missions pass (95 % confidence): evidence 1, alarm at 20",
@@ -71,7 +71,7 @@ def test_a_quiet_watch() -> None:
     )
 
 
-def test_an_alarm_has_its_moment_onset_score_and_places() -> None:
+def test_an_alarm_is_printed_with_time_onset_score_and_cells() -> None:
     found = status(
         world=LOUD,
         lead=Score("residual", (2, 1), "lower"),
@@ -112,11 +112,11 @@ def test_an_alarm_has_its_moment_onset_score_and_places() -> None:
         (Evidence(3.0, 3.0, None, Moment(2, 0.0)), "ALARM with mission 2 (evidence 1,000, alarm at 20)"),
     ],
 )  # fmt: skip
-def test_evidence_in_words(evidence: Evidence | None, expected: str) -> None:
+def test_evidence_is_printed_with_the_alarm_that_it_raised(evidence: Evidence | None, expected: str) -> None:
     assert words.found(evidence, 0.05) == expected
 
 
-def test_bounds_scores_and_promises_in_words() -> None:
+def test_bounds_scores_and_guarantees_are_described_in_words() -> None:
     assert words.stated(TOTAL) == "a mission earns at least 2.5 on average (90 % confidence)"
     some = Vocabulary(missions.SENSORS, ((0, 0), (0, 1)))
     assert (
@@ -133,7 +133,7 @@ def test_bounds_scores_and_promises_in_words() -> None:
     assert words.promise(nothing) == "probability of a false alarm, ever: at most 5 % (alpha)"
 
 
-def test_alarms_of_a_status() -> None:
+def test_a_status_has_an_alarm_if_a_bound_is_missed_or_the_world_drifted() -> None:
     for found, below, drifted in (
         (status(), False, False),
         (status(world=LOUD), False, True),
@@ -142,7 +142,7 @@ def test_alarms_of_a_status() -> None:
         assert (found.below, found.drifted, found.alarm) == (below, drifted, below or drifted)
 
 
-def test_the_document_of_a_watch() -> None:
+def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
     found = dashboard.document(
         watch(), status(world=LOUD, lead=Score("residual", (2, 1), "lower"), cells=((2, 1),), new=((3, 1),))
     )
@@ -165,7 +165,9 @@ def test_the_document_of_a_watch() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_moments_keep_every_nth_time_whatever_the_portions(portions: list[int], most: int) -> None:
+def test_the_times_of_every_nth_mission_are_kept_however_missions_arrive(
+    portions: list[int], most: int
+) -> None:
     most *= 2
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(moments, "MOST", most)
@@ -181,7 +183,7 @@ def test_moments_keep_every_nth_time_whatever_the_portions(portions: list[int], 
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_no_moment_is_known_before_the_first() -> None:
+def test_before_the_first_kept_mission_no_time_is_known() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 
@@ -201,7 +203,7 @@ def recording(**told: Any) -> Any:
     return fixture
 
 
-def test_the_bounds_of_a_recording() -> None:
+def test_a_recording_gives_a_bound_on_the_mean_only_with_a_declared_range() -> None:
     assert stated.bounds(recording(varied=False)) == ()
     assert stated.bounds(recording(varied=True)) == (stated.Bound("success", 0.8, 0.95),)
     declared = stated.bounds(recording(declared=(0.0, 5.0)))
@@ -237,7 +239,7 @@ def test_alpha_is_shared_by_bounds_missions_and_cells(
     assert sum(expected) == pytest.approx(1.0)
 
 
-def test_columns_of_a_robot_beside_others() -> None:
+def test_bounds_and_scores_of_a_robot_have_fixed_columns_in_the_shared_array() -> None:
     assert judging.columns(2, 3, 4, 1).tolist() == [1, 5, 8 + 3, 8 + 4, 8 + 5]
     found = judging.begun(np.array([1.0, 2.0, 3.0]), 1, 2)
     assert found.threshold.tolist() == [1.0, 1.0, 2.0, 3.0, 2.0, 3.0]
@@ -260,7 +262,7 @@ def changed(monitor: Monitor, **columns: dict[int, float]) -> Monitor:
     return replace(monitor, processes=processes, moments=Moments(times=[100.0 * n for n in range(20)]))
 
 
-def test_the_status_tells_the_process_with_most_evidence(monitor: Monitor) -> None:
+def test_the_status_names_the_score_with_the_most_evidence(monitor: Monitor) -> None:
     stated_, cells = len(monitor.bounds), monitor.scale.cells
     first = stated_ + len(WHOLE)
     one = changed(
@@ -292,12 +294,12 @@ def test_a_monitor_without_missions_has_no_lead_and_no_onset(monitor: Monitor) -
     assert found.world.now == pytest.approx(found.world.highest)
 
 
-def test_new_cells_are_named_from_two_missions_on(monitor: Monitor) -> None:
+def test_new_cells_are_named_once_two_missions_visited_them(monitor: Monitor) -> None:
     found = replace(changed(monitor), new={(9, 1): 2, (8, 0): 2, (7, 0): 1})
     assert module.status(found).new == ((8, 0), (9, 1))
 
 
-def test_notes_of_a_monitor(monitor: Monitor) -> None:
+def test_a_monitor_notes_missing_bounds_and_incomplete_missions(monitor: Monitor) -> None:
     one = changed(monitor)
     assert module.status(one).notes == ()
     counts = replace(one.counts, without_steps=1, without_rewards=1000, beyond_range=2)
@@ -309,7 +311,7 @@ def test_notes_of_a_monitor(monitor: Monitor) -> None:
     ]
 
 
-def test_edges_lie_midway_between_values_and_tails_double() -> None:
+def test_bin_edges_lie_midway_between_values_and_bins_double_towards_the_tails() -> None:
     found = conformal.edges(np.array([0.0, 1.0, 1.0, 4.0]), 1.0)
     finite = found[np.isfinite(found)]
     spread = 4.0
@@ -322,7 +324,7 @@ def test_edges_lie_midway_between_values_and_tails_double() -> None:
     assert conformal.edges(np.empty(0), 0.0)[0] == -1.0
 
 
-def test_scores_join_the_pool_in_their_bins() -> None:
+def test_each_score_is_counted_in_its_bin() -> None:
     pool = np.zeros((2, conformal.BINS), np.int64)
     found = conformal.joined(pool, np.array([[3, -1], [3, 5]]))
     assert (found[0, 3], found[1, 5], found.sum()) == (2, 1, 3)

@@ -87,7 +87,7 @@ def test_consecutive_cuts_are_merged_as_if_they_were_one() -> None:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
-def test_a_site_waits_for_the_value_of_an_unfinished_statement() -> None:
+def test_an_event_is_complete_only_when_its_flow_value_has_arrived() -> None:
     recorder = Emptied()
     entries = recorder._entries()
     entries.append(3)

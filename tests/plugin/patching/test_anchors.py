@@ -99,7 +99,7 @@ def main():
         ("print(); subscribe('/a'); print()", "print()", False),
     ],
 )
-def test_another_registration_stands_outside_loops_and_always_runs(
+def test_the_subscription_is_added_beside_a_registration_that_always_runs_once(
     code: str, statement: str, after: bool
 ) -> None:
     source = document("pilot.py", BESIDE.format(code))

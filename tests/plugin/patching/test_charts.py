@@ -25,7 +25,7 @@ def operand(value: float) -> Operand:
         (offset(0.3), 0.0, 0.5, -0.3),
     ],
 )
-def test_a_step_moves_a_constant_on_its_scale_and_back(
+def test_a_step_changes_a_constant_on_its_scale_and_can_be_computed_back(
     chart: Chart, value: float, step: float, moved: float
 ) -> None:
     mutation = stepped(operand(value), step, chart, mutations)

@@ -48,7 +48,7 @@ def test_a_constant_in_an_integer_field_stays_an_integer(code: str) -> None:
         "speed = 7",
     ],
 )
-def test_a_constant_elsewhere_may_become_a_fraction(code: str) -> None:
+def test_a_constant_outside_an_integer_field_may_become_a_fraction(code: str) -> None:
     assert not seven(code)
 
 

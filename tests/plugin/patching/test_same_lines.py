@@ -37,7 +37,9 @@ def names(made: Replacement) -> list[str]:
         ("", "y = 2\nz = 3\n", "x = 1\ny = 2\nz = 3\n", "x = 1\ny = 2\nz = 3\n"),
     ],
 )
-def test_both_changes_take_effect_in_either_order(old: str, one: str, other: str, both: str) -> None:
+def test_two_compatible_changes_of_one_line_are_merged_in_either_order(
+    old: str, one: str, other: str, both: str
+) -> None:
     assert agreed(change(old, one), change(old, other)) == change(old, both)
     turned = agreed(change(old, other), change(old, one))
     assert turned is not None
@@ -57,7 +59,7 @@ def test_both_changes_take_effect_in_either_order(old: str, one: str, other: str
         ("", "x = 1\ny = 2\n", "x = 1\nz = 3\ny = 2\n"),  # not one insertion within the other
     ],
 )
-def test_other_changes_conflict(old: str, one: str, other: str) -> None:
+def test_incompatible_changes_of_one_line_are_not_merged(old: str, one: str, other: str) -> None:
     assert agreed(change(old, one), change(old, other)) is None
 
 

@@ -44,18 +44,18 @@ def test_a_name_may_be_added_to_an_import_but_none_taken_away() -> None:
     "lost",
     ["# how far, how fast\n", "  # 1/s", "; ok = err < 1", "    # towards the goal\n", "  # nearly there"],
 )
-def test_a_lost_statement_or_comment_is_noticed(lost: str) -> None:
+def test_the_check_detects_a_lost_statement_or_comment(lost: str) -> None:
     assert lost in NODE
     with pytest.raises(RepairError, match="would lose"):
         nothing_lost("node.py", NODE, NODE.replace(lost, ""), {8})
 
 
-def test_a_change_elsewhere_is_noticed() -> None:
+def test_the_check_detects_a_change_of_another_line() -> None:
     with pytest.raises(RepairError, match="would lose `GAIN = 5`"):
         nothing_lost("node.py", NODE, NODE.replace("GAIN = 5", "GAIN = 6"), {8})
 
 
-def test_reordered_statements_are_noticed() -> None:
+def test_the_check_detects_reordered_statements() -> None:
     swapped = NODE.replace("err = abs(delta); ok = err < 1", "ok = err < 1; err = abs(delta)")
     with pytest.raises(RepairError, match="would lose"):
         nothing_lost("node.py", NODE, swapped, {8})

@@ -24,7 +24,9 @@ from tests.slow import SLOW
     st.integers(1, 60),
     st.lists(st.tuples(st.floats(0.0, 1.0), st.integers(0, 80), st.integers(0, 10)), max_size=6),
 )
-def test_phases_together_never_exceed_the_budget(budget: int, phases: list[tuple[float, int, int]]) -> None:
+def test_the_phases_of_a_repair_never_exceed_the_budget(
+    budget: int, phases: list[tuple[float, int, int]]
+) -> None:
     ran = 0
 
     def run(candidate: Candidate, seed: int, drift: str | None) -> Outcome:

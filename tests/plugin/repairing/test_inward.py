@@ -46,13 +46,13 @@ def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tu
 
 
 @pytest.mark.parametrize(("low", "high"), [(2.4, 3.4), (2.0, 2.3), (1.3, 4.9)])
-def test_the_value_goes_back_to_where_all_missions_hold(low: float, high: float) -> None:
+def test_a_value_is_moved_back_to_one_with_which_all_missions_succeed(low: float, high: float) -> None:
     (by,), spent = inward(low, high)
     assert low <= by <= high
     assert spent <= 8
 
 
-def test_nothing_is_proposed_without_a_window_or_without_a_lost_mission() -> None:
+def test_without_a_window_or_a_lost_mission_no_value_is_proposed() -> None:
     assert inward(4.0, 3.0)[0] == []
     assert inward(2.4, 3.4, lost=False) == ([], 0)
 

@@ -249,7 +249,7 @@ def test_candidates_that_fit_a_part_of_the_range_are_named_once(monkeypatch: pyt
         ("larger", "other", 2.0, False),
     ],
 )
-def test_a_factor_weakens_a_structural_change_against_its_stronger_way(
+def test_the_template_decides_whether_larger_or_smaller_factors_are_weaker(
     stronger: str, parameter: str, factor: float, expected: bool
 ) -> None:
     structures = Structures.__new__(Structures)

@@ -257,7 +257,7 @@ def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) ->
 
 
 @slow
-def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> None:
+def test_other_uses_of_a_changed_constant_are_listed_and_their_tests_run(worn: pytest.Pytester) -> None:
     node(worn, before="from settings import GAIN\n", use="GAIN")
     (worn.path / "settings.py").write_text("GAIN = 2.0\n")
     (worn.path / "tool.py").write_text("import settings\n\nprint(settings.GAIN)\n")

@@ -77,7 +77,7 @@ def test_the_best_candidate_is_reported_unless_one_was_refused_on_fresh_seeds() 
     assert found.progress("sweep") == "sweep (best so far +4.5 of 8)"
 
 
-def test_candidates_that_were_near_once_and_ran_more_than_twice_were_not_confirmed() -> None:
+def test_a_candidate_with_one_good_mission_of_more_than_two_counts_as_unconfirmed() -> None:
     one, two, far, examined = (scaled(by) for by in (2.0, 3.0, 4.0, 5.0))
     runs = [(two, 0, 8.0), (two, 1, 1.0)]  # twice only
     for candidate, first in ((one, 8.0), (far, 7.9), (examined, 9.0)):
@@ -97,7 +97,9 @@ def test_candidates_that_were_near_once_and_ran_more_than_twice_were_not_confirm
         (scaled(-2.0), scaled(-2.1), True),
     ],
 )
-def test_candidates_are_alike_within_five_percent(one: Candidate, other: Candidate, expected: bool) -> None:
+def test_candidates_whose_values_differ_by_at_most_five_percent_count_as_equal(
+    one: Candidate, other: Candidate, expected: bool
+) -> None:
     assert alike(one, other) is expected
     assert alike(other, one) is expected
 
@@ -143,7 +145,9 @@ def test_a_candidate_goes_further_in_the_same_direction(
         (Mutation(replace(GAIN, value=True), value=False), None),
     ],
 )
-def test_the_factor_of_a_change(mutation: Mutation, expected: float | None) -> None:
+def test_a_changed_constant_has_the_factor_between_its_new_and_old_value(
+    mutation: Mutation, expected: float | None
+) -> None:
     if not mutation.operand.literal:
         assert mutation.operand.code == "KP"
     assert factor(mutation) == expected
@@ -204,7 +208,7 @@ def test_a_value_is_moved_if_it_belongs_to_one_site() -> None:
     assert found == pytest.approx([2.5, 1.6, 2.24, 1.78])
 
 
-def test_the_ratio_of_two_candidates_that_differ_in_one_value() -> None:
+def test_two_candidates_that_differ_in_one_value_have_a_ratio() -> None:
     assert ratio_of(scaled(3.0), scaled(2.0)) == pytest.approx(1.5)
     for other in (scaled(2.0, WET), scaled(2.0, of=OTHER), scaled(-2.0)):
         assert ratio_of(scaled(3.0), other) is None
@@ -230,7 +234,9 @@ MARGIN = Reference([10.0, 10.0], 1.0, 1.0, 0.0)
     ("by", "expected"),
     [(2.0, 2.6), (1.2, 1.2 * 1.3**3), (6.0, 6.0 / 1.3**2), (5.2, 4.0), (4.4, 4.4), (3.4, 3.4), (0.5, 0.5)],
 )
-def test_a_value_climbs_while_it_loses_more_than_a_third_of_the_margin(by: float, expected: float) -> None:
+def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
+    by: float, expected: float
+) -> None:
     """A mission earns 10 less 0.8 for each doubling between the factor and 3.4; below 1 it fails."""
 
     def run(one: Candidate, seed: int) -> Outcome:
@@ -284,7 +290,7 @@ def test_a_candidate_fails_again_if_it_loses_most_of_the_latest_missions(
     assert not Missed().again(scaled(2.0), trials, GOAL)
 
 
-def test_a_candidate_mends_another_if_it_loses_none_of_its_missions() -> None:
+def test_a_candidate_improves_on_a_refused_one_if_it_passes_all_of_its_lost_missions() -> None:
     refused = scaled(2.0)
     missed = Missed(few={refused: [(1, 8.0), (2, 7.0)]})
     for totals, expected in (((8.0, 7.0), True), ((7.9, 9.0), False), ((9.0, 6.9), False)):
@@ -322,7 +328,7 @@ def test_promising_candidates_are_the_best_refused_one_and_those_that_gained_mos
     assert [*_promising(examined(furthest=best), found)] == [best, harmful, more]
 
 
-def test_a_mild_candidate_loses_at_most_the_margin_in_recorded_missions() -> None:
+def test_a_mild_candidate_loses_at_most_the_tolerance_in_recorded_missions() -> None:
     def mutants(lost: float, permanent: bool = False) -> Any:
         sample = SimpleNamespace(seeds=(4, 5, 6, 7), total=np.array([10.0, 11.0, 12.0, 13.0]))
         order = SimpleNamespace(permanent=permanent, reference=MARGIN, fixture=SimpleNamespace(sample=sample))
@@ -395,7 +401,7 @@ def test_a_repair_must_hold_in_every_part_of_the_range(
     assert told.lost == tuple(band for n, band in enumerate(BANDS) if n not in held)
 
 
-def test_a_drift_of_one_size_is_tested_as_it_is() -> None:
+def test_a_drift_without_a_range_is_tested_once() -> None:
     order: Any = SimpleNamespace(
         comparison=SimpleNamespace(sizes={}), options=SimpleNamespace(seed=3), reference=MARGIN
     )
@@ -414,14 +420,14 @@ def test_a_drift_of_one_size_is_tested_as_it_is() -> None:
         ((1, 2), (), "", ""),
     ],
 )
-def test_a_candidate_that_fits_one_end_of_a_range(
+def test_a_candidate_that_works_at_one_end_of_a_range_is_described_by_its_sizes(
     near: tuple[int, ...], far: tuple[int, ...], part: str, expected: str
 ) -> None:
     runs = {seed: Outcome(8.0, True) for seed in near} | {seed: Outcome(7.9, True) for seed in far}
     assert fits_a_part(ranged(part), runs) == expected
 
 
-def test_parts_of_a_range_in_words() -> None:
+def test_the_sizes_for_which_a_repair_holds_or_fails_are_listed_in_words() -> None:
     one, two, three = BANDS
     assert bands_in_words(Ranged((), (one, two), (three,))) == (
         "it holds for sizes 0 to 1 and sizes 1 to 2, but not for sizes 2 to 3"
@@ -430,12 +436,12 @@ def test_parts_of_a_range_in_words() -> None:
 
 
 @pytest.mark.usefixtures("drawn")
-def test_sizes_of_the_acceptance_test_are_added() -> None:
+def test_a_repair_over_a_range_reports_the_drift_sizes_of_its_acceptance_test() -> None:
     (found,) = repaired_sizes(ranged(), Ranged((5, 15))).values()
     assert found.of == {"online": (1.0,), "repaired": (0.5, 1.5)}
 
 
-def test_the_goal_of_a_search() -> None:
+def test_the_goal_of_a_search_is_the_designed_reward_less_tolerance_and_spread() -> None:
     online = [Pair(1, 5.0), Pair(2, 8.5), Pair(3, 6.0), Pair(4, 10.0)]
     reference = Reference([9.0, 11.0], 0.95, 1.5, 0.0)
     found = goal(online, reference, 20.0)
@@ -452,7 +458,9 @@ def test_the_goal_of_a_search() -> None:
     assert (nothing.pairs, nothing.near) == ((Pair(4, 10.0),), 8.5)
 
 
-def test_the_overlap_of_two_worlds_decides_whether_a_sensor_tells(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sensor_distinguishes_two_worlds_if_their_values_hardly_overlap(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     worlds = {
         "designed": {(0.0, 1.0): 0.75, (1.0, 2.0): 0.25},
         "drifted": {(1.0, 2.0): 0.5, (2.0, 3.0): 0.5},
@@ -468,14 +476,16 @@ def test_the_overlap_of_two_worlds_decides_whether_a_sensor_tells(monkeypatch: p
     assert telling_sensors._overlap(order, sensor) == 1.0
 
 
-def test_a_step_on_a_chart_is_a_factor() -> None:
+def test_a_step_on_a_scale_is_reported_as_a_factor() -> None:
     share = operand(3, "0.95", 0.95)
     step = stepped(share, 2.0, SHARE, mutations)
     assert step is not None
     assert factor(step) == pytest.approx(2.0, rel=0.01)
 
 
-def test_a_partial_gain_is_paired_by_seed_and_shares_its_risk(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_partial_gain_is_paired_by_seed_and_alpha_is_divided_among_its_bounds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(partial, "EPISODES", 4)
     asked: list[Any] = []
 

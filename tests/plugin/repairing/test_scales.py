@@ -48,7 +48,7 @@ rospy.spin()
 """
 
 
-def test_shares_and_small_offsets_have_a_scale_and_gains_have_none(
+def test_values_near_one_and_small_offsets_have_a_second_scale_and_gains_do_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "balance.py").write_text(NODE)
@@ -66,7 +66,7 @@ def test_shares_and_small_offsets_have_a_scale_and_gains_have_none(
     assert found == {"ALPHA": SHARE, "ZERO_ANGLE": offset(0.3), "0.0": offset(0.1), "BIAS": offset(0.5)}
 
 
-def test_two_shares_are_alike_if_they_leave_about_the_same() -> None:
+def test_two_values_near_one_are_similar_if_their_distances_to_one_are() -> None:
     span = Span("node.py", 3, 5, 3, 9)
     share = Operand(SiteId("node", "run", "line 3"), span, "0.95", 0.95, span)
 

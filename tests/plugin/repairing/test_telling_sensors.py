@@ -38,11 +38,13 @@ TABLE = "def elevation(far):\n    return far * 0.5\n\n\ndef name(far):\n    retu
 
 
 @pytest.mark.parametrize(("designed", "drifted", "tells"), [(0, 5, True), (5, 0, True), (3, 3, False)])
-def test_a_sensor_tells_if_it_differs_between_the_worlds(designed: int, drifted: int, tells: bool) -> None:
+def test_a_sensor_is_offered_to_templates_if_its_values_differ_between_the_worlds(
+    designed: int, drifted: int, tells: bool
+) -> None:
     assert telling(order(designed, drifted)) == ([TOOL] if tells else [])
 
 
-def test_a_sensor_that_cannot_be_calculated_with_does_not_tell() -> None:
+def test_a_sensor_without_numbers_is_not_offered_to_templates() -> None:
     colour = Sensor("colour", topic="/colour", field="data", categories=("red", "blue"))
     assert telling(order(0, 1, colour)) == []
 
@@ -82,7 +84,9 @@ if __name__ == "__main__":
 """
 
 
-def test_what_is_published_is_a_place_for_a_delay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_templates_with_a_delay_apply_to_published_values(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "sprayer.py").write_text(SENDING)
     monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: {})
     asked: Any = order(0, 5)

@@ -54,7 +54,7 @@ if __name__ == "__main__":
         ("unknown", 1.0),
     ],
 )
-def test_a_size_follows_from_the_parts(
+def test_the_typical_size_of_an_expression_is_computed_from_its_recorded_operands(
     text: str, size: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tap.py").write_text(NODE)
@@ -68,7 +68,7 @@ def test_a_size_follows_from_the_parts(
 
 
 @pytest.mark.parametrize(("drifted", "larger"), [(700.0, 10.0), (14.0, 2.0)])
-def test_a_place_has_the_size_of_the_world_where_it_is_larger(
+def test_a_typical_size_is_the_larger_one_of_both_worlds(
     drifted: float, larger: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "tap.py").write_text(NODE)

@@ -16,7 +16,9 @@ SITE = SitePlace("node:vel", "src/a,b:node.py", 30, "vel = (\n    5 * delta)", "
 QUIET = Verdict("no difference", 0.4, 0.6, 0.1, 0.2, 0.5)
 
 
-def test_the_properties_of_a_degraded_test(shuttle: Comparison) -> None:
+def test_a_degraded_test_has_its_verdict_loss_region_culprit_and_patch_as_junit_properties(
+    shuttle: Comparison,
+) -> None:
     assert ci.properties(shuttle) == (
         ("tarl_verdict", "degraded"),
         ("tarl_p_drift", "0.001"),

@@ -81,7 +81,7 @@ def test_noise_does_not_get_the_strongest_colours(unchanged, shuttle):
     assert figure(shuttle)["reach"] == pytest.approx(np.nanmax(np.abs(change)), rel=1e-4)
 
 
-def test_scales_cover_the_values_shown(two_lists):
+def test_the_scale_of_a_figure_covers_all_shown_values(two_lists):
     found = figure(two_lists)
     shown = [
         v

@@ -59,10 +59,10 @@ def test_equal_episodes_are_one_world_and_give_no_bounds() -> None:
 
 
 @given(st.floats(0.0, 1.0))
-def test_a_share_is_never_rounded_up(share: float) -> None:
+def test_percentages_in_guarantees_are_rounded_down(share: float) -> None:
     shown = float(percent(share).removesuffix(" %")) / 100
     assert share - 0.001 < shown <= share + 1e-9
 
 
-def test_a_bound_that_is_not_finite_is_nothing() -> None:
+def test_an_infinite_bound_is_printed_as_nothing() -> None:
     assert figure(float("-inf")) == "nothing"

@@ -38,7 +38,7 @@ WORDS = "5 → 12 at a.py:3, KP × 0.5 at b.py:4, a new guard at c.py:5"
     [(0.1, "0.10"), (0.0999, "0.0999"), (999.99, "999.99"), (1000.0, "1000"), (999_999.0, "999999"),
      (-1e6, "-1e+06"), (-0.1, "-0.10"), (math.inf, "n/a"), (-math.inf, "n/a")],
 )  # fmt: skip
-def test_amounts_at_the_ends_of_their_formats(value: float, text: str) -> None:
+def test_amounts_change_their_format_at_the_stated_limits(value: float, text: str) -> None:
     assert amounts.amount(value) == text
 
 
@@ -92,7 +92,7 @@ def test_a_partial_repair_states_its_gain_with_bounds(varied: Varied) -> None:
     assert repair_words.partial_words(partial, varied(permanent=True)) == expected.format("old world")
 
 
-def test_ways_out_of_a_repair_that_only_the_designed_world_refuses(varied: Varied) -> None:
+def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(varied: Varied) -> None:
     refused = Repair(False, "", EDITS[:1], reason="nominal gets worse")
     told = repair_words.ways_out(varied(repair=refused))
     assert told.startswith(
@@ -145,7 +145,7 @@ def test_a_loss_has_interval_confidence_and_size(varied: Varied) -> None:
         assert words.loss_words(varied(totals=totals | few, verdict=verdict)) == ""
 
 
-def test_parts_of_the_reward_that_got_worse_the_largest_loss_first(varied: Varied) -> None:
+def test_worsened_parts_of_the_reward_are_listed_with_the_largest_loss_first(varied: Varied) -> None:
     parts = {"a": (5.0, 3.0), "b": (1.0, 9.0), "c": (0.0, -8.0), "tiny": (0.0, -0.09), "same": (1.0, 1.0)}
     one = varied(parts=parts, lost={"c": ((12, 1),), "b": ((12, 1),)})
     assert words.lost_parts(one) == [("c", -8.0), ("a", -2.0)]
@@ -179,7 +179,7 @@ def test_code_is_cut_only_beyond_the_width() -> None:
     assert words.one_line("x" * 18 + " yz", 20) == "x" * 18 + "…"
 
 
-def test_the_row_of_a_comparison(varied: Varied) -> None:
+def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Varied) -> None:
     one = varied(totals={"offline": (1.0, 3.0), "online": (0.0,)})
     assert table.row(one) == (
         "tests/test_traveller.py::test_delivers",
@@ -194,7 +194,7 @@ def test_the_row_of_a_comparison(varied: Varied) -> None:
     assert table.row(quiet)[1:] == ("online", "n/a", "n/a", "0.10", "no difference", "")
 
 
-def test_texts_beyond_three_are_counted() -> None:
+def test_after_three_texts_the_others_are_only_counted() -> None:
     assert [*terminal._some(["a", "b", "c"])] == ["a", "b", "c"]
     assert [*terminal._some(["a", "b", "c", "d", "e"])] == ["a", "b", "c", "(and 2 more)"]
 
@@ -216,7 +216,7 @@ def test_attempts_before_an_accepted_repair_are_counted_others_listed(
     assert [*terminal._repair(varied(repair=None))] == []
 
 
-def test_the_share_of_the_loss_that_a_repair_restores(varied: Varied) -> None:
+def test_a_repair_states_the_share_of_the_loss_that_it_restores(varied: Varied) -> None:
     totals = {"offline": (8.0,), "online": (4.0,), "repaired": (7.0,)}
     assert html._share(varied(totals=totals)) == 75.0
     assert html._share(varied(totals=totals | {"online": (8.0,)})) is None
@@ -237,7 +237,7 @@ def test_the_designed_curve_is_clipped_at_the_longest_other(lengths: tuple[int, 
     assert not html._clipped([{"kind": "online", "mean": [0.0]}])
 
 
-def test_the_largest_change_of_a_figure_in_words() -> None:
+def test_the_page_describes_the_largest_change_of_a_figure_in_words() -> None:
     row = {"title": "", "offline": [[1.0, None]], "online": [[0.5, 9.0]]}
     figure = {"sites": [[30, "vel = (\n 5)", "a.py"]], "axis": {"names": ["x 0-1", "x 1-2"]}, "rows": [row]}
     assert html._largest_change(figure) == (

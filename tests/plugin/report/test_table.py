@@ -17,7 +17,7 @@ def test_only_tests_with_several_drifts_get_a_table() -> None:
     assert [row.split()[0] for row in rows] == ["mud", "same"]
 
 
-def test_numbers_end_and_words_begin_in_one_column() -> None:
+def test_numbers_are_right_aligned_and_words_left_aligned() -> None:
     _, head, mud, same = side_by_side([MUD, SAME], 100)
     assert head.index("deployed") + len("deployed") == mud.index("4.00") + len("4.00")
     assert same.index("0.00") + len("0.00") == mud.index("6.00") + len("6.00")

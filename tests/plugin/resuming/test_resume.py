@@ -115,14 +115,14 @@ def test_a_run_under_other_conditions_is_not_continued(
     assert ran(stopping) == 0
 
 
-def test_more_episodes_than_planned_are_no_other_conditions(stopping: pytest.Pytester) -> None:
+def test_a_resumed_run_may_ask_for_more_episodes(stopping: pytest.Pytester) -> None:
     interrupted(stopping, "9 exit", *RECORD)
     ran(stopping)
     stopping.runpytest("--tarl-record", "--tarl-episodes=20", RESUME).assert_outcomes(passed=1, deselected=1)
     assert ran(stopping) == 20 - 9 + 1
 
 
-def test_a_world_that_changed_unseen_is_found_by_the_first_episode(stopping: pytest.Pytester) -> None:
+def test_resuming_repeats_the_first_episode_to_detect_a_changed_world(stopping: pytest.Pytester) -> None:
     changed(stopping, "test_tank", "pump = float", "pump = float(os.environ.get('PUMP', 1)) * float")
     interrupted(stopping, "9 exit", *RECORD)
     with pytest.MonkeyPatch.context() as patched:
@@ -135,7 +135,7 @@ def test_a_world_that_changed_unseen_is_found_by_the_first_episode(stopping: pyt
     assert len(kept(stopping)) == 1
 
 
-def test_forgetting_the_flag_is_said_before_the_first_episode(stopping: pytest.Pytester) -> None:
+def test_without_the_resume_flag_a_message_mentions_the_kept_episodes(stopping: pytest.Pytester) -> None:
     interrupted(stopping, "9 exit", *RECORD)
     stopping.runpytest(*RECORD).stdout.fnmatch_lines(
         ["*9 finished episodes are kept from an interrupted run*"]

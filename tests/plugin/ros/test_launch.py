@@ -180,7 +180,7 @@ def test_a_node_of_a_hidden_package_runs_with_a_note(tarl: Tarl, tmp_path: Path)
     assert "other/CATKIN_IGNORE: the file hides the package other from ROS" in note
 
 
-def test_launch_arguments_and_the_choice_of_nodes(tarl: Tarl) -> None:
+def test_launch_arguments_and_selected_nodes_are_respected(tarl: Tarl) -> None:
     tarl.launch("robot.launch", arguments={"robot": "husky"}, only=["first"], parameters={"gain": 1.0})
     assert sent(tarl, "/husky/start", 2.0) is None
     assert tarl.bus.latest("/husky/middle").data == 2.0 * 10.0
@@ -221,7 +221,9 @@ def test_two_nodes_of_one_ros2_program_share_no_module(tarl: Tarl) -> None:
 @pytest.mark.parametrize(
     ("file", "topic", "end"), [("pair.launch.yaml", "/start", 2.001), ("pair.launch.py", "/start", 14.001)]
 )
-def test_ros2_files_in_yaml_and_python(tarl: Tarl, file: str, topic: str, end: float) -> None:
+def test_ros2_launch_files_in_yaml_and_python_start_nodes(
+    tarl: Tarl, file: str, topic: str, end: float
+) -> None:
     tarl.launch(file)
     assert sent(tarl, topic, 2.0) == pytest.approx(end)
 
@@ -253,12 +255,12 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("empty.launch.xml", {}, r"empty\.launch\.xml starts no node with these arguments"),
     ],
 )  # fmt: skip
-def test_mistakes_are_sentences(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
+def test_user_mistakes_give_one_sentence(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
     with pytest.raises(SettingsError, match=said):
         tarl.launch(file, **options)
 
 
-def test_an_import_that_no_package_serves_is_a_sentence(tarl: Tarl, tmp_path: Path) -> None:
+def test_an_import_without_a_package_gives_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
     with pytest.raises(
         NodeError, match=r"No module named 'controllers' .*The package controllers is in the works"
     ):

@@ -16,7 +16,7 @@ from pytest_tarl.ros.rclpy.exceptions import (
 from tests.plugin.ros.conftest import Start
 
 
-def test_names_of_rospy_beyond_its_documentation(start: Start) -> None:
+def test_undocumented_names_of_rospy_exist(start: Start) -> None:
     ros = start("""
         import rospy
         from rospy import Header

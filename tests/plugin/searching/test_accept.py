@@ -100,7 +100,7 @@ def test_a_failure_among_the_first_missions_refuses_without_spending_the_risk(
     assert [one.passed for one in (found.drifted if drifted else found.nominal)].count(False) == 1
 
 
-def test_a_refused_candidate_is_told_by_all_of_its_missions() -> None:
+def test_the_report_of_a_refused_candidate_includes_its_screening_missions() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert not found.accepted
     assert found.seeds == tuple(seeds(0)[: len(found.drifted)])
@@ -173,7 +173,7 @@ def test_no_failure_in_59_missions_shows_five_percent() -> None:
 
 @settings(max_examples=8)
 @given(st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.6]), st.sampled_from([0.05, 0.0333, 0.0111, 0.0037]))
-def test_all_looks_together_accept_a_failing_program_with_at_most_the_risk(rate: float, risk: float) -> None:
+def test_all_checks_together_accept_a_failing_program_with_at_most_the_risk(rate: float, risk: float) -> None:
     numbers = acceptance_numbers(LOOKS, rate, risk)
     assert list(numbers) == sorted(numbers)
     failed = np.random.default_rng(1).random((15_000, LOOKS[-1])) < rate

@@ -36,7 +36,7 @@ LEAK, POWER, ROOM = named(3, "LEAK"), named(4, "POWER"), named(5, "ROOM")
 ELSEWHERE = named(6, "ELSEWHERE", "cool")
 
 
-def test_a_mission_deviates_by_when_it_earns() -> None:
+def test_a_mission_that_earns_its_reward_later_deviates_more_from_the_designed_one() -> None:
     assert deviation(STEADY, STEADY) == 0.0
     assert deviation(LATE, STEADY) == pytest.approx(2.5 / 10)
     assert deviation((), STEADY) == pytest.approx(0.55)
@@ -44,7 +44,7 @@ def test_a_mission_deviates_by_when_it_earns() -> None:
     assert deviation(STEADY, (0.0, 0.0)) == 0.0
 
 
-def test_rivals_and_calls_are_those_on_the_same_scale() -> None:
+def test_plainer_alternatives_include_only_constants_changed_on_the_same_scale() -> None:
     units = [Unit((LEAK,)), Unit((POWER,)), Unit((POWER,), SHARE)]
     tried = {unit for unit, _ in rivals(units[0], 2.0, units, Gains(0.1), ALWAYS)}
     assert tried == {units[1]}

@@ -72,13 +72,13 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
     assert both.without(A).parts == ((B, 3.0),)
 
 
-def test_the_better_near_factor_of_each_other_unit_is_tried_first() -> None:
+def test_joining_a_constant_begins_with_its_better_small_factor() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
     added = [one.parts[-1] for one in chosen._with_another(joint((A, 2.2)))]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
 
 
-def test_the_best_unit_is_added_while_it_gains_more_than_the_slack() -> None:
+def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_slack() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 4.0 * ("A" in by) + 3.0 * (by.get("B") == 2.2) + 5.5 * ("B" in by and "C" in by)
 
@@ -108,14 +108,14 @@ def test_a_combination_that_cannot_be_written_has_no_gain() -> None:
     assert finished(chosen.fewest(joint((A, 2.2)))) == ([], None)
 
 
-def test_parts_are_balanced_one_by_one() -> None:
+def test_the_values_of_a_combination_are_refined_one_after_the_other() -> None:
     chosen = selection(lambda by: -abs(log(by["A"] / 3.3)) - abs(log(by["B"] / 0.26)))
     _, (best, gain) = finished(chosen._balanced(joint((A, 2.2), (B, 0.4)), -9.0))
     assert best.parts == ((A, 3.3), (B, 0.26))
     assert gain == pytest.approx(0.0)
 
 
-def test_the_fewest_parts_that_suffice() -> None:
+def test_the_search_keeps_the_fewest_changes_that_restore_the_reward() -> None:
     needs = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, _ = finished(needs.fewest(joint(*((unit, 2.2) for unit in (A, B, C, D)))))
     assert found == [{"A": 2.2, "B": 2.2}]
@@ -126,7 +126,7 @@ def test_the_fewest_parts_that_suffice() -> None:
     assert found == []  # more than three parts
 
 
-def test_the_first_part_is_joined_with_the_next_ones_then_with_a_third() -> None:
+def test_the_best_constant_is_paired_with_others_before_three_are_combined() -> None:
     chosen = selection(lambda by: {1: 1.0, 2: 5.0 + ("B" in by), 3: 10.0}.get(len(by), 0.0), (A, B, C, D))
     found, _ = finished(chosen.unions([(A, 2.2), (B, 2.2), (C, 2.2), (D, 0.4)], ALWAYS))
     assert found
@@ -134,7 +134,7 @@ def test_the_first_part_is_joined_with_the_next_ones_then_with_a_third() -> None
     assert {"A", "B"} <= found[0].keys()
 
 
-def test_hidden_units_are_added_to_a_pair_that_gains_much() -> None:
+def test_constants_without_an_effect_alone_are_added_to_a_pair_that_gains_much() -> None:
     def earned(by: Mapping[str, float]) -> float:
         return 10.0 if {"A", "B", "D"} <= by.keys() else {1: 1.0, 2: 6.0}.get(len(by), 0.0)
 
@@ -158,13 +158,13 @@ def test_a_candidate_is_confirmed_once() -> None:
     assert (settled.held, settled.tried) == ({one}, {one, refused})
 
 
-def test_the_kernel_is_matern_five_halves() -> None:
+def test_the_covariance_equals_the_matern_kernel_of_order_five_halves() -> None:
     found = _kernel(np.array([[[0.0], [4.0]]]), np.array([2.0]))
     scaled = sqrt(5.0)  # at a distance of one length
     assert found == pytest.approx(np.array([[1.0, (1 + scaled + 5 / 3) * exp(-scaled)]]))
 
 
-def test_the_improvement_expected_of_a_normal_value() -> None:
+def test_the_expected_improvement_equals_its_formula() -> None:
     mean, deviation = np.array([3.0, 4.0]), np.array([2.0, 2.0])
     found = expected_improvement(mean, deviation, 3.0)
     assert found[0] == pytest.approx(2.0 / sqrt(2 * pi))  # at the best value, σ φ(0)
@@ -172,7 +172,7 @@ def test_the_improvement_expected_of_a_normal_value() -> None:
     assert found[1] == pytest.approx(1.0 * 0.6914625 + 2.0 * density, rel=1e-6)
 
 
-def test_a_surrogate_of_equal_values_predicts_them() -> None:
+def test_a_surrogate_fitted_to_equal_values_predicts_that_value() -> None:
     found = Surrogate(np.array([[0.0], [1.0]]), np.array([5.0, 5.0]), np.array([1.0]))
     mean, deviation = found.predict(np.array([[0.0], [99.0]]))
     assert mean == pytest.approx([5.0, 5.0])
@@ -180,7 +180,7 @@ def test_a_surrogate_of_equal_values_predicts_them() -> None:
     assert deviation[0] < 0.3
 
 
-def test_the_best_points_that_are_not_close_to_each_other() -> None:
+def test_the_best_points_are_chosen_with_a_minimum_distance() -> None:
     points = np.array([[0.0, 0.0], [0.1, 0.1], [0.0, 0.2], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]])
     values = np.array([9.0, 8.0, 7.0, 6.0, 6.0, 10.0])
     assert _best_apart(points, values).tolist() == [[3.0, 0.0], [0.0, 0.0], [0.0, 0.2], [1.0, 0.0]]
@@ -212,14 +212,14 @@ def test_a_joint_search_finds_a_pair_and_ends_after_its_episodes() -> None:
     assert search.trials.spent <= EPISODES + 1
 
 
-def test_the_value_of_a_trial_is_its_share_of_the_gain_less_its_deviation() -> None:
+def test_the_joint_search_subtracts_the_deviation_from_the_share_of_the_gain() -> None:
     search = jointly(lambda _: 0.0)
     assert search._valued(4.5, 0.25) == 0.25
     assert search._valued(99.0, 0.0) == 1.0
     assert search._valued(-99.0, 9.0) == -1.0 - 2.0
 
 
-def test_a_point_that_was_refused_on_other_seeds_counts_less() -> None:
+def test_the_joint_search_lowers_the_value_of_a_point_that_failed_on_other_seeds() -> None:
     search = jointly(lambda _: 6.3)
     one = joint((A, 2.2))
     _, value = finished(search._value(one, 9.0))
@@ -243,7 +243,7 @@ def test_proposals_move_one_to_three_coordinates_within_a_factor_of_twenty() -> 
     assert often[:4].min() > 1.5 * often[4:].max() > 0
 
 
-def test_constants_to_move_jointly_and_those_that_may_be_hidden() -> None:
+def test_the_joint_search_moves_constants_that_gain_and_some_without_an_effect_alone() -> None:
     gains = Gains(0.5)
     literal = Unit((constant(9, "9.0"),))
     for unit, gain in ((A, 0.6), (B, -3.0), (C, 0.5), (D, 0.1), (literal, 9.0)):

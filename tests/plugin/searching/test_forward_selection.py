@@ -71,7 +71,7 @@ def test_a_flipped_sign_is_restored() -> None:
     assert [(m.operand, m.value) for m in found.mutations] == [(GAINS[4], -1.0)]
 
 
-def test_units_that_gain_from_smaller_values_are_flipped_before_larger_steps() -> None:
+def test_the_sign_of_constants_that_gain_when_reduced_is_changed_before_larger_steps() -> None:
     def turned(candidate: Candidate, seed: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         total = 5.0 - 5.0 * factors.get(GAINS[4], 1.0)

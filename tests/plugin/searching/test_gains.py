@@ -62,7 +62,7 @@ def gains(slack: float = 0.5) -> Gains:
     return found
 
 
-def test_the_unchanged_constant_gains_nothing_unless_it_is_a_proposal() -> None:
+def test_the_unchanged_constant_has_gain_zero_unless_it_was_proposed() -> None:
     found = gains()
     assert found.of(A, ALWAYS) == {1.0: 0.0, 2.2: 4.0, 0.4: -3.0, 5.0: 5.0}
     assert found.of(A, WET) == {}
@@ -72,7 +72,7 @@ def test_the_unchanged_constant_gains_nothing_unless_it_is_a_proposal() -> None:
     assert proposed.of(A, ALWAYS) == {1.0: -2.0}
 
 
-def test_gains_under_a_guard() -> None:
+def test_gains_are_listed_separately_for_each_guard() -> None:
     found = gains()
     assert [*found.under(WET)] == [B]
     assert [*found.under(ALWAYS)] == [A, B, C]
@@ -80,11 +80,11 @@ def test_gains_under_a_guard() -> None:
 
 
 @pytest.mark.parametrize(("slack", "expected"), [(4.9, True), (5.0, False)])
-def test_something_gains_if_it_is_more_than_the_slack(slack: float, expected: bool) -> None:
+def test_a_search_has_a_gain_only_if_it_exceeds_the_slack(slack: float, expected: bool) -> None:
     assert gains(slack).anything() is expected
 
 
-def test_a_proposal_is_idle_if_it_changed_no_episode_as_proposed() -> None:
+def test_a_proposal_counts_as_ineffective_if_it_changed_no_episode() -> None:
     found = Gains(0.5, proposed=True)
     found.enter((A, ALWAYS), 1.0, 0.0)
     found.enter((A, ALWAYS), 2.2, 3.0)
@@ -96,7 +96,7 @@ def test_a_proposal_is_idle_if_it_changed_no_episode_as_proposed() -> None:
     assert not plain.idle(A)
 
 
-def test_units_move_if_any_factor_changed_an_episode() -> None:
+def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
     found = gains()
     assert [found.moves(unit) for unit in (A, B, C)] == [True, True, False]
     assert found.moving([C, B, A]) == [B, A]
@@ -107,7 +107,7 @@ def test_units_move_if_any_factor_changed_an_episode() -> None:
     assert one_way.moving([C, A]) == [A]  # both ways, under any guard
 
 
-def test_units_that_lose_both_ways() -> None:
+def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     found = gains()
     assert found.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
     assert found.lost_both_ways(ALWAYS, [A, B], (0.4,)) == [A, B]
@@ -125,7 +125,7 @@ def test_units_that_lose_both_ways() -> None:
     assert least.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
 
 
-def test_units_that_lead_with_a_factor() -> None:
+def test_constants_are_sorted_by_their_gain_with_a_factor() -> None:
     found = gains()
     found.enter((B, ALWAYS), 5.0, 6.0)
     assert found.leading(5.0, ALWAYS, [A, B, C], 5.0) == [B, A]
@@ -134,14 +134,14 @@ def test_units_that_lead_with_a_factor() -> None:
     assert found.leading(2.2, ALWAYS, [A, B, C], -1.0, inert=True) == [A, C, B]
 
 
-def test_the_best_factor_of_each_unit_under_some_guards() -> None:
+def test_the_best_factor_of_each_constant_is_found_under_the_given_guards() -> None:
     found = gains()
     assert found.best_under([ALWAYS, WET]) == [(A, 5.0), (B, 0.4)]
     assert found.best_under([ALWAYS]) == [(A, 5.0)]
     assert found.best_under([]) == []
 
 
-def test_each_site_has_one_leader() -> None:
+def test_each_statement_contributes_only_its_best_change() -> None:
     found = gains()
     twin = Unit((replace(constant(1, "TWIN"), site=A.operands[0].site),))
     found.enter((twin, ALWAYS), 2.2, 7.0)
@@ -166,7 +166,7 @@ GRAVITY = constant(8, "GRAVITY", 9.81)
         (operand(9, "9.81", 9.81), Oddness.NATURE),
     ],
 )
-def test_the_order_in_which_operands_are_tried(one: Operand, tried: Oddness) -> None:
+def test_each_kind_of_operand_has_its_rank_in_the_search_order(one: Operand, tried: Oddness) -> None:
     assert writing(one) is tried
 
 
@@ -182,7 +182,7 @@ def test_a_zero_is_an_offset_whatever_its_name() -> None:
     [(9.81, True), (-9.81, True), (math.pi, True), (3.14, True), (6.28, True), (3.15, False), (9.5, False),
      (None, False), (True, False)],
 )  # fmt: skip
-def test_constants_of_nature(value: float | None, expected: bool) -> None:
+def test_gravity_and_pi_are_recognised_by_name_and_value(value: float | None, expected: bool) -> None:
     assert of_nature(constant(7, "G", value)) is expected
 
 
@@ -190,7 +190,7 @@ def test_a_constant_of_nature_with_its_sign_flipped_stays_one() -> None:
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
-def test_plainer_changes_come_first_those_that_gain_before_untried_ones() -> None:
+def test_more_readable_changes_come_first_and_those_with_a_gain_before_untried_ones() -> None:
     literal = Unit((LITERAL,))
     found = gains()
     assert plainer(Oddness.VARIABLE, found.under(ALWAYS), [C, B, A, literal], 4.0) == [A, literal]
@@ -212,7 +212,7 @@ def changed(unit: Unit, factor: float) -> Candidate:
 @pytest.mark.parametrize(
     ("steps", "expected"), [(13, False), (14, True), (8, False), (7, True), (None, False)]
 )
-def test_missions_go_another_way_if_they_are_much_longer_or_shorter(
+def test_a_candidate_counts_as_unusual_if_its_missions_are_much_longer_or_shorter(
     steps: int | None, expected: bool
 ) -> None:
     trials = Trials(lambda _, seed: Outcome(10.0, True, steps=steps), 9)
@@ -224,7 +224,7 @@ def test_missions_go_another_way_if_they_are_much_longer_or_shorter(
     assert another_way(changed(Unit((GRAVITY,)), 2.2), trials, GOAL)
 
 
-def test_gentler_changes_have_fine_steps_where_their_statement_gains() -> None:
+def test_constants_of_a_statement_that_gained_are_tried_in_finer_steps() -> None:
     beside = Unit((replace(constant(30, "BESIDE"), site=A.operands[0].site),))
     found = gains()
     assert gentler(A, [A, C, B, Unit((LITERAL,)), beside], found, ALWAYS, 5.0) == [
@@ -234,7 +234,7 @@ def test_gentler_changes_have_fine_steps_where_their_statement_gains() -> None:
     assert gentler(A, [beside], found, ALWAYS, 5.1) == [(beside, COARSE)]
 
 
-def test_blocks_of_screened_units() -> None:
+def test_screening_divides_more_than_forty_constants_into_blocks_of_twenty() -> None:
     many = [Unit((operand(n, "1.0", 1.0),)) for n in range(41)]
     assert [len(block) for block in blocks(many)] == [20, 20, 1]
     assert [len(block) for block in blocks(many[:40])] == [40]
@@ -242,19 +242,19 @@ def test_blocks_of_screened_units() -> None:
     assert (worth_screening(many), worth_screening(many[:40])) == (True, False)
 
 
-def test_main_effects_are_those_of_ridge_regression() -> None:
+def test_main_effects_equal_a_ridge_regression_computed_by_hand() -> None:
     design, gained = np.array([[1.0, 0.0], [1.0, 1.0]]), np.array([2.0, 5.0])
     # (DᵀD + I) e = Dᵀg: [[3, 1], [1, 2]] e = [7, 5]
     assert main_effects(design, gained) == pytest.approx([9 / 5, 8 / 5])
 
 
-def test_the_course_of_a_mission() -> None:
+def test_the_deviation_compares_cumulative_rewards_step_by_step() -> None:
     assert deviation((2.0, 0.0), (1.0, 1.0)) == pytest.approx((1.0 + 0.0) / 2 / 2)
     assert deviation((1.0,), (1.0, -3.0)) == pytest.approx((0.0 + 3.0) / 2 / 2)
     assert deviation((), ()) == 0.0
 
 
-def test_the_uses_of_a_constant_in_a_file_are_one_whole() -> None:
+def test_uses_of_one_named_constant_in_a_file_are_changed_together() -> None:
     first, other = constant(3, "A"), replace(constant(9, "A"), definition=constant(3, "A").definition)
     elsewhere = replace(other, span=replace(other.span, path="other.py"))
     literal = operand(5, "2.0", 2.0)
@@ -271,7 +271,7 @@ def race(of: dict[tuple[Unit, float], dict[int, float]]) -> Race:
     return found
 
 
-def test_the_order_of_arms_and_those_abreast_of_the_first() -> None:
+def test_arms_are_ranked_by_gain_and_ties_with_the_best_are_found() -> None:
     found = race(
         {
             (A, 2.2): {0: 1.0, 1: 1.1, 2: 0.9},
@@ -286,7 +286,7 @@ def test_the_order_of_arms_and_those_abreast_of_the_first() -> None:
     assert found.gain(Arm(A, 9.0, ALWAYS)) == 0.0
 
 
-def test_arms_around_the_outermost_and_those_of_other_units() -> None:
+def test_a_new_arm_lies_between_neighbouring_factors_of_the_same_constant() -> None:
     seen = {0: 1.0}
     found = race({(A, 4.0): seen, (A, 1.0): seen, (A, -2.0): seen, (B, 2.0): seen, (A, 1.05): seen})
     assert [arm.factor for arm in found.around(Arm(A, 4.0, ALWAYS))] == [round(math.sqrt(4.2), 3)]
@@ -299,7 +299,9 @@ def test_arms_around_the_outermost_and_those_of_other_units() -> None:
 @given(
     st.dictionaries(st.integers(0, 5), st.floats(-9, 9)), st.dictionaries(st.integers(0, 5), st.floats(-9, 9))
 )
-def test_an_arm_is_behind_only_on_three_common_seeds(one: dict[int, float], other: dict[int, float]) -> None:
+def test_an_arm_counts_as_worse_only_after_three_common_seeds(
+    one: dict[int, float], other: dict[int, float]
+) -> None:
     differences = paired(one, other)
     assert differences == [one[seed] - other[seed] for seed in one if seed in other]
     if len(differences) < 3:
@@ -309,7 +311,7 @@ def test_an_arm_is_behind_only_on_three_common_seeds(one: dict[int, float], othe
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_interval_of_a_lead_is_students() -> None:
+def test_the_confidence_interval_of_a_lead_is_that_of_student() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 
@@ -347,7 +349,7 @@ LINE = Sensor("x", topic="/x", field="data", low=0, high=8, bins=8)
     ("cells", "line", "arc"),
     [((2, 3, 5), (2, 5), (2, 5)), ((0, 1, 7), (0, 7), (7, 9)), ((4,), (4, 4), (4, 4)), ((), None, None)],
 )
-def test_the_hull_of_some_bins_is_the_shortest_arc_of_an_angle(
+def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
     cells: tuple[int, ...], line: tuple[int, int] | None, arc: tuple[int, int] | None
 ) -> None:
     some = [(one,) for one in cells]
@@ -355,7 +357,7 @@ def test_the_hull_of_some_bins_is_the_shortest_arc_of_an_angle(
     assert _hull(some, 0, ANGLE) == arc
 
 
-def test_bins_span_all_that_were_seen() -> None:
+def test_an_interval_spans_everything_if_it_covers_all_visited_bins() -> None:
     assert _spans((2, 4), {2, 4}, LINE)
     assert not _spans((2, 4), {2, 5}, LINE)
     assert _spans((7, 9), {0, 1, 7}, ANGLE)
@@ -363,7 +365,7 @@ def test_bins_span_all_that_were_seen() -> None:
     assert not _spans((7, 9), {0, 7}, LINE)
 
 
-def test_the_interval_where_most_changed_for_its_visits() -> None:
+def test_a_guard_is_proposed_for_the_interval_with_the_largest_change_per_visit() -> None:
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 0) == (4, 6)
     assert _steepest(evidence(REGION, changes=dict(CHANGES)), 1) == (1, 1)
 

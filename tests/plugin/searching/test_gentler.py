@@ -74,7 +74,7 @@ def test_a_constant_of_nature_is_moved_last(value: float) -> None:
 
 
 @pytest.mark.parametrize("value", [9.5, 10.0, 3.1, 3.2, 1.57, 0.0, 6.0, 12.57])
-def test_other_numbers_are_choices_of_an_author(value: float) -> None:
+def test_numbers_other_than_gravity_and_pi_are_not_constants_of_nature(value: float) -> None:
     assert not of_nature(named(4, "LIMIT", value))
     assert not of_nature(replace(operand(4, "True", 1.0), value=True))
 
@@ -84,7 +84,7 @@ def test_another_constant_of_the_function_is_corrected_before_gravity() -> None:
     assert order(search, 2) == [PADS, GRAVITY]
 
 
-def test_a_repair_with_which_missions_take_much_longer_comes_after_a_gentler_one() -> None:
+def test_a_repair_that_prolongs_missions_comes_after_one_that_does_not() -> None:
     windows = {CRUISE: (0.3, 0.5), PADS: (0.6, 0.7)}
     slow = searched((REACTION, PADS, CRUISE), windows, {CRUISE: 3 * STEPS})
     assert order(slow, 2) == [PADS, CRUISE]
@@ -92,7 +92,7 @@ def test_a_repair_with_which_missions_take_much_longer_comes_after_a_gentler_one
     assert order(as_designed, 1) == [CRUISE]
 
 
-def test_the_search_for_gentler_repairs_takes_few_episodes_if_there_is_none() -> None:
+def test_without_a_gentler_repair_the_search_for_one_takes_few_episodes() -> None:
     many = tuple(named(at, f"LIMIT_{at}", 2.0) for at in range(10, 18))
     kept = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)})
     slow = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)}, {CRUISE: 3 * STEPS})
@@ -100,7 +100,7 @@ def test_the_search_for_gentler_repairs_takes_few_episodes_if_there_is_none() ->
     assert slow.trials.spent <= kept.trials.spent + 12
 
 
-def test_of_a_getter_the_calls_that_need_it_are_changed_and_no_others() -> None:
+def test_a_repair_of_a_getter_changes_only_the_calls_that_need_it() -> None:
     getter = named(3, "self.get(name).value", 1.0, "return self.get(name).value")
     getter = replace(getter, site=replace(getter.site, qualname="Cell.p"))
     feed, tension, speed = (

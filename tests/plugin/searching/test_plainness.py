@@ -43,7 +43,7 @@ POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
         (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
     ],
 )
-def test_each_change_has_the_expected_oddness(mutation: Mutation, expected: Oddness) -> None:
+def test_each_change_has_the_expected_readability_rank(mutation: Mutation, expected: Oddness) -> None:
     assert oddness([mutation]) == expected
     assert oddness([Mutation(NAMED, 2.2), mutation]) == expected
 

@@ -302,7 +302,9 @@ def test_a_failed_mission_ends_the_confirmation_if_designed_missions_succeed() -
         (replace(GAIN, code="K", value=None, definition=ELSEWHERE), 3.0, 3.0),  # a factor if it is not known
     ],
 )
-def test_the_effective_value_is_that_of_the_use(operand_: Operand, value: float, effective: float) -> None:
+def test_the_effective_value_of_a_change_is_the_value_of_the_expression_that_uses_it(
+    operand_: Operand, value: float, effective: float
+) -> None:
     assert effective_value(Mutation(operand_, value)) == effective
 
 

@@ -73,7 +73,7 @@ def test_an_episode_reaches_the_goal_by_its_total_and_its_mission(
     assert goal.enough_on([0, 1]) == 9.0 - harder / 2
 
 
-def test_an_episode_is_charged_once_and_labelled() -> None:
+def test_a_repeated_request_for_an_episode_costs_no_budget() -> None:
     ran = trials({ONE: {0: 1.0, 1: 2.0}})
     assert ran(ONE, 0).total == 1.0
     assert (ran.spent, ran.totals, ran.labels) == (2, [1.0, 2.0], ["line 3: 2.0 → 4.4"] * 2)
@@ -113,7 +113,7 @@ def test_episodes_ahead_are_unknown_ones_that_the_budget_allows() -> None:
         ({ONE: {0: 9.0, 7: 9.0}}, False),  # of which one lost nothing
     ],
 )
-def test_the_reserve_is_released_once_a_candidate_came_far(
+def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
     totals: dict[Candidate, dict[int, float]], released: bool
 ) -> None:
     ran = trials(totals, budget=2)
@@ -135,7 +135,7 @@ def test_a_gain_is_the_mean_over_the_seeds_that_ran() -> None:
     assert ran.gain(ONE, PAIRS) == pytest.approx((4.0 + 1.0) / 2)
 
 
-def test_a_candidate_moves_what_its_reward_or_its_length_shows() -> None:
+def test_a_candidate_has_an_effect_if_reward_or_length_of_a_mission_changes() -> None:
     pairs = (Pair(0, 1.0, 10), Pair(1, 1.0))
     for outcome, seed, expected in (
         (Outcome(1.0, True, steps=10), 0, False),
@@ -151,14 +151,14 @@ def test_a_candidate_moves_what_its_reward_or_its_length_shows() -> None:
         assert ran.steps(TWO, pairs) == []
 
 
-def test_candidates_with_the_same_outcomes_on_common_seeds() -> None:
+def test_candidates_count_as_equal_on_the_seeds_where_their_outcomes_agree() -> None:
     ran = trials({ONE: {0: 1.0, 1: 2.0, 2: 3.0}, TWO: {1: 2.0, 2: 3.0, 3: 9.0}, THREE: {2: 4.0, 1: 2.0}})
     assert ran.same_as(ONE, TWO) == 2
     assert ran.same_as(ONE, THREE) == 0
     assert ran.same_as(TWO, candidate(7.0)) == 0
 
 
-def test_a_candidate_falls_short_by_its_differences_from_one_that_did() -> None:
+def test_a_candidate_similar_to_a_failed_one_is_predicted_to_fail() -> None:
     ran = trials({ONE: {0: 6.0, 1: 6.0, 2: 9.0}, TWO: {0: 7.0, 1: 7.5}, THREE: {2: 0.0}})
     assert not ran.falls_short(TWO, PAIRS, 9.0)  # nothing fell short yet
     ran.fell_short(ONE, PAIRS)
@@ -168,7 +168,7 @@ def test_a_candidate_falls_short_by_its_differences_from_one_that_did() -> None:
     assert not ran.falls_short(THREE, PAIRS, 99.0)  # one common seed only
 
 
-def test_seeds_that_others_missed_come_first_at_most_two() -> None:
+def test_a_confirmation_begins_with_at_most_two_seeds_on_which_others_failed() -> None:
     ran = Trials(lambda *_: Outcome(0.0, True), 9)
     goal = replace(GOAL, pairs=tuple(Pair(seed, 0.0) for seed in range(8)))
     assert _hardest_first(ran, goal, 6) == [7, 0, 1, 2, 3]
@@ -209,7 +209,7 @@ def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing
     assert ran.spent == 0
 
 
-def test_the_deviation_from_designed_missions_charges_each_of_them_once() -> None:
+def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
     assert (ran.spent, ran.beside) == (2, 0)

@@ -62,7 +62,7 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(
     assert "GAIN = 2.0" not in (tank.path / "keeper.py").read_text("utf-8")
 
 
-def test_only_episodes_of_the_drift_without_a_point_are_placed() -> None:
+def test_a_repair_of_a_boundary_sets_the_drift_only_for_episodes_without_a_given_point() -> None:
     simulated = Simulated(lambda point, _: (True, float(point["mud"])))
     placed = Placed(
         simulated, "world", lambda seed: {"mud": float(seed)}, {Path("a.py"): "1", Path("b.py"): "2"}
@@ -120,7 +120,7 @@ def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 - 3.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.02))
 
 
-def test_a_repaired_combination_tells_its_distance_before_and_after() -> None:
+def test_the_repair_of_a_combination_reports_its_distance_before_and_after() -> None:
     """Without the repair, the margin is lost where a · b = 1 / 6; with it, nowhere up to the end of the ray."""
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     failed = failure(space, {"a": 0.45, "b": 0.45})
@@ -143,7 +143,7 @@ def test_a_repaired_combination_tells_its_distance_before_and_after() -> None:
     assert fixed.name == "a and b together, distance"
 
 
-def test_attempts_are_in_text_json_and_page() -> None:
+def test_attempted_repairs_are_listed_in_text_json_and_page() -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0))
     row = Moved("a to 1", "more robust", "not beyond 0.5", "beyond 0.9", None, 0.5, 0.9, None)
     attempts = (

@@ -66,7 +66,7 @@ def test_figures_are_well_formed_and_have_text_alternatives() -> None:
     assert "<h2>Directions</h2>" in told
 
 
-def test_a_single_direction_has_neither() -> None:
+def test_a_space_of_one_direction_gets_neither_map_nor_tornado() -> None:
     one = stressed(lambda point, _: (point["a"] < 0.5, 1.0), space_of(a=Drift.range(0.0, 1.0, nominal=0.0)))
     assert one.margin_map is None
     assert (map_figure(one), tornado(one), map_words(one)) == ("", "", "")

@@ -183,7 +183,7 @@ def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
     assert "holds in 50 % of the area, fails in 25 %, and is undecided in 25 %" in drawn
 
 
-def test_the_axes_and_the_legend_of_a_map() -> None:
+def test_a_map_labels_its_axes_and_legend_at_fixed_positions() -> None:
     drawn = map_figure.map_figure(stress(margin_map=SQUARE))
     found = texts(drawn)
     assert found["4"] == (490.0, 432.0, "middle")

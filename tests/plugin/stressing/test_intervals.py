@@ -105,7 +105,7 @@ def test_intervals_contain_the_boundary_and_are_narrow(
 
 @pytest.mark.parametrize("share", [0.6, 0.9, 0.95, 0.98])
 @pytest.mark.parametrize("risk", [0.08, 0.01])
-def test_the_tests_of_a_value_are_wrong_with_at_most_their_risk(share: float, risk: float) -> None:
+def test_all_tests_of_one_drift_size_together_err_with_at_most_their_risk(share: float, risk: float) -> None:
     total = 0.0
     for allowed, part in enumerate(SHARES):
         episodes = least(share, allowed, part * risk)

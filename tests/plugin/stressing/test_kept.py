@@ -68,7 +68,7 @@ def test_a_changed_byte_in_a_file_of_failures_is_harmless(
 
 
 @pytest.mark.parametrize("content", [b"[" * 100_000, b"9" * 100_000, b"\xff\xfe", b"\0"])
-def test_unusual_files_of_failures_are_ignored(tmp_path: Path, content: bytes) -> None:
+def test_files_of_kept_failures_with_unexpected_contents_are_ignored(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "failing.json"
     path.write_bytes(content)
     assert kept.read(path, SPACE) == []
@@ -86,7 +86,7 @@ def test_a_folder_in_place_of_the_file_is_ignored(tmp_path: Path) -> None:
         (errno.EFBIG, "ulimit -f"),
     ],
 )
-def test_one_line_says_which_files_are_missing_and_no_older_page_is_named(
+def test_one_line_names_the_files_that_could_not_be_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, advice: str
 ) -> None:
     found = stressed(cliff, space_of(mud=Drift.range(0.0, 1.0, nominal=1.0)))

@@ -52,12 +52,14 @@ def test_the_chance_that_few_of_some_episodes_fail_is_binomial() -> None:
         (curve(MUD, {0.25: -1.0}), (0.0, 0.0), 16),
     ],
 )
-def test_values_that_are_tested_to_hold(one: Curve, values: tuple[float, float], paired: int) -> None:
+def test_the_search_tests_these_drift_sizes_for_the_claim_that_the_guarantee_holds(
+    one: Curve, values: tuple[float, float], paired: int
+) -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)
     assert _values(one, evaluator) == (values, paired)
 
 
-def test_values_before_a_boundary_lie_inside_it() -> None:
+def test_drift_sizes_that_are_tested_to_hold_lie_inside_the_boundary() -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)
     evidence = {t: Evidence("holds", 1.0, 60, 60, 0.0, 0.01) for t in (0.25, 0.5)}
     one = Curve(MUD, {**evidence, 0.75: Evidence("fails", -1.0, 60, 0, 0.0, 0.01)})
@@ -71,7 +73,7 @@ def test_values_before_a_boundary_lie_inside_it() -> None:
     assert (farther > 0.0, more) == (True, 32)
 
 
-def test_pairs_are_tested_unless_they_are_farther_than_what_is_known() -> None:
+def test_pairs_of_directions_farther_than_a_known_failure_are_not_tested() -> None:
     ran: list[Any] = []
 
     def examine(point: Any, most: int) -> Evidence:
@@ -92,7 +94,7 @@ def test_pairs_are_tested_unless_they_are_farther_than_what_is_known() -> None:
     assert all(one["mud"] > 3.8 for one in proposed)  # bisected towards nominal
 
 
-def test_the_prior_of_a_prediction() -> None:
+def test_the_prior_covariance_of_two_drifts_equals_the_formula() -> None:
     one, other = np.array([[0.3, 0.0]]), np.array([[0.1, -0.2], [0.3, 0.0]])
 
     def smooth(a: float, b: float, squares: float) -> float:

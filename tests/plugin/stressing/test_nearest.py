@@ -114,7 +114,7 @@ def test_generated_drifts_are_the_same_for_a_seed_and_lie_in_the_space() -> None
         assert point["camera"] in (0.0, 1.0)
 
 
-def test_an_error_in_a_generated_drift_is_raised_once() -> None:
+def test_an_exception_under_a_generated_drift_is_raised_once() -> None:
     calls: list[Point] = []
 
     def margin(point: Point) -> float | None:

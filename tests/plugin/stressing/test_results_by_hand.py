@@ -71,7 +71,7 @@ def test_rays_lead_to_each_end_and_option_except_the_nominal_one() -> None:
     assert (mud.value(0.25), mud.length, flat.length, down.length) == (3.0, 1.0, 0.5, 1.0)
 
 
-def test_joined_rays_combine_their_points() -> None:
+def test_a_ray_joined_from_two_directions_passes_through_the_sum_of_their_points() -> None:
     both = joined([(MUD, 0.5), (STEEP, 0.5)])
     assert both.farthest == {"mud": 2.0, "slope": 0.5, "camera": 0.0}
     assert (both.names, both.length) == (("mud", "slope"), pytest.approx(sqrt(0.25 + 0.0625)))
@@ -89,19 +89,19 @@ def test_regions_beyond_a_failure_reach_to_the_ends_and_a_quarter_of_the_way() -
     assert option.drift.value == "left"
 
 
-def test_the_ray_outwards_grows_options_never() -> None:
+def test_the_ray_through_a_combination_extends_ranges_and_keeps_options() -> None:
     ray = outwards(SPACE, combined(mud=3.0, slope=0.5, camera=1.0))
     assert ray.farthest == {"mud": 2.0, "slope": 1.0, "camera": 1.0}
     assert outwards(SPACE, combined(camera=1.0)).farthest == {"mud": 4.0, "slope": 0.0, "camera": 1.0}
 
 
-def test_weighted_values_between_nominal_and_a_number() -> None:
+def test_a_weight_interpolates_between_nominal_and_a_drift_size() -> None:
     assert weighted(SPACE, "mud", 2.0, 0.25) == 3.5
     assert weighted(SPACE, "mud", 2.0, 0.0) == 4.0
     assert (weighted(SPACE, "camera", 2.0, 0.1), weighted(SPACE, "camera", 2.0, 0.0)) == (2.0, 0.0)
 
 
-def test_coordinates_within_a_limit() -> None:
+def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() -> None:
     one = Coordinates(SPACE, {**SPACE.nominal, "camera": 1.0})
     assert (one.low.tolist(), one.high.tolist(), one.options) == ([-1.0, -0.5], [0.0, 0.5], 1)
     assert one.covers({"mud": 1.0, "slope": 1.0, "camera": 1.0})
@@ -132,7 +132,7 @@ def test_the_margin_is_the_lesser_of_both_shares(passed: float, loss: float, exp
     assert GIVEN.margin(passed, loss) == pytest.approx(expected)
 
 
-def test_a_margin_without_any_tolerance() -> None:
+def test_without_a_tolerance_any_loss_makes_the_margin_negative() -> None:
     strict = replace(GIVEN, tolerance=0.0)
     assert (strict.margin(1.0, 0.0), strict.margin(1.0, 0.01)) == (1.0, -1.0)
     assert margin_of_one(GIVEN, Outcome(True, 9.75), Outcome(False, 10.0)) == pytest.approx(0.5)
@@ -141,7 +141,7 @@ def test_a_margin_without_any_tolerance() -> None:
 FINE, FAILED = Outcome(True, 10.0), Outcome(False, 10.0)
 
 
-def test_evidence_pairs_losses_and_needs_eight_episodes_to_hold() -> None:
+def test_losses_are_paired_by_seed_and_eight_episodes_are_needed_to_show_that_a_drift_holds() -> None:
     outcomes = [Outcome(True, 9.9), Outcome(True, 9.7)] * 4
     found = examined(GIVEN, outcomes, [FINE] * 8)
     assert (found.result, found.episodes, found.passed) == ("holds", 8, 8)
@@ -155,7 +155,7 @@ def test_evidence_pairs_losses_and_needs_eight_episodes_to_hold() -> None:
     assert seen(0.5, "fails").failing
 
 
-def test_the_spread_of_a_margin() -> None:
+def test_the_standard_error_of_a_margin_equals_the_formula() -> None:
     margin, deviation = margin_of(GIVEN, [Outcome(True, 9.9), Outcome(True, 9.7)], [FINE] * 2)
     prior = (0.5 / 3) ** 2
     assert margin == pytest.approx(0.6)
@@ -165,7 +165,7 @@ def test_the_spread_of_a_margin() -> None:
     assert margin_of(replace(GIVEN, tolerance=0.0), [FINE] * 4, [FINE] * 4) == (1.0, 1.0)
 
 
-def test_counts_of_passed_episodes_that_decide() -> None:
+def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_known() -> None:
     """Of 8 episodes at a rate of 0.9: 0.9⁸ = 0.43, so that even 8 passes show nothing; 44 show it at 1 %."""
     assert not enough_pass(GIVEN, [FINE] * 43, 0.01)
     assert enough_pass(GIVEN, [FINE] * 44, 0.01)  # 0.9⁴⁴ = 0.0097
@@ -175,7 +175,7 @@ def test_counts_of_passed_episodes_that_decide() -> None:
     assert most_passed(GIVEN, 32, 0.01) == 23  # 9 failures or more: 0.0038, 8 or more: 0.012
 
 
-def test_a_test_is_hopeless_if_neither_failures_nor_losses_come_near_what_refutes() -> None:
+def test_a_test_stops_early_if_failures_and_losses_are_far_from_refuting() -> None:
     nominal = [Outcome(True, 10.0)] * 16
 
     def ends(failed: int, loss: float) -> bool:
@@ -198,14 +198,14 @@ def test_the_risks_of_all_claims_add_up_to_alpha_at_most(alpha: float, direction
     assert min(risks.each, risks.combinations) > 0.0
 
 
-def test_little_is_lost_if_the_bound_is_below_the_tolerance() -> None:
+def test_a_loss_is_acceptable_only_if_its_upper_bound_is_below_the_tolerance() -> None:
     assert little_lost(GIVEN, [Outcome(True, 9.7), Outcome(True, 9.8)] * 8, [FINE] * 16, 0.05)
     assert not little_lost(GIVEN, [Outcome(True, 9.2), Outcome(True, 9.9)] * 8, [FINE] * 16, 0.05)
     declared = replace(GIVEN, declared=Range(0.0, 100.0))
     assert not little_lost(declared, [Outcome(True, 9.7), Outcome(True, 9.8)] * 8, [FINE] * 16, 0.05)
 
 
-def test_a_nominal_world_is_unlike_the_recorded_one() -> None:
+def test_a_nominal_world_with_lower_rewards_or_failures_differs_from_the_recording() -> None:
     varied = replace(GIVEN, totals=(9.9, 10.1) * 10)
     assert not unlike_recorded(varied, [Outcome(True, 9.9), Outcome(True, 9.8)] * 8, 0.05)
     assert unlike_recorded(varied, [Outcome(True, 9.0), Outcome(True, 8.9)] * 8, 0.05)
@@ -221,11 +221,13 @@ def test_a_nominal_world_is_unlike_the_recorded_one() -> None:
         ([Outcome(True, 9.4)] * 4, True),
     ],
 )
-def test_a_kept_drift_fails_still(outcomes: list[Outcome], expected: bool) -> None:
+def test_a_drift_kept_from_an_earlier_run_counts_only_if_it_fails_again(
+    outcomes: list[Outcome], expected: bool
+) -> None:
     assert _fails(outcomes, GIVEN) is expected
 
 
-def test_values_to_confirm_are_clearly_failing_ones_and_some_beyond() -> None:
+def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_ones() -> None:
     option = curve(DOWN, {1.0: -1.0})
     assert _candidates(option, GIVEN, 0.1) == [1.0]
     assert _candidates(curve(MUD, {1.0: 1.0}), GIVEN, 0.1) == []
@@ -255,13 +257,13 @@ def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
     assert undecided.bracket == (0.5, 0.53125)
 
 
-def test_directions_inside_their_boundaries() -> None:
+def test_directions_that_hold_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
     harmless = [curve(MUD, {1.0: 1.0}), curve(LEFT, {1.0: 1.0})]
     failing = [curve(FLAT, GOOD), curve(STEEP, {0.25: -1.0}), curve(DOWN, {1.0: -1.0})]
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
 
 
-def test_a_drift_between_nominal_and_another() -> None:
+def test_a_drift_is_at_most_another_if_no_direction_is_farther_from_nominal() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     one = combined(mud=2.0, slope=-0.5).point
     assert _at_most(combined(mud=2.0).point, one, evaluator)
@@ -290,7 +292,7 @@ def test_tests_of_combinations_divide_the_risk_and_skip_what_is_known() -> None:
     assert (together.curves[0].confirmed, len(together.found)) == (0.75, 1)
 
 
-def test_the_model_of_a_ray_believes_its_episodes() -> None:
+def test_the_model_of_a_ray_places_the_boundary_between_holding_and_failing_episodes() -> None:
     evidence = {
         0.25: Evidence("holds", 1.0, 40, 40, 0.0, 0.01),
         0.5: Evidence("holds", 1.0, 40, 40, 0.1, 0.01),
@@ -324,11 +326,11 @@ SIDE = Margin("mud", 1.0, 0.0, 0.3, 0.2)
         (Margin("camera='down'", 0.0, 1.0, None, None), "no failure shown"),
     ],
 )
-def test_a_boundary_in_words(side: Margin, expected: str) -> None:
+def test_each_kind_of_boundary_has_its_sentence(side: Margin, expected: str) -> None:
     assert boundary_words(side) == expected
 
 
-def test_rows_of_a_comparison_are_in_the_order_of_the_new_file() -> None:
+def test_compared_margins_are_listed_in_the_order_of_the_new_file() -> None:
     up, gone = replace(SIDE, end=2.0), Margin("camera='down'", 0.0, 1.0, None, None)
     before = Margins("t", "w", 0.9, 0.5, 0.9, (gone, SIDE))
     found = compared([before], [replace(before, sides=(up, SIDE))])
@@ -347,7 +349,7 @@ def test_rows_of_a_comparison_are_in_the_order_of_the_new_file() -> None:
     ("size", "left", "rows"),
     [(2, 5 * 32, 32), (2, 5 * 32 - 1, 0), (2, 5 * 64, 64), (3, 10**6, 256), (1, 10**6, 0)],
 )
-def test_rows_of_a_sample_that_the_budget_allows(size: int, left: int, rows: int) -> None:
+def test_the_sample_has_as_many_rows_as_the_budget_allows(size: int, left: int, rows: int) -> None:
     assert affordable(size, left) == rows
 
 
@@ -359,7 +361,7 @@ def test_shares_stand_for_numbers_of_a_range_and_for_options(share: float) -> No
     assert number == pytest.approx(-1.0 + 4.0 * share)
 
 
-def test_the_halton_sequence() -> None:
+def test_halton_points_are_radical_inverses_in_prime_bases() -> None:
     assert _primes(6) == [2, 3, 5, 7, 11, 13]
     assert [_inverse(n, 2) for n in (1, 2, 3, 4)] == [0.5, 0.25, 0.75, 0.125]
     assert _inverse(5, 3) == pytest.approx(2 / 3 + 1 / 9)

@@ -29,7 +29,7 @@ def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
     return True, 10.0 + (point["a"] - 0.5) * (point["b"] - 0.5)
 
 
-def test_directions_that_add_up_explain_their_variances_alone_whatever_the_noise_of_seeds() -> None:
+def test_additive_directions_have_correct_first_order_indices_despite_noise() -> None:
     found = sobol(evaluator_of(added, SPACE, budget=400))
     assert found is not None
     assert found.episodes == 64 * 6
@@ -40,7 +40,7 @@ def test_directions_that_add_up_explain_their_variances_alone_whatever_the_noise
     assert abs(a.first - 0.8) <= a.first_error
 
 
-def test_directions_that_matter_only_together_have_large_totals_alone() -> None:
+def test_interacting_directions_have_large_total_and_small_first_order_indices() -> None:
     found = sobol(evaluator_of(multiplied, SPACE, budget=800))
     assert found is not None
     for one in found.shares[:2]:

@@ -53,7 +53,7 @@ def test_the_repositorys_own_files_have_a_place_for_each_recordable_statement() 
         assert returns <= found
 
 
-def test_only_what_no_other_episode_runs_counts_most_frequent_first() -> None:
+def test_statements_that_only_failures_run_are_sorted_by_frequency() -> None:
     failing, others = [{0, 2}, {0, 1, 2}, {1}], [{0}, set()]
     assert only_in_failures(PLACES, failing, others) == (
         Executed("n.py", 2, "b", 2),

@@ -76,7 +76,7 @@ def test_the_boundary_lies_where_the_margin_vanishes_between_two_points() -> Non
     assert curve(MUD, {1.0: 1.0}, confirmed=0.5).boundary is None
 
 
-def test_a_curve_fails_where_its_evidence_does_and_is_monotone_if_nothing_holds_beyond() -> None:
+def test_a_curve_is_monotone_if_no_point_beyond_its_first_failure_holds() -> None:
     found = curve(MUD, GOOD)
     assert (found.failing, found.bracket, found.monotone) == ([0.75, 1.0], (0.5, 0.75), True)
     found.evidence |= {0.9: seen(0.0, "open"), 0.1: seen(-0.1, "open")}
@@ -146,7 +146,7 @@ def combined(**changed: float) -> Failure:
     return failure(SPACE, {**SPACE.nominal, **changed})
 
 
-def test_combinations_are_told_the_nearest_first() -> None:
+def test_combinations_are_printed_with_the_nearest_first() -> None:
     far, near = combined(mud=1.0, slope=0.5), combined(mud=3.0, camera=1.0)
     whole = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT)]
     assert [*words.together(stress(*whole, combinations=(near, far), tried=3))] == [
@@ -163,7 +163,7 @@ def test_combinations_are_told_the_nearest_first() -> None:
     ]
 
 
-def test_an_expected_failure_is_told_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
+def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
     told = "Probably fails with mud=3.6 and slope=0.25 already (distance 0.16); this is not confirmed."
     confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although each alone holds."
@@ -194,7 +194,7 @@ def test_directions_hold_alone_if_no_failure_was_found_up_to_there(changed: Curv
     assert told.endswith("although each alone holds.") is alone
 
 
-def test_shares_of_the_variance_the_most_important_first() -> None:
+def test_shares_of_the_variance_are_printed_with_the_largest_first() -> None:
     shares = (Share("a", -0.001, 0.1, 0.25, 0.05), Share("b", 0.5, 0.1, 0.75, 0.1))
     (told,) = words.sobol_words(stress(sobol=Sobol(99, shares)))
     assert told == (
@@ -208,7 +208,7 @@ def test_shares_of_the_variance_the_most_important_first() -> None:
     assert [*words.sobol_words(stress())] == []
 
 
-def test_statements_that_ran_only_in_failures() -> None:
+def test_statements_that_ran_only_in_failures_are_listed() -> None:
     only = tuple(Executed("n.py", n, f"x = {n}", 9 - n) for n in range(6))
     told = [*words.statement_words(stress(statements=Statements(9, 30, only)))]
     assert told[0] == "n.py:0 ran in 9 of 9 failing episodes and in none of 30 others: x = 0"
@@ -251,11 +251,13 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
         (curve(DOWN, confirmed=1.0), {"camera": ("left",)}, False),
     ],
 )
-def test_promises_are_broken_inside_their_range(one: Curve, must_hold: dict[str, Any], broken: bool) -> None:
+def test_a_failure_inside_must_hold_breaks_it_and_one_outside_does_not(
+    one: Curve, must_hold: dict[str, Any], broken: bool
+) -> None:
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
 
 
-def test_failures_of_all_kinds_the_nearest_first() -> None:
+def test_failures_are_sorted_by_their_distance_from_nominal() -> None:
     both = combined(mud=3.9, slope=0.05)
     found = stress(
         curve(MUD, confirmed=0.5), curve(FLAT, GOOD), curve(DOWN, confirmed=1.0), combinations=(both,)

@@ -83,7 +83,7 @@ def test_a_worker_that_collects_nothing_says_why_once() -> None:
 
 
 @pytest.mark.parametrize("marked", [True, False])
-def test_a_worker_that_has_served_refuses_nothing(
+def test_a_worker_that_has_run_an_episode_never_reports_a_failed_preparation(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, marked: bool
 ) -> None:
     marker = "@pytest.mark.tarl(nodes=['n.py'], sensors=[Sensor('x')])\n" if marked else ""

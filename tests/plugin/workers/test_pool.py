@@ -84,7 +84,7 @@ def nothing() -> None:
     pass
 
 
-def test_each_sign_of_life_ends_a_silence() -> None:
+def test_each_message_of_a_worker_resets_its_silence_counter() -> None:
     one = worker(Process(protocol.ALIVE, protocol.ALIVE, b"answer"))
     found = []
     read = protocol.read
@@ -131,7 +131,7 @@ LOG = b"""Fatal Python error: Aborted
 """
 
 
-def test_how_a_worker_ended_is_told() -> None:
+def test_the_error_states_how_a_worker_ended() -> None:
     with pytest.raises(WorkerDiedError, match=r"^ended with status 3: last words$"):
         worker(Process(), b"first\nlast words\n").ask(b"request")
     with pytest.raises(WorkerDiedError, match=r"^ended with status 3$"):

@@ -45,11 +45,11 @@ def test_a_worker_gets_the_options_and_the_place_of_the_run(
     assert post.loud
 
 
-def test_output_is_kept_unless_it_was_asked_for(pytester: pytest.Pytester) -> None:
+def test_workers_capture_output_unless_the_run_disables_capturing(pytester: pytest.Pytester) -> None:
     item: Any = pytester.getitem("def test_x(tarl): ...", "test_x")
     assert not posted(item, PLACES, ()).loud
 
 
-def test_the_sites_arrive_as_they_were(pytester: pytest.Pytester) -> None:
+def test_sites_survive_transport_to_a_worker(pytester: pytest.Pytester) -> None:
     item: Any = pytester.getitem("def test_x(tarl): ...", "test_x")
     assert instruments(json.loads(posted(item, PLACES, ()).first)["instruments"]) == PLACES

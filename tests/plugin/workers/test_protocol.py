@@ -69,12 +69,12 @@ def test_the_examples_set_every_field() -> None:
 @pytest.mark.parametrize(
     "plan", [PLAN, EpisodePlan(0), EpisodePlan(1, point={})], ids=["all", "none", "point"]
 )
-def test_a_plan_arrives_as_it_was(plan: EpisodePlan) -> None:
+def test_a_plan_survives_transport_to_a_worker(plan: EpisodePlan) -> None:
     assert protocol.planned(protocol.plan_message(plan)) == plan
 
 
 @pytest.mark.parametrize("threads", [False, True])
-def test_the_result_of_an_episode_arrives_as_it_was(threads: bool) -> None:
+def test_the_result_of_an_episode_survives_transport_from_a_worker(threads: bool) -> None:
     run = replace(RUN, trace=trace(threads=threads))
     found = protocol.answered(PLAN, protocol.run_message(run))
     for one in fields(EpisodeRun):

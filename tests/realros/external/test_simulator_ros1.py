@@ -81,7 +81,7 @@ def test_a_simulator_in_its_own_time_is_followed(tmp_path: Path) -> None:
         assert run.simulator.clock >= before + 0.5
 
 
-def test_a_simulator_that_dies_is_lost_with_its_last_words(tmp_path: Path) -> None:
+def test_the_error_of_a_dead_simulator_contains_its_last_output(tmp_path: Path) -> None:
     with (
         Run(tmp_path, {"FAULT": "die 4"}, command=COMMAND, **STEPPED) as run,
         pytest.raises(SimulatorLostError, match=r"ended with status 3 .*out of water"),
@@ -89,7 +89,7 @@ def test_a_simulator_that_dies_is_lost_with_its_last_words(tmp_path: Path) -> No
         run.steps(10)
 
 
-def test_a_node_is_recorded_against_it(tmp_path: Path) -> None:
+def test_a_node_can_be_recorded_against_the_simulator(tmp_path: Path) -> None:
     (tmp_path / "keeper.py").write_text(NODE)
     (tmp_path / "test_tank.py").write_text(PROJECT.format(command=COMMAND))
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
