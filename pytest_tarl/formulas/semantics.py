@@ -92,7 +92,10 @@ class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
 
 
 class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
-    """Evaluate the connectives of a formula; its atoms' samples are given by id(node), known up to `end` (ns)."""
+    """Evaluate the connectives of a formula.
+
+    The samples of its atoms are given by id(node) and known up to `end` (ns).
+    """
 
     def __init__(self, atoms: Mapping[int, Samples], end: float) -> None:
         self._atoms = atoms
@@ -112,11 +115,14 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return _until(*self._both(node))
 
     def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the mirror image of until."""
+        """Return `until` mirrored in time."""
         return _since(*self._both(node))
 
     def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return until with a window: left holds up to the window's begin, then until holds within the window."""
+        """Return `until` with a window.
+
+        The left side holds up to the start of the window, and `until` holds within the window.
+        """
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(
             dense.eventually_timed_operation(right, 0, end - begin), _until(left, right)
@@ -127,7 +133,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return dense.and_operation(held, dense.eventually_timed_operation(within, begin, begin))  # type: ignore[no-any-return]
 
     def visitTimedSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the mirror image of until with a window."""
+        """Return `until` with a window, mirrored in time."""
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(_once(right, 0, end - begin), _since(left, right))
         if not begin:
@@ -140,7 +146,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return _once(self.visit(operands(node)[0]), *bounds(node))
 
     def visitTimedHistorically(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the least value in a window of the past."""
+        """Return the smallest value in a window of the past."""
         sample, (begin, end) = self.visit(operands(node)[0]), bounds(node)
         return _begun(dense.historically_timed_operation(sample, begin, end), sample)
 
@@ -180,5 +186,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Use the operand's first value where a window lies wholly before the beginning; rtamt gives infinity there."""
+    """Use the operand's first value where a window lies wholly before the beginning; rtamt uses infinity there."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]
