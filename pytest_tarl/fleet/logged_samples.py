@@ -62,7 +62,7 @@ def plan_of(fixture: Fixture) -> Plan:
 
 
 def identity(mission: Mission) -> int:
-    """Return a number that copies of the mission in other files share, and no other mission has."""
+    """Return a number that identifies a mission: copies of the mission in other files have the same number."""
     content = json.dumps(
         [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
         ensure_ascii=False,

@@ -33,9 +33,9 @@ class Part:
 def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture, tuple[Part, ...]]:
     """Return the recording of all episodes and missions, and what each file added.
 
-    A log is read with the sensors and statements of the first recording, or of `fixture`, whose own episodes do not
-    count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot be read or does
-    not fit the others.
+    Logs are read with the sensors and statements of the first recording, or of `fixture`. The episodes of `fixture`
+    itself do not count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot
+    be read or does not fit the others.
     """
     recordings = {path: load(path) for path in files if not _is_log(path)}
     first = fixture or next(iter(recordings), None)

@@ -142,7 +142,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return the running extreme of the values in a window after the beginning, one for each instant."""
+    """Return for each instant the largest (or smallest) value so far within a window after the beginning."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 

@@ -19,8 +19,9 @@ Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rta
 class Signal:
     """A number for formulas that is not a sensor.
 
-    With `topic` and `field` (a dotted path, or a function of the message), it is read from every message on
-    the topic, including those that the node publishes. Without them the test sets it: `tarl.observe(gap=…)`.
+    If `topic` and `field` are given, the number is read from every message on the topic, including messages that the
+    node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number:
+    `tarl.observe(gap=…)`.
     """
 
     name: str

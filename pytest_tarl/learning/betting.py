@@ -1,9 +1,10 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
 Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes a fixed share of its wealth
-each time. If the claim is true, the wealth ever grows by a factor of 1/risk with probability at most `risk`. This holds
-for any distribution of the values and any number of looks (Ville's inequality), and also for a mixture of bets. Two
-bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few bad episodes.
+each time. If the claim is true, the probability that the wealth reaches 1/risk times its start at any time is at most
+`risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
+mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
+bad episodes.
 """
 
 from __future__ import annotations

@@ -77,9 +77,9 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 def evidence_above(passed: int, episodes: int, least: float) -> float:
     """Return the log of an e-process against the claim that the success rate is at most `least`.
 
-    An e-process measures evidence and may be read at any time: if the claim is true, its log ever exceeds log(1 / α)
-    with probability at most α (Ville's inequality). This one averages the likelihood ratio uniformly over all higher
-    rates (Robbins 1970).
+    An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log
+    exceeds log(1 / α) at any time is at most α (Ville's inequality). This e-process averages the likelihood ratio
+    uniformly over all higher rates (Robbins 1970).
     """
     failed = episodes - passed
     if least >= 1.0:

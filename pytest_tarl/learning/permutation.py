@@ -97,10 +97,11 @@ def _p_values(
     generator: np.random.Generator,
     permutations: int,
 ) -> Floats:
-    """Return a p-value for each count that `reached` returns for the sums of some shuffles, shape (counts,).
+    """Return one-sided p-values, shape (counts,).
 
-    More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over many
-    comparisons. The remaining shuffles are skipped if the smallest p-value is at least SETTLED after that many.
+    `reached` receives the sums of some shuffles and returns how many of them reach the observed value, for each
+    statistic. More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over
+    many comparisons. The remaining shuffles are skipped if the smallest p-value is at least SETTLED after that many.
     Skipping never creates a p-value below SETTLED.
     """
     counts, done = None, 0

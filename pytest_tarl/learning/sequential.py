@@ -1,7 +1,7 @@
 """Group-sequential testing: a comparison may end early at planned looks, which share its risk (alpha spending).
 
-After a share t of the episodes, α·t² of the risk α is spent (Lan & DeMets 1983). The shares of all looks sum to α,
-which holds under any dependence between looks. Ending early thus causes no additional false alarms.
+After a share t of the episodes, α·t² of the risk α is spent (Lan & DeMets 1983). The shares of all looks sum to α. By
+the union bound, the risk of a false alarm is then at most α, however the looks depend on each other.
 """
 
 from __future__ import annotations

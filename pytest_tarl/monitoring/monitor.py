@@ -1,9 +1,9 @@
 """The monitor: an e-process for each bound, a conformal martingale for each score, and their alarms.
 
 An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
-recorded bound, and whether missions differ from the recorded ones. Each test has several processes, which divide its
-half of α by a union bound, since the martingales have different filtrations. The probability of ever raising a false
-alarm is therefore at most α, plus the error probability of the bound.
+recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
+(union bound). The probability of a false alarm at any time is therefore at most α, plus the error probability of the
+bound.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If started before observation τ, its value is
 ∏_{t ≥ τ} f_t, and 1 before. The mixture over k and τ with weights that sum to 1 is again an e-process (Shin, Ramdas &
-Rinaldo 2023, e-detectors): by Ville's inequality, it ever exceeds 1/α with probability at most α. A restart before
-every observation costs only one product, since
+Rinaldo 2023, e-detectors): by Ville's inequality, it exceeds 1/α at any time with probability at most α. A restart
+before every observation costs only one product, since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 

@@ -79,7 +79,7 @@ class Status:
 
     @property
     def error(self) -> float:
-        """Return the probability of ever raising a false alarm, including the error of the bounds."""
+        """Return the probability of a false alarm at any time, including the error of the bounds."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)

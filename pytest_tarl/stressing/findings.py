@@ -23,7 +23,8 @@ NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 class Curve:
     """The evidence along a ray, by the place t; a search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure, `rejected` are the ones where they did not.
+    `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which they showed
+    none.
     """
 
     ray: Ray
@@ -212,9 +213,9 @@ class Stress:
 
     @property
     def nearer(self) -> Failure | None:
-        """Return the nearest drift that only the model predicts to fail.
+        """Return the nearest drift that the model predicts to fail without confirmation.
 
-        Return None unless it is nearer than every confirmed failure.
+        Return None if a confirmed failure is about as near or nearer.
         """
         limit = min((one.distance for one in self.failures), default=inf)
         return next((one for one in self.expected if one.distance < NEARER * limit), None)

@@ -22,7 +22,9 @@ from pytest_tarl.learning.guarantees import CONFIDENCE
 LOWEST = -1.5  # lower limit of margins: how clearly a drift fails says little about where the boundary is
 LEAST = 8  # minimum episodes to count as holding; a drift that fails 1 in 12 passes all half of the time
 HOPEFUL = 0.84  # one-sided confidence of a bound one standard error above the mean
-SEARCH_RISK = 0.05  # approximate error probability of each decision of the search, which gives no guarantee
+SEARCH_RISK = (
+    0.05  # approximate error probability of each decision of the search; only fresh seeds give a guarantee
+)
 
 Answer = Literal["fails", "holds", "open"]
 

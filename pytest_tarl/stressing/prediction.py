@@ -110,7 +110,7 @@ class Prediction:
             )
 
     def deeper(self, times: float) -> Prediction:
-        """Return the same model with a requirement that is `times` as strong as what fresh episodes can show."""
+        """Return a copy that requires an excess over the guarantee `times` as large as fresh episodes can show."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other
