@@ -150,7 +150,10 @@ class Replay:
         ros.bus.publish(place.name, told, latch=channel.latched)
 
     def _class(self, ros: Ros, topic: str) -> type[Any]:
-        """Return the message class with which the nodes subscribe. Raise FieldError if it is of another type."""
+        """Return the message class with which the nodes subscribe.
+
+        Raise FieldError if the recorded topic has another type.
+        """
         name = self.bag.channels[topic].type
         expected = [
             one.message_type for one in ros.bus.topic(topic).subscriptions if one.message_type is not None

@@ -180,7 +180,7 @@ class _Writer:
         return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
-        """Return the robot of each mission of a day that is in the data set or waits to be written."""
+        """Return the robot of each stored or waiting mission of a day, by the mission's identity."""
         if day not in self.known:
             found = dataset.known(self.store, self.origin.folder, day)
             self.known[day] = dict(found)

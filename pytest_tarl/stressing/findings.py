@@ -105,7 +105,7 @@ class MarginMap:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """The Sobol indices of a direction: the shares of the margin's variance over the space that it explains.
+    """The Sobol indices of a direction: how much of the margin's variance over the space it explains.
 
     `first` is the share of the direction alone; `total` includes its combinations with others. An error is half the
     width of a confidence interval.

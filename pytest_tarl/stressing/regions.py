@@ -1,4 +1,4 @@
-"""The drifts to search a repair for: from a confirmed failure to the ends of its directions."""
+"""Regions of drifts for the search of a repair: from a confirmed failure to the ends of its directions."""
 
 from __future__ import annotations
 
