@@ -72,7 +72,7 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first instant after which no future can satisfy the formula, or None if there is none.
+    """Return the first instant after which no future can satisfy the formula; None if it can still be satisfied.
 
     The result is never too early. It can be late if atoms depend on each other, because each is bounded alone.
     """

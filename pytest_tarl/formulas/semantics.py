@@ -1,13 +1,12 @@
 """Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
-Time is counted in whole nanoseconds, as on the virtual clock. Signals are constant from one change to the
-next, and so is every subformula. Where a window reaches beyond the known part of an episode, a subformula
-keeps its last value, and before the beginning its first; so values are finite wherever signals are.
+Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. If a
+window extends past the known part of an episode, a subformula keeps its last value there. Before the beginning, it has
+its first value. Values are therefore finite wherever signals are.
 
-Differences from rtamt 0.4 in dense time: `until` and `since` do not require the left side at the instant of
-the right one, as in discrete time; a comparison at equality is slightly positive if it holds and slightly
-negative if not (`TRUTH`); an empty window is not infinite; units of bounds are converted in the right
-direction.
+The corrections of rtamt 0.4 in dense time are the following. `until` and `since` do not require the left side at the
+instant of the right side, as in discrete time. A comparison at equality is slightly positive if it holds and slightly
+negative otherwise (`TRUTH`). An empty window is not infinite. Units of bounds are converted in the right direction.
 """
 
 from __future__ import annotations

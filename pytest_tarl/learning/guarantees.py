@@ -1,4 +1,4 @@
-"""State bounds on future episodes, drawn from the worlds that a test samples."""
+"""State bounds on future episodes in the worlds that a test samples."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ BELOW = 0.49  # maximum score of a site without an operand if other sites have o
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
     """Sum the utility of each site over the region (Eq. 2); inputs have shape (cells, sites).
 
-    For each site, only cells count that both worlds have visited at that site.
+    Cells that one of the worlds has not visited at a site do not count for this site.
     """
     both = ~np.isnan(offline[region]) & ~np.isnan(online[region])
     before = np.where(both, offline[region], 0.0).sum(axis=0)

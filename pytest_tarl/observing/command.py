@@ -107,7 +107,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """Exclude existing objects from garbage collection during the block, because it would delay the node."""
+    """Exclude existing objects from garbage collection during the block; long collections would delay the node."""
     gc.collect()
     gc.freeze()
     try:
