@@ -130,7 +130,7 @@ def _spilled() -> Iterator[str]:
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; of several copies of a mission, only the first by version, robot and site counts."""
+    """Load the missions; of several copies of one, keep the first in the order of version, robot and site."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0

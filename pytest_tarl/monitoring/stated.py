@@ -1,4 +1,4 @@
-"""The bounds on future missions that a recording states."""
+"""The bounds of a recording: a minimum success rate and mean reward of future missions."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ class Prediction:
         )
         losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
         counts = np.array([float(one.episodes) for one in samples])
-        # shared nominal episodes correlate the errors
+        # all drifts share the nominal episodes, so their errors are correlated
         common = typical / 2.0 / np.maximum(counts[:, None], counts)
         own = np.maximum(
             np.array([one.spread**2 for one in samples]) - typical / 2.0 / counts, typical / 8.0 / counts
