@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 
 class Channel(NamedTuple):
-    """A recorded topic. `type` has the form of ROS 2, `std_msgs/msg/Bool`, for bags of both generations.
+    """A recorded topic.
 
-    `definition` is the text of the type, empty if the bag has none; `latched` is true if the publisher kept its
-    last message for late subscribers.
+    `type` has the form of ROS 2, `std_msgs/msg/Bool`, for bags of both generations. `definition` is the text of the
+    type, or empty if the bag has none. `latched` is true if the publisher kept its last message for late subscribers.
     """
 
     topic: str

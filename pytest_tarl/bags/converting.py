@@ -14,7 +14,7 @@ OF_ONE_GENERATION = {"seq"}  # fields that only ROS 1 has, in a header
 
 
 def class_named(name: str, kind: Kind) -> type[Any] | None:
-    """Return the class of a type written as in ROS 2; None if the type is unknown."""
+    """Return the class of a type written as in ROS 2, or None if the type is unknown."""
     package, _, short = name.replace("/msg/", "/").partition("/")
     return find_class(kind, package, short)
 
@@ -32,7 +32,7 @@ def converted(recorded: Any, wanted: type[Any]) -> Any:
 
 
 def _value(value: Any, template: Any, kind: Kind) -> Any:
-    """Return a field's value in the form of `template`, the field's value in a new message."""
+    """Return a field's value in the form of `template`, the value of this field in a new message."""
     if hasattr(template, "nsecs"):
         return type(template)(value.sec, value.nanosec)
     if is_message(template):

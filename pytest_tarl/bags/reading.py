@@ -39,7 +39,7 @@ class Bag:
     notes: list[str] = field(default_factory=list)
 
     def messages(self) -> Iterator[Recorded]:
-        """Yield the messages in order of time, up to the first that cannot be read."""
+        """Yield the messages in order of time, up to the first one that cannot be read."""
         last = self.start
         try:
             for one in self.source():
@@ -61,7 +61,7 @@ class Bag:
 
     @cached_property
     def _stores(self) -> tuple[Any, Any]:
-        """Return the type definitions in the bag, and the standard ones of its ROS generation."""
+        """Return the type definitions in the bag, and the standard definitions of its ROS generation."""
         from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
         own, usual = (
@@ -116,7 +116,7 @@ def _unreadable() -> tuple[type[Exception], ...]:
 
 
 def _of_databases() -> Iterator[type[Exception]]:
-    """Yield the errors of the database libraries that versions of rosbags read .db3 files with."""
+    """Yield the exceptions of the database libraries with which versions of rosbags read .db3 files."""
     for name in ("apsw", "sqlite3"):
         with suppress(ImportError):
             yield import_module(name).Error

@@ -39,11 +39,11 @@ ALWAYS_THERE = {
 
 
 class MissionReplayed(Skipped):
-    """Raised to leave the test body after the replay: the rest of the body drives its own world."""
+    """Raised to leave the test body after the replay, because the rest of the body drives its own world."""
 
 
 class Moment:
-    """The state that a monitor reads at the end of a step: the newest recorded message of every topic."""
+    """What a monitor reads at the end of a step: the newest recorded message of every topic."""
 
     def __init__(self, bag: Bag) -> None:
         self.now = 0.0  # seconds since the bag began
@@ -55,14 +55,14 @@ class Moment:
         self._spelled = {absolute(topic): topic for topic in bag.channels}
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message on the topic, as recorded; None before the first."""
+        """Return the newest message on the topic, as recorded, or None before the first one."""
         name = self._spelled.get(absolute(topic), topic)
         if name not in self._read and name in self._data:
             self._read[name] = self._bag.decode(name, self._data[name])
         return self._read.get(name)
 
     def take(self, message: Recorded) -> None:
-        """Keep a message; it is deserialised when `latest` asks for it."""
+        """Store a message; it is deserialised when `latest` asks for it."""
         self._data[message.topic] = message.data
         self._read.pop(message.topic, None)
 
@@ -106,10 +106,8 @@ class Replay:
     ) -> None:
         """Replay the mission in steps of `dt` seconds; close each step once `ready` returns true.
 
-        `close` gets the monitor's judgement, or None if formulas judge. `observe` lets the monitor set
-        signals.
-
-        Raises SettingsError if `dt` is not positive.
+        `close` receives the monitor's judgement, or None if formulas judge. `observe` lets the monitor set signals.
+        Raise SettingsError if `dt` is not positive.
         """
         step = nanoseconds(dt)
         if step <= 0:
@@ -152,7 +150,10 @@ class Replay:
         ros.bus.publish(place.name, told, latch=channel.latched)
 
     def _class(self, ros: Ros, topic: str) -> type[Any]:
-        """Return the message class that the nodes subscribe with. Raise FieldError if it is another type."""
+        """Return the message class with which the nodes subscribe.
+
+        Raise FieldError if the recorded topic has another type.
+        """
         name = self.bag.channels[topic].type
         expected = [
             one.message_type for one in ros.bus.topic(topic).subscriptions if one.message_type is not None
@@ -212,7 +213,7 @@ def _made(monitor: Any) -> Monitor:
 def _judging(judge: Judge | None, sensors: Sequence[Sensor]) -> Monitor:
     """Return a monitor that calls the marker's `judge` with the sensors before and after each step.
 
-    Raises SettingsError if the marker has no `judge`.
+    Raise SettingsError if the marker has no `judge`.
     """
     if judge is None:
         raise SettingsError(NO_REWARDS)

@@ -26,7 +26,7 @@ _SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # record types of MC
 
 
 class CutOffError(Exception):
-    """The file ends within a record."""
+    """The file ends inside a record."""
 
 
 def walk(path: Path) -> Walk:
@@ -137,7 +137,7 @@ def _mcap_records(
 
 
 def _transient(profiles: str) -> bool:
-    """Return whether a recorded QoS text says transient local."""
+    """Return whether a recorded QoS text says "transient local"."""
     flat = profiles.replace(" ", "")
     return "durability:1" in flat or "durability:transient_local" in flat
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def freeze(topic: str, most: float, *, at: float = 0.0) -> TopicFault:
-    """Return a fault that repeats the topic's last message for up to `most` seconds, from the moment `at` on.
+    """Return a fault that repeats the topic's last message for up to `most` seconds, starting at the moment `at`.
 
     Raise SettingsError for an invalid moment.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeRestart:
-    """The end of a node's process at the moment `at`, in s, and its restart after the fault's size, in s."""
+    """End a node's process at the moment `at`, in s, and restart it after the fault's size, in s."""
 
     node: str
     at: float

@@ -1,4 +1,4 @@
-"""Common base of topic faults: a channel through which the topic's messages pass."""
+"""The common base of topic faults: a channel through which the messages of a topic pass."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ OFF_ON = Choice((False, True))
 
 @dataclass(frozen=True)
 class TopicFault:
-    """A fault of all messages on one topic; `begin` makes an episode's channel from its size and random numbers."""
+    """A fault of all messages on one topic.
+
+    `begin` makes the channel of an episode from the fault's size and random numbers.
+    """
 
     kind: str
     topic: str
@@ -30,7 +33,7 @@ class TopicFault:
     field: str = ""
 
     def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
-        """Pass the topic's messages through the fault. Raise SettingsError at a message without the fault's field."""
+        """Pass the topic's messages through the fault. Raise SettingsError if a message lacks the fault's field."""
         channel = self.begin(size, draws)
 
         def passed(message: Any, now: float) -> Arrivals:
@@ -79,7 +82,10 @@ def of_topic(
 
 
 def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
-    """Return the range of a fault's sizes. Raise SettingsError if it does not include `none`, which means no fault."""
+    """Return the range of a fault's sizes.
+
+    Raise SettingsError if it does not include `none`, the size without a fault.
+    """
     found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
     if not found.low <= none <= found.high:
         raise SettingsError(
@@ -94,13 +100,16 @@ LONGEST = (
 
 
 def moment(value: Any) -> float | None:
-    """Return a moment in s that the clock can represent; None for anything else."""
+    """Return a moment in s that the clock can represent, or None for any other value."""
     found = finite_number(value)
     return found if found is not None and 0.0 <= found <= LONGEST else None
 
 
 def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
-    """Return the sizes from 0, no fault, to `most`. Raise SettingsError unless it is positive, up to `limit`."""
+    """Return the sizes from 0, no fault, to `most`.
+
+    Raise SettingsError unless `most` is positive and at most `limit`.
+    """
     largest = finite_number(most)
     if largest is None or largest <= 0.0 or (limit is not None and largest > limit):
         upper = "" if limit is None else f", at most {limit:g}"

@@ -1,4 +1,4 @@
-"""The mission of a bag: identified by its messages, replayed through the nodes of the recorded test."""
+"""The mission of a bag: its identity comes from its messages, its statistics from a replay."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ Replay = Callable[[Path, int], EpisodeRun]
 
 @dataclass(frozen=True)
 class Bagged:
-    """The identity of a bag's mission, which only copies of the bag share, and its start in seconds since 1970."""
+    """A bag's mission: its identity, which only copies of the bag share, and its start in seconds since 1970."""
 
     mission: int
     time: float
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether a file or folder is a bag by its name."""
+    """Return whether the name of a file or folder is that of a bag."""
     return path.is_dir() or path.name.endswith(ENDINGS)
 
 
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    if bag.notes:  # truncated: the complete bag would be another mission
+    if bag.notes:  # truncated: the complete bag would have another identity
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
             "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."

@@ -1,8 +1,9 @@
-"""Robots with similar drifts: clusters of the residual maps of the robots that were named as drifted.
+"""Robots with similar drifts: clusters of the residual maps of the robots named as drifted.
 
-The distance of two robots is the largest difference of their maps in any common cell, in standard errors of that
-difference, so that noise does not keep robots apart. Complete linkage (Sørensen 1948) joins clusters while no two of
-their robots differ significantly, corrected for the numbers of cells and pairs (Bonferroni).
+A residual map holds the mean residual of a visit to each cell. The distance of two robots is the largest difference of
+their maps in any common cell, in standard errors of that difference, so noise alone does not separate robots. Complete
+linkage (Sørensen 1948) joins clusters while no two of their robots differ significantly. The significance is corrected
+for the numbers of cells and pairs (Bonferroni).
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ MOST = 300  # maximum number of robots compared: those with the most evidence
 
 @dataclass(frozen=True)
 class Cluster:
-    """The names of robots with similar maps; their common cells, and the mean residual of a visit to each cell."""
+    """The names of robots with similar maps, their common cells, and the mean residual of a visit to each cell."""
 
     robots: tuple[str, ...]
     cells: tuple[Cell, ...]
@@ -61,7 +62,8 @@ def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
     """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual, by cell."""
-    ordered = sorted(maps, key=lambda one: one.robot)  # the last bits of sums depend on the order
+    # sorted, because the last bits of sums depend on the order
+    ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))
     groups = _linked(distances(clear), len(cells), alpha) if clear else []
@@ -71,7 +73,10 @@ def of(
 
 
 def distances(maps: Sequence[ResidualMap]) -> Floats:
-    """Return the distance of each pair of maps, shape (maps, maps); infinite without a common cell or with itself."""
+    """Return the distance of each pair of maps, shape (maps, maps).
+
+    It is infinite for maps without a common cell and on the diagonal.
+    """
     mean = np.array([one.mean for one in maps])
     variance = np.array([one.variance for one in maps])
     found = np.full((len(maps), len(maps)), np.inf)
@@ -105,7 +110,7 @@ def _linked(distance: Floats, cells: int, alpha: float) -> list[list[int]]:
 
 
 def _cluster(maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float) -> Cluster:
-    """Return the cluster of some maps, pooled by the inverse of their variances."""
+    """Return the cluster of some maps; residuals are averaged with weights 1 / variance."""
     mean = np.array([one.mean for one in maps])
     weight = 1.0 / np.maximum(np.array([one.variance for one in maps]), np.finfo(float).tiny)
     weight[np.isnan(mean)] = 0.0

@@ -4,8 +4,8 @@ The model of a mission's reward is y = Σ effect of its version, site and season
 effects of factors are fixed numbers, one for each level; those of robots are random, with variance σ_r².
 
 - σ_e² (rest) and σ_r² by fitting constants (Henderson 1953, "Estimation of variance and covariance components",
-  Biometrics 9:226-252, method 3): the residual sum of squares within robots, then the one without robots, each equated
-  with its expectation. It makes no assumption on distributions.
+  Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set equal to
+  their expectations, which gives one equation for each variance. The method assumes no distribution.
 - The effects by generalised least squares with these variances (Fuller & Battese 1973, JASA 68:626-632).
 - The component of a factor is the variance of its effects over missions (a finite population; Gelman 2005, Annals of
   Statistics 33:1-53), Σ share·(effect - mean)², minus what the errors of the effects add to it, tr(M·Cov).
@@ -25,19 +25,20 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats, Ints
 
 REPLICATES = 200
-FEWEST = 30  # robots, below which no interval is stated
-RANDOM = 2  # components of effects drawn at random: robots and rest
+FEWEST = 30  # minimum number of robots for an interval
+RANDOM = 2  # number of components with random effects: robots and rest
 CONFOUNDED = (
-    1e-6  # share of a contrast outside the row space of the design, above which it cannot be estimated
+    # a contrast cannot be estimated if more than this share of it is outside the row space of the design
+    1e-6
 )
-SINGULAR = 1e-9  # eigenvalues below this share of the largest are 0
+SINGULAR = 1e-9  # eigenvalues below this share of the largest count as 0
 
 
 @dataclass(frozen=True)
 class Totals:
     """Sums over the missions of each robot and combination of levels; `levels` has shape (rows, factors).
 
-    `squares` has the sum of squared rewards of each robot.
+    `squares` holds the sum of squared rewards by robot.
     """
 
     robot: Ints
@@ -45,7 +46,7 @@ class Totals:
     count: Floats
     reward: Floats
     squares: Floats
-    sizes: tuple[int, ...]  # levels of each factor
+    sizes: tuple[int, ...]  # number of levels of each factor
 
 
 @dataclass(frozen=True)
@@ -57,20 +58,21 @@ class Component:
     low: float
     high: float
     levels: int
-    effects: tuple[float, ...] = ()  # by level, relative to the mean over missions; none for robots and rest
+    # effect of each level, relative to the mean over missions; empty for robots and rest
+    effects: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class _Fit:
-    variances: Floats  # of each factor, robots, rest
-    noise: Floats  # what estimation errors add to each of them
-    effects: Floats  # of all levels of all factors
+    variances: Floats  # variance of each factor, of robots and of the rest
+    noise: Floats  # the part of each variance that comes from estimation errors
+    effects: Floats  # effects of all levels of all factors
 
 
 def components(
     totals: Totals, names: Sequence[str], confidence: float, rng: np.random.Generator
 ) -> tuple[Component, ...]:
-    """Return the component of each factor, then of "robot" and "mission" (the rest)."""
+    """Return the component of each factor, then those of "robot" and "mission" (the rest)."""
     design = _Design(totals)
     robots = totals.squares.size
     found = design.fit(np.ones(robots))
@@ -138,7 +140,7 @@ class _Design:
         self.reward = np.bincount(totals.robot, totals.reward, robots)
 
     def fit(self, weights: Floats) -> _Fit:
-        """Return the components if each robot occurs `weights` times."""
+        """Return the components for a sample in which each robot occurs `weights` times."""
         x, n, s = self.visits, self.missions, self.reward
         products, sums = self._products(weights), self._sums(weights * 1.0)
         squares = float(weights @ self.totals.squares)

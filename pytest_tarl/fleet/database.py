@@ -1,8 +1,8 @@
-"""The missions of a question in an embedded DuckDB: each once, in the order of robot, time and identity.
+"""The missions of a question in an embedded DuckDB, each once, ordered by robot, time and identity.
 
-The database has one row for each mission; the rows of cells stay in their files (partitions.py). Only integers are
-counted and rows sorted here. Sums of floats are computed from rows in that order, so results do not depend on files,
-partitions or threads, to the last bit.
+The database has one row for each mission; the rows of cells stay in their files (partitions.py). DuckDB only counts
+integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order, so results do not depend on
+files, partitions or threads, to the last bit.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
 from pytest_tarl.fleet.store import Store
 
-MEMORY = "1GB"  # beyond it, DuckDB moves rows to SPILLED
+MEMORY = "1GB"  # memory limit, beyond which DuckDB moves rows to SPILLED
 SPILLED = Path(".tarl/fleet")
 BY = {
     "version": "version",
@@ -35,7 +35,7 @@ BY = {
     "month": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%Y-%m')",  # UTC
     "week": "strftime(make_timestamp(CAST(floor(time * 1000000) AS BIGINT)), '%G-W%V')",  # ISO 8601, UTC
 }
-# The columns that files of schema 1 lack, without rows.
+# Columns that files of schema 1 lack; the table has no rows.
 EMPTY = "SELECT '' AS repair, MAP {'': 0.0::DOUBLE} AS formulas WHERE false"
 KEY = r"regexp_extract(filename, 'test=[^/]*/version=[^/]*/date=[^/]*/[^/]*$', 0)"
 
@@ -44,14 +44,14 @@ Columns = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Filter:
-    """The missions in question: of one robot if given, and since a day (UTC) if given."""
+    """The selected missions: of one robot, if given, and since a day (UTC), if given."""
 
     robot: str = ""
     since: date | None = None
 
 
 class Database:
-    """Missions numbered from 0 by robot, time and identity; `wanted` says which missions are in which files."""
+    """Missions numbered from 0 by robot, time and identity; `wanted` says which file holds which missions."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -67,13 +67,13 @@ class Database:
         self._connection.execute(statement, list(arguments))
 
     def names(self, query: str) -> list[tuple[Any, ...]]:
-        """Return the rows of a query, for few rows."""
+        """Return the rows of a query that has few rows."""
         found: list[tuple[Any, ...]] = self._connection.execute(query).fetchall()
         return found
 
     @property
     def missions(self) -> int:
-        """Return the number of missions in question."""
+        """Return the number of selected missions."""
         return int(self.names("SELECT count(*) FROM missions")[0][0])
 
 
@@ -110,7 +110,10 @@ def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter
 
 @contextmanager
 def _spilled() -> Iterator[str]:
-    """Make a folder for rows that do not fit into memory, one for each run; remove it and the folders made for it."""
+    """Create a folder for the rows that do not fit into memory; remove it afterwards.
+
+    Each run has its own folder. Parent folders created for it are removed, too.
+    """
     made = [one for one in (SPILLED, *SPILLED.parents) if not one.exists()]
     try:
         SPILLED.mkdir(parents=True, exist_ok=True)
@@ -127,7 +130,7 @@ def _spilled() -> Iterator[str]:
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; of several copies of one, the first by version, robot and site counts."""
+    """Load the missions; of several copies of one, keep the first in the order of version, robot and site."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0
@@ -160,7 +163,7 @@ def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: F
 
 
 def _wanted(connection: Any, parts: Sequence[Part]) -> Iterator[Wanted]:
-    """Yield the missions in question of each file."""
+    """Yield the selected missions of each file."""
     rows = connection.execute(
         "SELECT part, mission, number FROM missions ORDER BY part, mission"
     ).fetchnumpy()

@@ -17,14 +17,14 @@ from pytest_tarl.fleet.store import ADVICE, Store
 
 @dataclass(frozen=True)
 class Part:
-    """A file of `missions`, relative to the data set, with its origin and the number of its missions."""
+    """A file of the table `missions`, relative to the data set, with its origin and its number of missions."""
 
     path: str
     origin: Origin
     missions: int
 
     def beside(self, table: str) -> str:
-        """Return the file of another table with the same missions."""
+        """Return the file of another table that holds the same missions."""
         return f"{table}/{self.path.partition('/')[2]}"
 
 
@@ -51,7 +51,7 @@ def parts(where: Store) -> list[Part]:
 
 
 def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
-    """Yield identity and robot of each mission that the test's partition holds for a day."""
+    """Yield identity and robot of each mission of a day that the test's partition holds."""
     for path in where.files(f"missions/test={folder}"):
         if f"/date={date}/" in path:
             table = columns(where, path, ["mission", "robot"])

@@ -12,8 +12,8 @@ from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
-PORTION = 200_000  # missions read together
-MONTHS = 3  # months of missions from which the season is the month; before, it is the week
+PORTION = 200_000  # number of missions read together
+MONTHS = 3  # minimum number of months to use months as seasons; with fewer, weeks are used
 
 CODES = """
     CREATE OR REPLACE TEMP TABLE of_{name} AS
@@ -44,7 +44,7 @@ class Decomposition:
 
 
 def decomposed(database: Database, seed: int = 0) -> Decomposition:
-    """Return the decomposition of the missions in question."""
+    """Return the decomposition for the selected missions."""
     season = "month" if _count(database, BY["month"]) >= MONTHS else "week"
     factors = {"version": BY["version"], "site": BY["site"], "season": BY[season]}
     if _count(database, BY["repair"]) > 1:
@@ -63,7 +63,7 @@ def _count(database: Database, column: str) -> int:
 
 
 def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...]) -> Totals:
-    """Return the sums; rewards are relative to their mean, so that squares lose no digits."""
+    """Return the sums; rewards are taken relative to their mean, so that squares lose no digits."""
     joins = " ".join(f"JOIN of_{name} ON of_{name}.name = {column}" for name, column in factors.items())
     codes = ", ".join(f"of_{name}.code AS {name}_code" for name in factors)
     query = MISSIONS.format(codes=codes, joins=joins)

@@ -9,7 +9,7 @@ from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
 
 NAMES = {"mission": "within a robot"}
-EXTREMES = 2  # levels named for each factor
+EXTREMES = 2  # number of levels named for each factor
 
 
 def lines(parts: Decomposition) -> Iterator[str]:
@@ -27,7 +27,7 @@ def name(one: Component, parts: Decomposition) -> str:
 
 
 def problem(one: Component) -> str:
-    """Return why a component or its interval is not known; empty if they are."""
+    """Return why a component or its interval is unknown, or an empty text."""
     if one.levels == 1:
         return "only one"
     if isnan(one.variance):
@@ -44,7 +44,7 @@ def _amount(one: Component, total: float) -> str:
 
 
 def lowest(one: Component, levels: tuple[str, ...]) -> str:
-    """Name the levels with the lowest effects if the variance is not 0."""
+    """Name the levels with the lowest effects, unless the variance is 0."""
     if problem(one) or not one.effects or not one.low > 0:
         return ""
     order = sorted(range(len(levels)), key=lambda n: (one.effects[n], levels[n]))[:EXTREMES]

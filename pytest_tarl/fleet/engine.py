@@ -1,10 +1,10 @@
-"""Judge missions with Dask, on threads of this process or on a cluster.
+"""Run tasks with Dask, on threads of this process or on a cluster.
 
-Tasks are pure functions of their arguments, and results are returned in the order of the tasks, so neither the number
-of workers nor the death of a worker changes the result. Workers read the files that a task names; if a worker dies, the
-scheduler runs its tasks again elsewhere. Locally, only threads are started, and none with one worker. Each task uses
-one thread for linear algebra: more threads would compete with the other tasks, and their number would change the order
-of sums, and so the last bits of a result.
+Tasks are pure functions of their arguments, and results keep the order of the tasks. Neither the number of workers nor
+the death of a worker therefore changes the result. Workers read the files that a task names. If a worker dies, the
+scheduler runs its tasks elsewhere. Locally only threads are started, and none for a single worker. Each task uses one
+thread for linear algebra: more threads would compete with other tasks and change the order of sums, and thus the last
+bits of a result.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from threadpoolctl import threadpool_limits
 from pytest_tarl.errors import FleetError, SettingsError
 from pytest_tarl.extras import install_command
 
-REACHED = 10  # s to wait for the scheduler
-RETRIES = 3  # of a task whose worker dies
-AHEAD = 2  # waiting and running tasks for each thread of a cluster, a limit on the memory
-WINDOW = 8  # tasks passed to Dask together for each thread of this process
+REACHED = 10  # maximum seconds to wait for the scheduler
+RETRIES = 3  # maximum retries of a task whose worker dies
+AHEAD = 2  # waiting and running tasks per thread of a cluster, limited to bound the memory
+WINDOW = 8  # tasks passed to Dask together, per thread of this process
 
 Result = TypeVar("Result")
 
 
 class Engine(Protocol):
-    """Runs tasks."""
+    """An engine that runs tasks."""
 
     def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
         """Yield the result of a function for each tuple of arguments, in order.
@@ -44,7 +44,7 @@ class Engine(Protocol):
 
 @dataclass(frozen=True)
 class Local:
-    """Dask's scheduler in this process; it runs a window of tasks at a time, which bounds the memory."""
+    """Dask's scheduler in this process; it runs a limited number of tasks at a time, which bounds the memory."""
 
     workers: int
     threads: ThreadPoolExecutor | None  # None with one worker
@@ -67,13 +67,13 @@ class Local:
 
 @dataclass(frozen=True)
 class Cluster:
-    """A Dask cluster's executor and the number of its threads."""
+    """The executor of a Dask cluster, and the cluster's number of threads."""
 
     executor: Executor
     workers: int
 
     def each(self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]) -> Iterator[Result]:
-        """Yield the results in order, with AHEAD tasks for each thread submitted."""
+        """Yield the results in order; AHEAD tasks per thread are submitted at a time."""
         waiting: deque[Future[Result]] = deque()
         try:
             for one in tasks:
@@ -93,7 +93,10 @@ class Cluster:
 
 
 def _by_one_thread(function: Callable[..., Result], *arguments: Any) -> Result:
-    """Run a task on a cluster's worker; the limit stays, because other threads of the worker may run tasks, too."""
+    """Run a task on a worker of a cluster with one BLAS thread.
+
+    The limit is not lifted afterwards, because other threads of the worker may be running tasks.
+    """
     threadpool_limits(1, user_api="blas")
     return function(*arguments)
 
@@ -114,7 +117,7 @@ def _result(future: Future[Result]) -> Result:
 
 @contextmanager
 def local(workers: int) -> Iterator[Engine]:
-    """Run tasks in this process; outside of tasks, too, linear algebra uses one thread."""
+    """Return an engine for this process; linear algebra outside of tasks uses one thread, too."""
     with threadpool_limits(1, user_api="blas"):
         if workers == 1:
             yield Local(1, None)

@@ -1,7 +1,8 @@
-"""Which groups live in another world than recorded, and since when: the evidence of `tarl watch`, group by group.
+"""Find the groups whose world differs from the recorded one, and since when.
 
-All missions of a group, of all its robots, go through one monitor in the order of their times. A change that is too
-small or too short to be detected in one robot, such as a season at a site, can be detected in all of them together.
+All missions of a group, of all its robots, pass through one monitor in the order of their times, as in `tarl watch`. A
+change that is too small or too short to detect in one robot, such as a season at a site, can be detected in all of them
+together.
 """
 
 from __future__ import annotations

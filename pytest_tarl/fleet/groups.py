@@ -1,4 +1,7 @@
-"""Groups of missions, such as those of one version and site: bounds, verdict and region by the method for one robot."""
+"""Judge groups of missions, such as those of one version and site: bounds, verdict and region.
+
+The method is that of a comparison of one robot with the recording (learning/drift.py).
+"""
 
 from __future__ import annotations
 
@@ -21,13 +24,13 @@ from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell, Sensor
 
-MOST = 1000  # missions of a group that are compared; bounds use all of them
-FEWEST = 2  # missions needed for a verdict
+MOST = 1000  # maximum number of missions to compare; bounds use all of them
+FEWEST = 2  # minimum number of missions for a verdict
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A formula in a group: missions in which it was judged, missions that violate it, and the least robustness."""
+    """A formula in a group: missions that judged it, missions that violate it, and the smallest robustness."""
 
     formula: str
     missions: int
@@ -37,7 +40,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Group:
-    """A group: its values of the columns, missions, robots, bounds, and the verdict if there are enough missions."""
+    """A group of missions: its values of the columns, its bounds, and its verdict if it has enough missions."""
 
     values: tuple[str, ...]
     missions: int
@@ -46,7 +49,7 @@ class Group:
     reward: float  # mean total
     success: Bound
     mean: Bound
-    outside: int  # totals outside the declared range, for which the bound of the mean is not stated as exact
+    outside: int  # number of totals outside the declared range; with any, the bound of the mean is not exact
     compared: int
     verdict: Verdict | None
     region: Region
@@ -106,7 +109,7 @@ FORMULAS = """
 
 
 def _violations(database: Database) -> dict[int, tuple[Judged, ...]]:
-    """Return the formulas that the missions of each group judged."""
+    """Return the results of the formulas in each group."""
     found: dict[int, tuple[Judged, ...]] = {}
     for number, *one in database.names(FORMULAS):
         found[number] = (*found.get(number, ()), Judged(*one))
@@ -149,7 +152,7 @@ def _compared(
     tolerance: float | None,
     seed: int,
 ) -> tuple[int, Difference | None]:
-    """Return the number of missions of a group that were compared, and the difference if they are enough."""
+    """Return how many missions of a group were compared, and the difference if they are enough."""
     if sample.episodes < FEWEST:
         return sample.episodes, None
     return sample.episodes, compare(

@@ -1,7 +1,7 @@
-"""The page of a fleet: one self-contained HTML file, legible with ten thousand robots.
+"""The page of a fleet: one self-contained HTML file that stays readable with ten thousand robots.
 
-The page has parts of the report page (report/page/page.css) and its own map, timeline and table of robots, drawn by
-fleet.js from a JSON document inside. Numbers of robots are stored as columns.
+The page shares styles with the report page (report/page/page.css). fleet.js draws its map, timeline and table of robots
+from an embedded JSON document. The numbers of robots are stored as columns.
 """
 
 from __future__ import annotations
@@ -242,7 +242,7 @@ def _group(one: Group, watched: Robot, changed: bool, vocabulary: Vocabulary) ->
 
 
 def _since(one: Robot) -> tuple[int, float] | None:
-    """Return mission and time of the onset, by the question with more evidence."""
+    """Return the mission and time at which the difference began, for the question with more evidence."""
     if one.status is None:
         return None
     below = lower(one.status)
@@ -264,7 +264,7 @@ def _named(answer: Answer, one: Robot, vocabulary: Vocabulary) -> dict[str, Any]
 
 
 def _differing(answer: Answer, one: Robot) -> tuple[Cell, ...]:
-    """Return the cells of a robot's status, else those of its cluster."""
+    """Return the cells in which a robot differs, from its status or else from its cluster."""
     if one.status is not None and one.status.cells:
         return one.status.cells
     return next((group.cells for group in answer.clusters.found if one.name in group.robots), ())

@@ -1,4 +1,4 @@
-"""`tarl ingest`: add the missions of logs and bags to a data set, each once, even if it is repeated or interrupted."""
+"""`tarl ingest`: add the missions of logs and bags to a data set, each once, even after repeats or interruptions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.monitoring.assembling import valid_time
 from pytest_tarl.patching.reading import read
 
-TOGETHER = 20_000  # missions held in memory until they are written
+TOGETHER = 20_000  # missions are written once this many are held in memory
 PATCH = ".patch"
 REPAIRS_KEEP = ("test", "drift")
 FOLDER, FILE = "{folder}", "{file}"
@@ -51,14 +51,14 @@ class Ingested:
     missions: int = 0
     known: int = 0
     problem: str = ""
-    unjudged: int = 0  # missions without a verdict on each formula of the recording
+    unjudged: int = 0  # number of missions without a verdict on every formula of the recording
     notes: tuple[str, ...] = ()  # notes on the replay of a bag
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
-    """Add the missions of all logs; yield what each of them added once its missions are read.
+    """Add the missions of all logs; yield for each log what it added, once its missions are read.
 
-    Logs that do not fit are left out. Raise FixtureError, FleetError or SettingsError if nothing can be ingested.
+    Logs that do not fit are skipped. Raise FixtureError, FleetError or SettingsError if nothing can be ingested.
     """
     _check(order)
     fixture = load(order.fixture)
@@ -115,7 +115,7 @@ def repair_of(name: str) -> str:
 
 
 def named(order: Order, log: Path) -> str:
-    """Return the name of a log's robot as it is stored."""
+    """Return the name under which a log's robot is stored."""
     name = order.robot.replace(FOLDER, log.resolve().parent.name).replace(FILE, log.stem)
     if not order.salt:
         return name
@@ -136,7 +136,7 @@ def keep_origin(to: Store, given: str, repair: str) -> None:
 
 @dataclass
 class _Writer:
-    """New missions that are not in the data set yet."""
+    """Collect new missions and write them in batches."""
 
     store: Store
     version: str
@@ -148,7 +148,7 @@ class _Writer:
     waiting: int = 0
 
     def add(self, rows: Sequence[Row]) -> int:
-        """Keep the missions that are not in the data set yet; return their number.
+        """Collect the missions that the data set does not hold yet, and return their number.
 
         Raise LogError if the data set has one of them as a mission of another robot.
         """
@@ -167,7 +167,10 @@ class _Writer:
         return added
 
     def holds(self, day: str, mission: int, robot: str) -> bool:
-        """Return whether a robot's mission is stored or waits to be. Raise LogError if it is another robot's."""
+        """Return whether a robot's mission is stored or waits to be written.
+
+        Raise LogError if it belongs to another robot.
+        """
         other = self._held(day).get(mission)
         if other is not None and other != robot:
             raise LogError(
@@ -177,14 +180,14 @@ class _Writer:
         return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
-        """Return the robot of each mission of a day that is in the data set or waits to be written."""
+        """Return the robot of each stored or waiting mission of a day, by the mission's identity."""
         if day not in self.known:
             found = dataset.known(self.store, self.origin.folder, day)
             self.known[day] = dict(found)
         return self.known[day]
 
     def write(self) -> None:
-        """Write the recording, then the waiting missions, those of each day into separate files."""
+        """Write the recording, then the waiting missions, one set of files per day."""
         if self.rows and not self.store.holds(kept := f"recordings/{self.origin.recording}.npz"):
             self.store.write(kept, self.recording)
         for day, rows in sorted(self.rows.items()):

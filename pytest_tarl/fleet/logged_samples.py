@@ -19,14 +19,14 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
 
-BYTES = 8  # bits of a mission's identity, which replaces an episode's seed
+BYTES = 8  # size in bytes of a mission's identity, which takes the place of an episode's seed
 
 
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
-    """Yield start and statistics of each finished mission in a log and its rotated parts that has rewards.
+    """Yield start and statistics of each finished mission with rewards, in a log and its rotated parts.
 
-    The start is in seconds since 1970. A mission that violates a formula of the recording has failed, as such an
-    episode would. Raise LogError if the log does not belong to the recording or has no rewards.
+    The start is in seconds since 1970. A mission that violates a formula of the recording counts as failed. Raise
+    LogError if the log does not belong to the recording or has no rewards.
     """
     plan = plan_of(fixture)
     number = {place.id: n for n, place in enumerate(plan.places)}
@@ -41,7 +41,7 @@ def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]
 
 
 def requirements_of(fixture: Fixture) -> Requirements:
-    """Return the formulas of a recording; none if this Python has no parser for them."""
+    """Return the formulas of a recording, or none if their parser does not support this Python."""
     if fixture.sample.judgements is None:
         return NOTHING_REQUIRED
     sensors = (sensor.name for sensor in fixture.sensors if not sensor.categories)
@@ -62,7 +62,7 @@ def plan_of(fixture: Fixture) -> Plan:
 
 
 def identity(mission: Mission) -> int:
-    """Return a number that is the same for copies of the mission in other files, and for no other mission."""
+    """Return a number that identifies a mission: copies of the mission in other files have the same number."""
     content = json.dumps(
         [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
         ensure_ascii=False,

@@ -1,6 +1,6 @@
-"""`tarl merge`: make one recording of several recordings and logs of robots.
+"""`tarl merge`: merge several recordings and logs of robots into one recording.
 
-Every row of a recording belongs to one episode, so the union of the rows is the recording of all episodes together.
+Every row of a recording belongs to one episode, so the union of the rows is the recording of all episodes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A file, its episodes or missions, and how many of them an earlier file already had."""
+    """A merged file: its number of episodes or missions, and how many of them an earlier file already had."""
 
     path: Path
     episodes: int
@@ -33,9 +33,9 @@ class Part:
 def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture, tuple[Part, ...]]:
     """Return the recording of all episodes and missions, and what each file added.
 
-    A log is read with the sensors and statements of the first recording, or of `fixture`, whose own episodes do not
-    count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot be read or does
-    not fit the others.
+    Logs are read with the sensors and statements of the first recording, or of `fixture`. The episodes of `fixture`
+    itself do not count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot
+    be read or does not fit the others.
     """
     recordings = {path: load(path) for path in files if not _is_log(path)}
     first = fixture or next(iter(recordings), None)
@@ -87,7 +87,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of the episodes; digests of modules that changed in between are left out."""
+    """Return the recording of the episodes, without the digests of modules that differ between recordings."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(
@@ -103,7 +103,7 @@ def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) ->
 def utilities(whole: Sample) -> tuple[Floats, ...]:
     """Return the utility of each taint list, shape (cells, sites): the fixed point of SARSA.
 
-    Several robots have no common order of episodes, so nothing can be learned step by step.
+    Episodes of several robots have no common order, so learning step by step is not possible.
     """
     return tuple(batch(one, len(whole.cells), one.mean_flow) for one in whole.lists)
 
@@ -133,7 +133,7 @@ def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
 
 
 def lines(to: Path, recording: Fixture, parts: Sequence[Part]) -> Iterator[str]:
-    """Yield what was merged."""
+    """Yield lines that say what was merged."""
     for one in parts:
         known = f", {one.known} of them counted before" if one.known else ""
         yield f"  {one.path}: {one.episodes} episodes{known}"

@@ -1,7 +1,7 @@
-"""What a worker computes next to the data: scores of missions, or the transitions of a few of them.
+"""The work of a worker next to the data: compute scores of missions, or read transitions of some missions.
 
-A worker reads the files of its parts itself. It returns one byte for each score of a mission (a bin), and the
-transitions of the missions that are compared with the recording.
+A worker reads the files itself. It returns one byte per score of a mission (a bin), or the transitions of the missions
+to compare with the recording.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ RESULTS = ("mission", "passed", "total", "steps")
 
 @dataclass(frozen=True)
 class Wanted:
-    """The missions of a part that belong to the question: sorted identities, and numbers in the question."""
+    """The selected missions of a part: their sorted identities, and their numbers in the question."""
 
     cells: str  # file of the transitions
     missions: str  # file of the results
@@ -36,13 +36,16 @@ class Wanted:
     numbers: Ints
 
     def only(self, chosen: NDArray[np.bool_]) -> Wanted:
-        """Return some of these missions."""
+        """Return a selection of these missions."""
         return replace(self, identities=self.identities[chosen], numbers=self.numbers[chosen])
 
 
 @dataclass(frozen=True)
 class Transitions:
-    """Rows of transitions, sorted by all columns; `number` is that of the mission, `next_cell` END after the last."""
+    """Rows of transitions, sorted by all columns; `number` is that of the mission.
+
+    `next_cell` is END after the last step.
+    """
 
     number: Ints
     cell: Ints
@@ -58,21 +61,21 @@ class Transitions:
         )
 
     def of(self, numbers: Ints) -> Transitions:
-        """Return those of the missions with the given sorted numbers."""
+        """Return the transitions of the missions with the given sorted numbers."""
         low, high = np.searchsorted(self.number, numbers), np.searchsorted(self.number, numbers, side="right")
         sizes = high - low
         rows = np.repeat(low - np.cumsum(sizes) + sizes, sizes) + np.arange(int(sizes.sum()))
         return Transitions(*(column[rows] for column in vars(self).values()))
 
     def between(self, low: int, high: int) -> Transitions:
-        """Return those of the missions `low` to `high` - 1."""
+        """Return the transitions of the missions `low` to `high` - 1."""
         first, last = np.searchsorted(self.number, (low, high)).tolist()
         return Transitions(*(column[first:last] for column in vars(self).values()))
 
 
 @dataclass(frozen=True)
 class Scored:
-    """Bins of missions, shape (missions, scores), and which missions visited which cells that the recording lacks."""
+    """Bins of missions, shape (missions, scores), and the visits to cells that the recording lacks."""
 
     numbers: Ints
     bins: NDArray[np.int8]
@@ -107,7 +110,7 @@ def scored(where: Store, wanted: Sequence[Wanted], scale: Scale) -> Scored:
 
 
 def transitions(where: Store, wanted: Sequence[Wanted], number: Mapping[str, int]) -> Transitions:
-    """Return the transitions of missions; `number` holds the code of each cell by its name.
+    """Return the transitions of missions; `number` maps the name of each cell to its code.
 
     Raise FleetError if a file cannot be read.
     """
@@ -181,12 +184,12 @@ def watched_chain(chain: Chain, recorded: int) -> Chain:
 
 
 def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> Sample:
-    """Return missions as a sample whose cells have no names."""
+    """Return missions as a sample with unnamed cells."""
     return Sample(((),) * cells, tuple(range(len(passed))), passed, total, steps, (), chain, ())
 
 
 def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Give all cells that the recording lacks the same number, and join transitions that become equal."""
+    """Give all cells that the recording lacks one number, and merge transitions that become equal."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
     if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
@@ -203,7 +206,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
 
 
 def _codes(column: Any, number: Mapping[str, int]) -> Ints:
-    """Return the codes of a column of cells' names; END for null. Those of missions not in question may be -2."""
+    """Return the codes of a column of cell names, with END for null; cells of other missions may be -2."""
     parts = [np.empty(0, np.int64)]
     for chunk in _encoded(column).chunks:
         code = np.array([*(number.get(name, -2) for name in chunk.dictionary.to_pylist()), END], np.int64)
@@ -225,7 +228,7 @@ def _values(column: Any, kind: Any) -> Any:
 
 
 def portions(wanted: Sequence[Wanted], most: int) -> Iterator[list[Wanted]]:
-    """Divide parts into tasks of about `most` missions; leave out parts without missions of the question."""
+    """Divide parts into tasks of about `most` missions; skip parts without selected missions."""
     together: list[Wanted] = []
     for one in wanted:
         if not one.numbers.size:

@@ -22,7 +22,7 @@ from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.sensors import Cell
 
-LOWEST = 10  # missions of one robot listed
+LOWEST = 10  # number of missions listed for one robot
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class Mission:
 
 @dataclass(frozen=True)
 class Answer:
-    """What the data set shows; `left_out` counts missions by the reason why they cannot be compared."""
+    """What the data set shows; `left_out` counts missions that cannot be compared, by the reason."""
 
     question: Question
     fixture: Fixture
     missions: int
-    copies: int  # repeated rows of missions, beyond the first of each
+    copies: int  # number of repeated rows, beyond the first row of each mission
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
     onsets: robots.Robots  # the evidence on each group
@@ -71,7 +71,7 @@ class Answer:
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
     def meets(self, rule: str) -> bool:
-        """Return whether a rule of --fail-if is met."""
+        """Return whether the answer meets a rule of --fail-if."""
         results = {one.verdict.result for one in self.groups if one.verdict is not None}
         return {
             "degraded": "degraded" in results,
@@ -82,7 +82,7 @@ class Answer:
 
 
 def answer(question: Question) -> Answer:
-    """Judge the missions in question. Raise FleetError, FixtureError or SettingsError if there is nothing to judge."""
+    """Judge the selected missions. Raise FleetError, FixtureError or SettingsError if there is nothing to judge."""
     _check(question)
     where = store(question.data)
     parts = dataset.parts(where)
@@ -107,7 +107,7 @@ def answer(question: Question) -> Answer:
 
 
 def _accepted(where: Store, effects: Sequence[repairs.Effect]) -> dict[str, str]:
-    """Return the drift for which each repair was accepted, if its patch named one at ingest."""
+    """Return the drift for which each repair was accepted, if its patch stated one at ingest."""
     found = {}
     for repair in sorted({one.repair for one in effects}):
         path = repair_path(repair)

@@ -1,10 +1,10 @@
-"""The effect of each repair on the missions of each group, against missions without a repair.
+"""The effect of each repair on the missions of each group, compared with missions without a repair.
 
-A roll-out in stages has missions of both kinds at the same time. Missions are compared only within a stratum (one
-group, site and week), so that differences between seasons or sites do not count as an effect (stratification; Cochran
-1968, Biometrics 24:295-313). The effect is the mean of the strata's differences with weights n₁n₀/(n₁ + n₀), those of
-the least variance. Missions of one robot are alike, so the interval is of Tukey's jackknife over robots (Miller 1974,
-Biometrika 61:1-15) with Student's t.
+A staged roll-out has missions of both kinds at the same time. Missions are compared only within a stratum (one group,
+site and week), so differences between seasons or sites do not count as an effect (stratification; Cochran 1968,
+Biometrics 24:295-313). The effect is the weighted mean of the strata's differences; the weights n₁n₀/(n₁ + n₀) minimise
+its variance. Missions of one robot are alike, so the interval is computed by Tukey's jackknife over robots (Miller
+1974, Biometrika 61:1-15) with Student's t.
 """
 
 from __future__ import annotations
@@ -27,9 +27,10 @@ OUTCOMES = ("total", "passed")
 
 @dataclass(frozen=True)
 class Effect:
-    """The effect of a repair in a group; `reward` and `success` are differences per mission, NaN without a stratum.
+    """The effect of a repair in a group; `reward` and `success` are differences per mission.
 
-    `missions` and `robots` count those with and without the repair within the strata that have both.
+    They are NaN if no stratum has both kinds of missions. `missions` and `robots` only count within strata that have
+    both.
     """
 
     repair: str
@@ -137,7 +138,7 @@ def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float
 
 
 def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tuple[float, Bound]:
-    """Return the difference and its bounds, by the values that each robot contributes."""
+    """Return the difference and its bounds, from the values that each robot contributes."""
     if not len(rows.robot):
         return float("nan"), mean_of((), confidence)
     number = int(rows.stratum.max()) + 1

@@ -1,7 +1,7 @@
-"""The residual map of a robot: how much more or less than recorded a visit to each cell earns, and how certain that is.
+"""The residual map of a robot: how much more or less than recorded a visit to each cell earns.
 
-The residual of a visit is that of Bellman's equation for the recorded utility (learning/residuals.py), so it shows the
-cells in which the world changed, not the cells before them.
+Each value has a variance. The residual of a visit is the Bellman residual of the recorded utility
+(learning/residuals.py), so it shows the cells in which the world changed, not the cells before them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FEWEST = 5  # minimum number of missions in a cell for a residual
 
 @dataclass(frozen=True)
 class ResidualMap:
-    """Mean residual of a visit and its variance, by cell of the recording; NaN if too few missions visited it."""
+    """Mean residual of a visit and its variance, by cell of the recording; NaN for cells with too few missions."""
 
     robot: str
     mean: Floats
@@ -58,10 +58,10 @@ def residual_maps(
     world: Designed,
     robots: Sequence[Robot],
 ) -> list[ResidualMap]:
-    """Return the map of each robot's missions since its onset.
+    """Return the map of each robot's missions since its onset, when its difference began.
 
-    A robot with few missions may show too little noise by chance: its variance is at least that of as many recorded
-    visits.
+    A robot with few missions may show too little noise by chance. Its variance is therefore at least that of as many
+    recorded visits.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
     spans = []
@@ -90,7 +90,7 @@ def since(robot: Robot) -> int:
 
 
 def _mean(sample: Sample, model: Model) -> tuple[Floats, Floats, Floats]:
-    """Return mean residual, its variance and the visits, by cell; missions are independent, their steps are not."""
+    """Return mean residual, its variance and the visits, by cell; missions are independent, steps are not."""
     found = residuals(sample, model)
     total = found.move + found.reward
     place = sample.chain.episode * total.shape[1] + sample.chain.cell

@@ -1,11 +1,12 @@
-"""Which robots live in another world than recorded, and since when: the evidence of `tarl watch`, robot by robot.
+"""Find the robots whose world differs from the recorded one, and since when.
 
-Each robot has a monitor of its own. The value of each of its processes after the last mission is an e-value, if the
-number of missions does not depend on their results; it is large if the robot still differs. The running maximum,
-adjusted (monitoring/e_bh.py), is an e-value at any time; it is large if the robot differed at some time. The mean of
-both, averaged over the processes with their shares of α, is an e-value as well. e-BH over the robots keeps the expected
-share of wrongly named robots at or below q, even if they are dependent, so all monitors may start from the same
-recording. For the bounds, the share may be larger by the probability that a stated bound is wrong.
+Each robot has its own monitor, as in `tarl watch`. An e-value measures evidence against a hypothesis: its expectation
+is at most 1 if the hypothesis is true. The last value of each process is an e-value if the number of missions does not
+depend on their results; it is large if the robot still differs. The adjusted running maximum (monitoring/e_bh.py) is an
+e-value at any time; it is large if the robot differed at some time. Their mean, averaged over the processes with their
+shares of α, is an e-value, too. e-BH over the robots keeps the expected share of wrongly named robots at or below q,
+even if robots are dependent. All monitors may therefore start from the same recording. For bounds, the share may be
+larger by the probability that a stated bound is wrong.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ PORTION = 50_000  # missions judged together
 
 @dataclass(frozen=True)
 class Robot:
-    """The evidence on one robot, as log2 of e-values: `world`, missions differ; `bound`, they are below a bound.
+    """The evidence on one robot, as log2 of e-values: `world` that missions differ, `bound` that they violate a bound.
 
-    `status` is None if neither e-value reaches 1/q, the least that e-BH needs to reject a hypothesis.
+    `status` is None if neither e-value reaches 1/q, the minimum for e-BH to reject a hypothesis.
     """
 
     name: str
@@ -121,7 +122,7 @@ def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], 
 
 
 def portions(ends: Ints) -> Iterator[Ints]:
-    """Divide robots, given the number after each one's last mission, into portions of about PORTION missions."""
+    """Divide robots into portions of about PORTION missions; `ends` holds the number after each one's last mission."""
     which = (ends - 1) // PORTION
     for one in np.unique(which).tolist():
         yield ends[which == one]
@@ -134,7 +135,7 @@ def fresh(first: Monitor) -> Monitor:
 
 
 def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, float]:
-    """Return the evidence that missions differ, and that they are below a bound, as log2 of e-values.
+    """Return the evidence that missions differ, and that they violate a bound, as log2 of e-values.
 
     `peak` and `latest` are log2 of the largest and the last evidence of each of a monitor's processes.
     """
@@ -156,6 +157,6 @@ def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: ob
 
 
 def lower(found: Status) -> Evidence | None:
-    """Return the evidence against the bound with the most evidence; None if no bound can be tested."""
+    """Return the evidence against the bound with the most evidence, or None if no bound can be tested."""
     told = [evidence for _, evidence in found.bounds if evidence is not None]
     return max(told, key=lambda evidence: evidence.highest, default=None)

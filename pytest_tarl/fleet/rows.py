@@ -48,7 +48,7 @@ def date(time: float) -> str:
 
 
 def files(rows: Sequence[Row], where: Origin, lists: Sequence[TaintList]) -> tuple[str, dict[str, bytes]]:
-    """Return the name and, by table, the content of the files of some missions, in any order."""
+    """Return the names and contents of the files of some missions, by table; the order of the missions is arbitrary."""
     rows = sorted(rows, key=lambda row: (row.robot, row.time, row.mission))
     tables = {"missions": _missions(rows), "cells": _cells(rows), "statements": _statements(rows, lists)}
     about = metadata(where)

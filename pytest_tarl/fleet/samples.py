@@ -1,4 +1,4 @@
-"""Missions as samples for the comparison, with the transitions that workers return."""
+"""Missions as samples for the comparison, built from the transitions that workers return."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ PORTION = 100_000  # missions read together
 def groups(
     database: Database, where: Store, engine: Engine, cells: tuple[Cell, ...], count: int, most: int
 ) -> Iterator[Sample]:
-    """Yield at most `most` missions of each of `count` groups: those with the smallest identities (random digests)."""
+    """Yield at most `most` missions of each of `count` groups.
+
+    They are those with the smallest identities, which are digests and thus select at random.
+    """
     database.run(COMPARED, most)
     sizes = database.columns(
         "SELECT count(*) AS size FROM compared GROUP BY group_number ORDER BY group_number"

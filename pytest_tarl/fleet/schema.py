@@ -69,7 +69,10 @@ SCHEMAS = {
 
 @dataclass(frozen=True)
 class Origin:
-    """The recording that missions were ingested with; with equal test, sensors and statements, cells are comparable."""
+    """The recording with which missions were ingested.
+
+    Cells are comparable between origins with equal test, sensors and statements.
+    """
 
     test: str
     sensors: str  # digest of the sensors and their bins
@@ -77,7 +80,7 @@ class Origin:
     recording: str  # digest of the file
 
     def fits(self, other: Origin) -> bool:
-        """Return whether missions of both can be counted together."""
+        """Return whether missions of both origins can be counted together."""
         return (self.test, self.sensors, self.statements) == (other.test, other.sensors, other.statements)
 
     @property
@@ -98,7 +101,7 @@ def origin(fixture: Fixture, content: bytes) -> Origin:
 
 
 def metadata(where: Origin) -> dict[str, str]:
-    """Return the metadata of a file."""
+    """Return the metadata that a file stores about its origin."""
     return {f"{PREFIX}schema": str(SCHEMA_VERSION), **{f"{PREFIX}{k}": v for k, v in asdict(where).items()}}
 
 
@@ -108,7 +111,7 @@ def partition(where: Origin, version: str, date: str) -> str:
 
 
 def repair_path(repair: str) -> str:
-    """Return the file of a repair: what its patch says of the test and drift for which it was accepted."""
+    """Return the path of a repair's file, which names the test and drift for which its patch was accepted."""
     return f"repairs/{quote(repair, safe='')}.json"
 
 
@@ -118,5 +121,5 @@ def name_of(cell: Cell) -> str:
 
 
 def cell_of(name: str) -> Cell:
-    """Return the cell that a text stands for. Raise ValueError if it stands for none."""
+    """Return the cell with this name. Raise ValueError if the text is not a name of a cell."""
     return tuple(int(one) for one in name.split(",")) if name else ()

@@ -1,4 +1,4 @@
-"""The scores of all missions of the question: a byte each, computed by the workers that read the rows."""
+"""The scores of all selected missions, one byte each; workers that read the rows compute them."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ PORTION = 25_000  # missions scored together
 class Scores:
     """Missions in some order: results, start in seconds since 1970, and bins of scores, shape (missions, scores).
 
-    `new_mission` and `new_cell` have a row for each cell that a mission visited and the recording lacks: the place of
-    the mission, in order, and the cell as an index into `others`.
+    `new_mission` and `new_cell` have one row for each visit of a mission to a cell that the recording lacks: the index
+    of the mission, ascending, and the index of the cell in `others`.
     """
 
     passed: NDArray[np.bool_]

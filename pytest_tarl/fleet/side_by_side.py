@@ -1,7 +1,7 @@
-"""Watch many robots side by side; the state of each is bit by bit that of a monitor of its own.
+"""Watch many robots side by side; each gets exactly the state that its own monitor would have.
 
-All robots begin with the same pool, and the numbers that break ties depend only on a mission's number, so the n-th
-missions of many robots are judged in one step.
+All robots start with the same pool, and the numbers that break ties only depend on a mission's number. The n-th
+missions of many robots are therefore judged in one step.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pytest_tarl.monitoring import conformal, judging
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
-COLUMNS = 512  # processes judged together: so many that their stakes fit into the processor's cache
+COLUMNS = 512  # number of processes judged together; their stakes fit into the processor's cache
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Watched:
         return self._by_robot(self.processes.peak)
 
     def latest(self) -> Floats:
-        """Return log2 of their evidence after the last mission, same shape."""
+        """Return log2 of their evidence after the last mission, shape (robots, processes)."""
         return self._by_robot(log_evidence(self.processes))
 
     def _by_robot(self, columns: Floats) -> Floats:
@@ -57,10 +57,10 @@ class Watched:
 def watched(
     first: Monitor, scores: Scores, ends: Ints, some: Ints | None = None, onsets: bool = True
 ) -> Iterator[Watched]:
-    """Judge the missions of robots; those of robot n end before `ends[n]`. Yield robots with similar numbers together.
+    """Judge the missions of robots, and yield robots with similar numbers of missions together.
 
-    `first` is a monitor without missions; `some` are the numbers of the robots to judge (default: all). Without
-    `onsets`, the start of a difference is not kept, which is faster.
+    The missions of robot n end before `ends[n]`. `first` is a monitor without missions. `some` are the numbers of the
+    robots to judge (default: all). Without `onsets`, the start of a difference is not tracked, which is faster.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins

@@ -57,7 +57,7 @@ class Store:
         return content
 
     def holds(self, path: str) -> bool:
-        """Return whether a file is there. Raise FleetError if the store does not answer."""
+        """Return whether a file exists. Raise FleetError if the store does not answer."""
         try:
             return bool(self.fs.exists(f"{self.root}/{path}"))
         except Exception as problem:
@@ -68,11 +68,11 @@ class Store:
         return self.fs.open(f"{self.root}/{path}", "rb")
 
     def address(self, path: str) -> str:
-        """Return the address by which DuckDB opens a file."""
+        """Return the address at which DuckDB opens a file."""
         return f"{self.root}/{path}" if self.protocol == "file" else f"{self.protocol}://{self.root}/{path}"
 
     def shown(self, path: str) -> str:
-        """Return a file as shown to the user."""
+        """Return the name of a file for messages."""
         return self.address(path)
 
 

@@ -55,7 +55,7 @@ def lines(answer: Answer) -> Iterator[str]:
 
 
 def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
-    """Yield the groups whose missions changed in the course of time, and when."""
+    """Yield the groups whose missions changed over time, and when."""
     found = answer.onsets
     if not answer.question.by:
         return
@@ -178,7 +178,7 @@ def _counted(count: int, what: str) -> str:
 
 
 def notes(answer: Answer) -> Iterator[str]:
-    """Yield the conditions of the numbers."""
+    """Yield the conditions under which the numbers hold."""
     confidence = answer.groups[0].success.confidence
     yield (
         f"note: ranges are one-sided bounds, each at {100 * confidence:g} %; p is corrected for "

@@ -1,1 +1,4 @@
-"""Requirements in signal temporal logic over named signals; rtamt is imported only when a formula is used."""
+"""Requirements as formulas of signal temporal logic over named signals.
+
+The package rtamt is imported only when a formula is used.
+"""

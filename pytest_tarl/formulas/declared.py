@@ -1,4 +1,4 @@
-"""Read and check the marker's arguments on formulas: signals, requirements, and reward by robustness."""
+"""Read and check the marker's arguments for formulas: signals, requirements, and rewards from robustness."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from pytest_tarl.sensors import Sensor
 
 ARGUMENTS = ("requires", "signals", "reward", "robustness_cap", "lasts")
 CAP = 100.0
-LONGEST = 1e9  # s, upper bound on an episode's length
+LONGEST = 1e9  # upper limit of an episode's length in s
 
 
 @dataclass(frozen=True)
 class Requirements:
     """The formulas of a test.
 
-    `cap` bounds the reward if the reward is by robustness; `lasts` is the longest episode in virtual seconds.
+    `cap` limits the reward if it comes from robustness; otherwise it is None. `lasts` is the longest episode in virtual
+    seconds.
     """
 
     signals: tuple[Signal, ...] = ()
@@ -46,11 +47,10 @@ NOTHING_REQUIRED = Requirements()
 def requirements(
     where: str, given: Mapping[str, Any], sensors: Sequence[Sensor], said: Said = NOTHING_SAID
 ) -> Requirements:
-    """Check the marker's arguments on formulas; `said` holds the formulas and signals found in the test's source.
+    """Check the marker's arguments for formulas; `said` holds the names found in the test's source.
 
-    If a formula uses a name that is neither a sensor nor a signal, the test must give it by `tarl.observe`.
-
-    Raises SettingsError.
+    A formula may name sensors, declared signals, and signals that the test sets by `tarl.observe`. Raise SettingsError
+    for invalid arguments.
     """
     declared = _signals(where, given.get("signals", ()), sensors)
     signals = (*declared, *_observed(given.get("requires", ()), said, [*sensors, *declared]))

@@ -29,10 +29,9 @@ class EpisodeFormulas:
             self._judge.give(name, value, self._now())
 
     def require(self, formula: str, *, begun: bool) -> None:
-        """Add a requirement; `begun` tells whether the episode has begun.
+        """Add a requirement; `begun` says whether the episode has begun.
 
-        Raises SettingsError if the formula cannot be used, or if the episode has begun without recording
-        signals.
+        Raise SettingsError if the formula cannot be used, or if the episode has begun without recording signals.
         """
         check_texts("tarl.require", formula, self._sensors)
         if self._judge is None:
@@ -54,8 +53,8 @@ class EpisodeFormulas:
     def conclude(self, *, whole: bool, alone: bool) -> None:
         """Judge the formulas after the test body has ended; only a complete (`whole`) episode can violate them.
 
-        `alone` means a plain run of one episode, which must be long enough for every formula. Raise
-        RequirementError if one is violated.
+        `alone` means a plain run of one episode, which must be long enough for every formula. Raise RequirementError if
+        a formula is violated.
         """
         if self._judge is None:
             return
@@ -75,7 +74,7 @@ class EpisodeFormulas:
             raise RequirementError(violation)
 
     def rewards(self) -> list[float] | None:
-        """Return the reward of each step, shape (steps,), by the formulas; None if the test gives rewards."""
+        """Return the reward that formulas give to each step, shape (steps,), or None if the test gives rewards."""
         if not self._requirements.rewarding or self._judge is None:
             return None
         return self._judge.rewards(self._now(), self._requirements.cap)

@@ -48,7 +48,7 @@ _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, 
 
 
 class ReadingError(Exception):
-    """A text is not a formula; the message gives the reason, without a full stop."""
+    """A text is not a formula; the message is the reason, without a full stop."""
 
 
 class _Strict(ErrorListener):  # type: ignore[misc]
@@ -71,7 +71,7 @@ def words(text: str) -> tuple[list[str], list[str]]:
 
 
 def tree(text: str, names: Sequence[str]) -> Any:
-    """Parse a formula over those names into a tree of the connectives in `semantics`. Raises ReadingError."""
+    """Parse a formula over the given names into a tree of the connectives in `semantics`. Raise ReadingError."""
     ast = StlAst()
     for name in names:
         ast.declare_var(name, "float")
@@ -90,7 +90,7 @@ def tree(text: str, names: Sequence[str]) -> Any:
 
 
 def nodes(node: Any) -> Iterator[Any]:
-    """Yield a node and all below it."""
+    """Yield a node and all its descendants."""
     yield node
     for child in node.children:
         yield from nodes(child)
@@ -124,7 +124,7 @@ def _reason(text: str, problem: str) -> str:
 
 
 def _connected(node: AbstractNode) -> Any:
-    """Check a tree and expand iff and xor into other connectives. Raises ReadingError."""
+    """Check a tree, and express iff and xor by other connectives. Raise ReadingError."""
     if isinstance(node, COUNTING):
         raise ReadingError(
             "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "
@@ -150,7 +150,7 @@ def _check(node: Any) -> None:
 
 
 def _numeric(node: Any) -> Any:
-    """Return an atom. Raise ReadingError if it compares formulas or names no signal."""
+    """Return the atom. Raise ReadingError if it compares formulas or names no signal."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
         raise ReadingError("it compares or computes with a formula: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):

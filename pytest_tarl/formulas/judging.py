@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from pytest_tarl.formulas.robustness import Course
 
 LARGEST = 1e9  # robustness is clipped to ± this, so that an infinite laser range stays finite
-NEGLIGIBLE = 1e-12  # margins below this are shown as 0
+NEGLIGIBLE = 1e-12  # margins smaller than this are shown as 0
 
 
 class Judged(NamedTuple):
-    """The verdict on one formula: its robustness, above 0 if it holds, and the time in s when it was lost.
+    """The result of one formula: its robustness, which is above 0 if it holds, and the time in s when it was lost.
 
-    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if the formula was not
+    Robustness is NaN if the episode ended before the formula could be judged. `lost` is NaN if the formula was not
     violated.
     """
 
@@ -57,12 +57,12 @@ class Judge:
             self.formulas.append(added)
 
     def conclude(self, end: int) -> tuple[Judged, ...]:
-        """Judge all formulas. Raise RecordingError if a signal was never given or no time has passed."""
+        """Judge all formulas. Raise RecordingError if a signal never had a value or no time has passed."""
         self._check(end)
         return tuple(self._judged(one, end) for one in self.formulas)
 
     def unjudged(self, end: int) -> str:
-        """Return a sentence about a formula for which the episode was too short; empty if there is none."""
+        """Return a sentence about a formula for which the episode was too short, or an empty text."""
         from pytest_tarl.formulas.reach import unjudged
 
         for one in self.formulas:
@@ -75,10 +75,10 @@ class Judge:
         return ""
 
     def rewards(self, end: int, cap: float) -> list[float]:
-        """Return the reward of each step, shape (steps,): the change of the least robustness so far.
+        """Return the reward of each step, shape (steps,): the change of the smallest robustness so far.
 
-        The robustness is clipped to ±cap. The rewards add up to its value at the end of the episode; an episode that
-        ended before its signals were known earns -cap in total.
+        The robustness is clipped to ±cap. The rewards sum to its value at the end of the episode. An episode that ends
+        before its signals are known earns -cap in total.
         """
         ends = [*self.steps[:-1], end] if self.steps else []
         if not ends:
@@ -93,7 +93,7 @@ class Judge:
         return [after - before for before, after in zip([0.0, *capped], capped, strict=False)]
 
     def violation(self, judged: Sequence[Judged]) -> str:
-        """Describe the violated formulas, the earliest violation in the first line; empty if all hold."""
+        """Describe the violated formulas, with the earliest violation first; return an empty text if all hold."""
         broken = sorted((one for one in judged if one.violated), key=lambda one: one.lost)
         return "\n".join(self._sentence(one) for one in broken)
 

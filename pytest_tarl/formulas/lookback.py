@@ -1,4 +1,4 @@
-"""Evaluate formulas of finished missions from the logged changes of signals."""
+"""Evaluate formulas for finished missions, from the changes of signals in a log."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytest_tarl.formulas.signals import NANOSECONDS
 
 @dataclass
 class Followed:
-    """The signals of one mission, collected from its log records; times in seconds since it began."""
+    """The signals of one mission, collected from its log records; times are in seconds since it began."""
 
     changes: list[tuple[float, str, float]] = field(default_factory=list)  # (time, name, new value)
     times: list[float] = field(default_factory=list)  # end time of each step
@@ -30,7 +30,7 @@ class Followed:
 
 @dataclass(frozen=True)
 class LookedBack:
-    """The verdicts on a mission's formulas; `rewards` only if the marker sets reward="robustness"."""
+    """The results of a mission's formulas; `rewards` is set only if the marker sets reward="robustness"."""
 
     judged: tuple[Judged, ...] = ()
     violation: str = ""
@@ -40,7 +40,7 @@ class LookedBack:
 def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple[Formula, ...]:
     """Return the formulas whose signals are in every mission's log.
 
-    Raise LogError if the reward is by robustness and a formula is missing.
+    Raise LogError if rewards come from robustness and a signal of a formula is missing.
     """
     held = [{name for _, name, _ in one.changes} for one in missions if one.lasted]
     common = set.intersection(*held) if held and len(held) == len(missions) else set()
@@ -55,7 +55,7 @@ def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple
 
 
 def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
-    """Evaluate the formulas of a mission, as for an episode."""
+    """Evaluate the formulas of a mission as those of an episode are evaluated."""
     if not known or not mission.lasted:
         return LookedBack()
     judge = Judge(requirements.names, known)

@@ -1,4 +1,4 @@
-"""Parse and check the formulas of a marker or of `tarl.require`; report mistakes in a sentence."""
+"""Parse and check the formulas of a marker or of `tarl.require`; report each mistake in one sentence."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class Formula:
 
 
 def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SAID) -> Formula:
-    """Parse a formula over those signals. Raises SettingsError, whose message begins with `where`.
+    """Parse a formula over the given signals. Raise SettingsError, whose message begins with `where`.
 
-    `said` holds the names that the test's source observes, for suggestions in the message on an unknown name.
+    `said` holds the names that the test's source observes, for suggestions in the message about an unknown name.
     """
     if not isinstance(text, str) or not text.strip():
         raise SettingsError(f"{where}: a formula is a string {EXAMPLE}, got {text!r}.")

@@ -1,4 +1,7 @@
-"""Robustness of a formula over an episode: at its end, after every step, and the instant when it was lost."""
+"""Compute the robustness of a formula over an episode, and the instant when the formula was lost.
+
+Robustness is the margin by which a formula holds; it is negative if the formula is violated.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ FARTHEST = 1e308  # bound on the unknown future value of an atom
 
 @dataclass(frozen=True)
 class Course:
-    """A formula and the values of its atoms over an episode."""
+    """A formula and the values of its atoms (comparisons) over an episode."""
 
     formula: Formula
     values: Values
@@ -58,21 +61,20 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
 
 
 def robustness(course: Course, end: int) -> float:
-    """Return the robustness of a formula on the course up to an instant; above 0 it is satisfied."""
+    """Return the robustness of a formula on the course up to an instant; above 0 the formula is satisfied."""
     samples = Skeleton(course.until(end).values, end).visit(course.formula.tree)
     return float(samples[0][1])
 
 
 def running(course: Course, ends: Sequence[int]) -> list[float]:
-    """Return the robustness on the course up to each of the instants, which are in ascending order."""
+    """Return the robustness on the course up to each of the given ascending instants."""
     return _running(course, course.formula.tree, ends)
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first of the instants after which no future can satisfy the formula; None if some future can.
+    """Return the first instant after which no future can satisfy the formula; None if it can still be satisfied.
 
-    The result is never too early. It can be late where atoms depend on each other, since each is bounded
-    alone.
+    The result is never too early. It can be late if atoms depend on each other, because each is bounded alone.
     """
     low, high = 0, len(instants)
     while low < high:
@@ -93,7 +95,7 @@ def _hopeless(course: Course, now: int) -> bool:
 
 
 def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Samples]) -> Any:
-    """Return a copy of a tree whose atoms take the most favourable values after `now`."""
+    """Return a copy of a tree whose atoms have the most favourable values after `now`."""
     copy = _copied(node)
     if not isinstance(node, CONNECTIVES):
         values[id(copy)] = [*known[id(node)], [now + 1, sign * FARTHEST]]
@@ -108,7 +110,7 @@ def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Sa
 
 
 def _copied(node: Any) -> Any:
-    """Copy a node without its children, so that an atom used in two places gets a value in each."""
+    """Copy a node without its children, so that an atom used twice can have two values."""
     copied = object.__new__(type(node))
     copied.__dict__.update(node.__dict__)
     return copied
@@ -117,7 +119,8 @@ def _copied(node: Any) -> Any:
 def _running(course: Course, node: Any, ends: Sequence[int]) -> list[float]:
     """Return the robustness of a node at each instant.
 
-    Always and eventually over operands that do not look ahead are computed incrementally, all others from scratch.
+    `always` and `eventually` over operands that do not look ahead are computed incrementally, all other nodes from
+    scratch.
     """
     if isinstance(node, BOOLEAN):
         parts = [_running(course, child, ends) for child in operands(node)]
@@ -139,7 +142,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return the running extreme of the values in a window after the beginning, one for each instant."""
+    """Return for each instant the largest (or smallest) value so far within a window after the beginning."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 

@@ -1,4 +1,4 @@
-"""Formulas and signals found in a test's source, outside its marker."""
+"""Find formulas and signals in a test's source outside its marker."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Said:
-    """Literal names in calls of `tarl.observe`, and literal texts in calls of `tarl.require`.
+    """The literal names in calls of `tarl.observe`, and the literal texts in calls of `tarl.require`.
 
-    `computed` tells whether some observed name is computed, `requires` whether the test calls tarl.require.
+    `computed` says whether some observed name is computed, `requires` whether the test calls tarl.require.
     """
 
     observed: tuple[str, ...] = ()

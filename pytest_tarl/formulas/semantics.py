@@ -1,13 +1,12 @@
 """Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
-Time is counted in whole nanoseconds, as on the virtual clock. Signals are constant from one change to the
-next, and so is every subformula. Where a window reaches beyond the known part of an episode, a subformula
-keeps its last value, and before the beginning its first; so values are finite wherever signals are.
+Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. If a
+window extends past the known part of an episode, a subformula keeps its last value there. Before the beginning, it has
+its first value. Values are therefore finite wherever signals are.
 
-Differences from rtamt 0.4 in dense time: `until` and `since` do not require the left side at the instant of
-the right one, as in discrete time; a comparison at equality is slightly positive if it holds and slightly
-negative if not (`TRUTH`); an empty window is not infinite; units of bounds are converted in the right
-direction.
+The corrections of rtamt 0.4 in dense time are the following. `until` and `since` do not require the left side at the
+instant of the right side, as in discrete time. A comparison at equality is slightly positive if it holds and slightly
+negative otherwise (`TRUTH`). An empty window is not infinite. Units of bounds are converted in the right direction.
 """
 
 from __future__ import annotations
@@ -92,7 +91,10 @@ class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
 
 
 class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
-    """Evaluate the connectives of a formula; its atoms' samples are given by id(node), known up to `end` (ns)."""
+    """Evaluate the connectives of a formula.
+
+    The samples of its atoms are given by id(node) and known up to `end` (ns).
+    """
 
     def __init__(self, atoms: Mapping[int, Samples], end: float) -> None:
         self._atoms = atoms
@@ -112,11 +114,14 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return _until(*self._both(node))
 
     def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the mirror image of until."""
+        """Return `until` mirrored in time."""
         return _since(*self._both(node))
 
     def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return until with a window: left holds up to the window's begin, then until holds within the window."""
+        """Return `until` with a window.
+
+        The left side holds up to the start of the window, and `until` holds within the window.
+        """
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(
             dense.eventually_timed_operation(right, 0, end - begin), _until(left, right)
@@ -127,7 +132,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return dense.and_operation(held, dense.eventually_timed_operation(within, begin, begin))  # type: ignore[no-any-return]
 
     def visitTimedSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the mirror image of until with a window."""
+        """Return `until` with a window, mirrored in time."""
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(_once(right, 0, end - begin), _since(left, right))
         if not begin:
@@ -140,7 +145,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return _once(self.visit(operands(node)[0]), *bounds(node))
 
     def visitTimedHistorically(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the least value in a window of the past."""
+        """Return the smallest value in a window of the past."""
         sample, (begin, end) = self.visit(operands(node)[0]), bounds(node)
         return _begun(dense.historically_timed_operation(sample, begin, end), sample)
 
@@ -180,5 +185,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Use the operand's first value where a window lies wholly before the beginning; rtamt gives infinity there."""
+    """Use the operand's first value where a window lies wholly before the beginning; rtamt uses infinity there."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

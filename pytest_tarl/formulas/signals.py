@@ -19,8 +19,9 @@ Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rta
 class Signal:
     """A number for formulas that is not a sensor.
 
-    With `topic` and `field` (a dotted path, or a function of the message), it is read from every message on
-    the topic, including those that the node publishes. Without them the test sets it: `tarl.observe(gap=…)`.
+    If `topic` and `field` are given, the number is read from every message on the topic, including messages that the
+    node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number:
+    `tarl.observe(gap=…)`.
     """
 
     name: str
@@ -55,16 +56,16 @@ def stored_signal(signal: Signal) -> Signal:
 
 
 class Timeline:
-    """The values of all signals over an episode; times in virtual ns since it began."""
+    """The values of all signals over an episode; times are in virtual ns since it began."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self._times: dict[str, list[int]] = {name: [] for name in names}
         self._values: dict[str, list[float]] = {name: [] for name in self._times}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Set a signal from an instant on; the last of several values at one instant counts, NaN is ignored.
+        """Set a signal from an instant on; the last of several values at one instant counts, and NaN is ignored.
 
-        Raises SettingsError if the value is not a number.
+        Raise SettingsError if the value is not a number.
         """
         number = signal_value(name, value)
         if math.isnan(number):
@@ -104,7 +105,7 @@ class Timeline:
 
 
 def signal_value(name: str, value: Any) -> float:
-    """Return a value as a float, booleans as 1 and -1. Raise SettingsError if it is not a number."""
+    """Return a value as a float, with booleans as 1 and -1. Raise SettingsError if it is not a number."""
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
         return 1.0 if value else -1.0
     number = as_number(value)

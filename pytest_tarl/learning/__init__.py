@@ -1,1 +1,1 @@
-"""Learn from traces: statistics, utility, recordings, comparison, slices."""
+"""Learn from recorded episodes: statistics, utility, recordings, comparison of worlds, ranking of code."""

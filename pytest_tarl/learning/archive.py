@@ -1,4 +1,4 @@
-"""Read arrays from an untrusted `.npz` file: bounded in size, numbers only, no pickle."""
+"""Read arrays of numbers from an untrusted `.npz` file, with limits on their size and without pickle."""
 
 from __future__ import annotations
 
@@ -14,26 +14,27 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # unpacked bytes allowed for every file
-RATIO = 100  # further unpacked bytes allowed per byte of the file; recordings take 2 to 20
-NEEDED = 9  # bytes of memory for each unpacked one while a recording is read (benchmarks/limits.py, case recording)
-KINDS = "biuf"  # booleans and numbers
+FREE = 256_000_000  # unpacked bytes that any file may have
+RATIO = 100  # unpacked bytes allowed beyond FREE, per byte of the file; recordings need 2 to 20
+# bytes of memory per unpacked byte while a recording is read (benchmarks/limits.py, case recording)
+NEEDED = 9
+KINDS = "biuf"  # numpy kinds: booleans, integers and floats
 ENDING = ".npy"
 
 
 class DamagedError(ValueError):
-    """An archive is not a valid recording; the argument is a clause that says why."""
+    """An archive is not a valid recording; the argument is a clause that gives the reason."""
 
 
 class TooLargeError(ValueError):
-    """There is too little memory to read an archive; the argument is a clause that says how much it needs."""
+    """There is too little memory to read an archive; the argument is a clause that states what is needed."""
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name, in the shapes stated in the file.
+    """Return the arrays by name, in the shapes that the file states.
 
-    Raises TooLargeError, before anything is unpacked, and DamagedError; damaged zip and npy headers raise further
-    exceptions.
+    Raise TooLargeError before unpacking if memory is short, and DamagedError if the archive is not valid. Damaged zip
+    and npy headers raise other exceptions.
     """
     with ZipFile(io.BytesIO(content)) as archive:
         members = archive.infolist()
@@ -54,7 +55,10 @@ def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
 
 
 def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -> NDArray[Any]:
-    """Return an array. Raise DamagedError if it is missing or has another shape; None stands for any length."""
+    """Return an array; None in `shape` allows any length.
+
+    Raise DamagedError if the array is missing or has another shape.
+    """
     found = arrays.get(name)
     if found is None:
         raise DamagedError(f"it has no column {name!r}")

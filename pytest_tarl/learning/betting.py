@@ -1,9 +1,10 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
-Each episode is a bet against the claim that it is not. If the claim is true, a bet that always stakes a fixed share of
-its wealth ever multiplies it by 1/risk with probability at most `risk`, for any distribution of totals and any number
-of looks (Ville). Two bets share the wealth: a bold one, which wins soon if no episode is bad, and a careful one, which
-survives a few bad ones. Any mixture of such bets keeps the risk.
+Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes a fixed share of its wealth
+each time. If the claim is true, the probability that the wealth reaches 1/risk times its start at any time is at most
+`risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
+mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
+bad episodes.
 """
 
 from __future__ import annotations
@@ -15,18 +16,19 @@ from statistics import fmean, variance
 
 from pytest_tarl.learning.bounds import mean_of
 
-BOLD, CAREFUL = 0.95, 0.5  # shares lost in the worst possible episode
-OF_BOLD = 0.9  # share of the wealth that the bold bet begins with: of 200 repairs that lose 3 % and never fail, 197 are
-# shown to be right, where half of the wealth shows 93; those that fail seldom are shown as often
-DOUBT = 1.5  # factor on the variance estimated from few episodes
-CERTAIN = 0.005  # approximate risk of refusing early although the mean is above the limit
+BOLD, CAREFUL = 0.95, 0.5  # shares of the wealth that each bet may lose in the worst possible episode
+# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9 accepts 197 and
+# 0.5 accepts 93. Correct repairs that seldom fail are accepted equally often with both.
+OF_BOLD = 0.9
+DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes
+CERTAIN = 0.005  # approximate probability of stopping early although the mean is above the limit
 
 
 @dataclass(frozen=True, slots=True)
 class Bet:
-    """Bets that the mean difference is above `-margin`; smaller differences than `least` are raised to it.
+    """Bets that the mean difference is above `-margin`.
 
-    `stakes` are per unit of reward.
+    Differences below `least` are raised to it. `stakes` are per unit of reward.
     """
 
     margin: float
@@ -35,11 +37,11 @@ class Bet:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Return the share of the wealth that each stake begins with."""
+        """Return the initial share of the wealth of each stake."""
         return (OF_BOLD, 1.0 - OF_BOLD) if len(self.stakes) > 1 else (1.0,)
 
     def wealth(self, differences: Sequence[float]) -> float:
-        """Return the logarithm of the wealth that started as 1; -inf if all was lost."""
+        """Return the logarithm of the wealth, which starts at 1; -inf if everything is lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
         if most == -inf:
@@ -47,11 +49,11 @@ class Bet:
         return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
     def powerless(self, episodes: int, risk: float) -> bool:
-        """Return whether the bet cannot be won even if so many episodes lose nothing."""
+        """Return whether the bet cannot be won even by `episodes` episodes without any loss."""
         return self.wealth([0.0] * episodes) < -log(risk)
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
-        """Return whether the bet cannot be won with `left` more episodes, even at an optimistic mean."""
+        """Return whether `left` more episodes are unlikely to win the bet, even at an optimistic mean."""
         counted = [max(one, self.least) for one in differences]
         best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:
@@ -61,7 +63,10 @@ class Bet:
 
 
 def bet(margin: float, least: float, known: Sequence[float]) -> Bet:
-    """Return bets that grow fast if differences are as in `known`, shape (episodes,), which the test must not reuse."""
+    """Return bets that grow fast if future differences resemble `known`, shape (episodes,).
+
+    The test must not use the `known` differences again, because the stakes depend on them.
+    """
     counted = [max(one, least) for one in known]
     spread = DOUBT * variance(counted) if len(counted) > 1 else 0.0
     gap = max(fmean(counted) + margin, margin / 4)
@@ -76,6 +81,6 @@ def _grown(stake: float, differences: Sequence[float], margin: float, least: flo
 
 
 def _bounded(stake: float, margin: float, least: float, share: float) -> float:
-    """Return a stake that loses at most this share of the wealth in the worst episode."""
+    """Return the stake, reduced to lose at most `share` of the wealth in the worst episode."""
     deepest = -least - margin
     return stake if deepest <= 0.0 else min(stake, share / deepest)

@@ -1,4 +1,4 @@
-"""Learn the bins of a sensor as quantiles of its values, so that every bin holds about as many values."""
+"""Learn the bins of a sensor as quantiles of its values, so that all bins hold about equally many values."""
 
 from __future__ import annotations
 
@@ -10,18 +10,24 @@ import numpy as np
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.sensors import Sensor
 
-DIGITS = 4  # digits of the values' spread to which edges are rounded
+DIGITS = 4  # edges are rounded to this many digits of the range of the values
 
 
 def learned_edges(
     sensors: Iterable[Sensor], read: Mapping[str, Sequence[float]]
 ) -> dict[str, tuple[float, ...]]:
-    """Return the edges of every sensor that has bins to learn, given each sensor's values."""
+    """Return the edges of each sensor whose bins are to be learned; `read` holds the values by sensor.
+
+    Raise RecordingError if a sensor read nothing or always the same value.
+    """
     return {s.name: quantiles(s.name, read.get(s.name, ()), s.bins or 1) for s in sensors if s.to_learn}
 
 
 def quantiles(name: str, values: Sequence[float], bins: int) -> tuple[float, ...]:
-    """Return increasing edges of at most `bins` bins. Raise RecordingError if the values are all the same."""
+    """Return ascending edges of at most `bins` bins.
+
+    Raise RecordingError if there is no value or all values are equal.
+    """
     known = np.array([value for value in values if math.isfinite(value)])
     spread = float(np.ptp(known)) if known.size else 0.0
     if not spread:

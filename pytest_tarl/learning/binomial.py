@@ -1,4 +1,4 @@
-"""Binomial probabilities, by their exact sums."""
+"""Compute binomial probabilities by exact sums."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.learning.tables import Floats
 
 
 class BinomialTail:
-    """P(Bin(n, p) ≤ k) as a function of p, by its exact sum."""
+    """The function p ↦ P(Bin(n, p) ≤ k), computed as an exact sum."""
 
     def __init__(self, k: int, n: int) -> None:
         self._reached = np.arange(k + 1)
@@ -18,7 +18,7 @@ class BinomialTail:
         self._ways = log_choose(n)[: k + 1]
 
     def __call__(self, p: float) -> float:
-        """Return the probability."""
+        """Return the probability for this p."""
         if p <= 0.0 or not self._reached.size:
             return 1.0 if self._reached.size else 0.0
         if p >= 1.0:
@@ -29,7 +29,7 @@ class BinomialTail:
 
 
 def probabilities(n: int, p: float) -> Floats:
-    """Return the probabilities of 0 to n, shape (n + 1,)."""
+    """Return the probabilities of 0 to n successes, shape (n + 1,)."""
     reached = np.arange(n + 1)
     found: Floats = np.exp(log_choose(n) + reached * log(p) + (n - reached) * log1p(-p))
     return found

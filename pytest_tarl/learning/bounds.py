@@ -1,7 +1,7 @@
-"""Bounds on future episodes of a world: success rate, mean and quantiles of the total reward, loss.
+"""Compute bounds on future episodes of a world: success rate, mean and quantiles of total reward, loss.
 
-Each bound assumes that episodes are drawn independently from one world, and holds marginally: several bounds hold
-jointly at the sum of their risks. Further assumptions:
+Each bound assumes that episodes are drawn independently from one world. Each holds on its own; several hold together
+at the sum of their risks. Further assumptions:
 
     rate          nothing                                       exact (Clopper & Pearson 1934)
     mean_of       totals lie in a declared range                exact (betting; Waudby-Smith & Ramdas 2023, Theorem 3)
@@ -12,13 +12,13 @@ jointly at the sum of their risks. Further assumptions:
                                                                 approximate (Welch) if one of them varies more
     detectable    -                                             approximate (normal)
 
-An acceptance test needs only a lower limit for a mean of values with a lower bound: learning/betting.py, exact.
+An acceptance test only needs to know whether a mean is above a limit; learning/betting.py tests this exactly.
 No other module computes an interval or a quantile (tests/plugin/learning/test_bounds_are_one_place.py).
-A search uses approximate bounds only to choose what to try and to rank, never to guarantee.
+A search uses approximate bounds only to choose and rank what it tries, never to guarantee.
 
-"Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If their number
-depends on their results, `rate_sequence`, and `mean_of` with `anytime`, hold at all times. benchmarks/bound_coverage.py
-measures how often each of them holds.
+"Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If the number
+depends on the results, use `rate_sequence` or `mean_of` with `anytime`, which hold after every episode.
+benchmarks/bound_coverage.py measures how often each bound holds.
 """
 
 from __future__ import annotations
@@ -37,19 +37,19 @@ from pytest_tarl.learning.student import difference_bounds, mean_bounds
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
-POWER = 0.8  # power at the smallest detectable loss
-STAKE = 0.75  # largest share of the wealth lost by a single bet: the truncation c of Waudby-Smith & Ramdas
+POWER = 0.8  # probability of detecting the smallest detectable loss
+STAKE = 0.75  # maximum share of the wealth that one bet may lose: the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):
-    """Known bounds on the total of every episode."""
+    """Declared limits of the total reward of every episode."""
 
     low: float
     high: float
 
 
 def rate(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return the one-sided bounds of a success rate, each at the confidence (Clopper & Pearson)."""
+    """Return one-sided Clopper-Pearson bounds of a success rate, each at the confidence."""
     risk = 1.0 - confidence
     low = rate_low(passed, episodes, risk)
     high = 1.0 - rate_low(episodes - passed, episodes, risk)
@@ -57,7 +57,7 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the rate below which `passed` or more passes have a probability of at most `risk`."""
+    """Return the rate at which `passed` or more passes have the probability `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -75,10 +75,11 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def evidence_above(passed: int, episodes: int, least: float) -> float:
-    """Return the log of an e-process against a success rate of `least` or less.
+    """Return the log of an e-process against the claim that the success rate is at most `least`.
 
-    The likelihood ratio is mixed over all higher rates, uniformly (Robbins 1970); if that is true, it ever exceeds
-    log(1 / α) with probability at most α (Ville).
+    An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log
+    exceeds log(1 / α) at any time is at most α (Ville's inequality). This e-process averages the likelihood ratio
+    uniformly over all higher rates (Robbins 1970).
     """
     failed = episodes - passed
     if least >= 1.0:
@@ -87,7 +88,7 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
         return 0.0
     above = BinomialTail(passed, episodes + 1)(
         least
-    )  # probability of a Beta(passed + 1, failed + 1) above `least`
+    )  # probability that a Beta(passed + 1, failed + 1) variable is above `least`
     if above <= 0.0:
         return -inf
     mixed = log(above) - log(episodes + 1) - log_choose(episodes)[passed] - log1p(-least)
@@ -97,10 +98,10 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
 def mean_of(
     totals: Sequence[float], confidence: float, declared: Range | None = None, *, anytime: bool = False
 ) -> Bound:
-    """Return the one-sided bounds of a mean, each at the confidence; exact where the range is declared.
+    """Return one-sided bounds of a mean, each at the confidence; exact if the range is declared.
 
-    With `anytime` they hold simultaneously after every episode. A bound from an early win may then exceed the observed
-    mean; it is clipped there. Raise ValueError if a total lies outside the range.
+    With `anytime`, they hold simultaneously after every episode. A betting bound can exceed the observed mean if a bet
+    won early; it is then clipped to the mean. Raise ValueError if a total lies outside the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:
@@ -121,11 +122,11 @@ def mean_of(
 
 
 def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
-    """Return the lower bound of the mean of `values` in [0, 1], shape (episodes,).
+    """Return a lower bound of the mean of `values` in [0, 1], shape (episodes,).
 
-    Against any mean below the bound, a bet has multiplied its wealth by 1 / risk. The bet stakes λ on values above m;
-    if the mean is m, the wealth is a martingale. λ depends on earlier values only, and is tuned for the given number
-    of values, or with `anytime` for any number.
+    A bet against each candidate mean m stakes λ on values above m. If m is the mean, the wealth is a martingale, so it
+    rarely reaches 1 / risk. The bound is the largest m against which the wealth did. λ depends only on earlier values.
+    It is tuned for the given number of values, or for any number with `anytime`.
     """
     if not values.size:
         return 0.0
@@ -144,9 +145,9 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
 
 def quantile_low(totals: Sequence[float], share: float, confidence: float) -> float | None:
-    """Return a total that at least 1 - `share` of all episodes reach; None if there are too few episodes.
+    """Return a total that at least a share 1 - `share` of all episodes reach; None if there are too few episodes.
 
-    It is the largest order statistic k with P(Bin(n, share) < k) ≤ 1 - confidence.
+    The bound is the k-th smallest total, for the largest k with P(Bin(n, share) < k) ≤ 1 - confidence.
     """
     ordered = sorted(totals)
     below = np.cumsum(probabilities(len(ordered), share))
@@ -155,18 +156,19 @@ def quantile_low(totals: Sequence[float], share: float, confidence: float) -> fl
 
 
 def episodes_for_quantile(share: float, confidence: float) -> int:
-    """Return the number of episodes after which the lowest total bounds that quantile."""
+    """Return the number of episodes whose lowest total bounds the quantile `share` at the confidence."""
     return ceil(log(1.0 - confidence) / log1p(-share) - 1e-9)
 
 
 def loss_between(
     offline: Sequence[float], online: Sequence[float], confidence: float, declared: Range | None = None
 ) -> Bound:
-    """Return the one-sided bounds of mean(offline) - mean(online), each at the confidence.
+    """Return one-sided bounds of mean(offline) - mean(online), each at the confidence.
 
-    Without a declared range, they are the wider of two: the shifts that a studentised permutation test does not reject
-    (Janssen 1997), exact if the worlds' totals differ by a constant, however skewed; and Welch's, for totals that are
-    about normal and may vary more in one world.
+    Without a declared range, the result is the wider of two intervals. The first holds the shifts that a studentised
+    permutation test does not reject (Janssen 1997). It is exact if the totals of both worlds differ by a constant,
+    however skewed they are. The second is Welch's interval, for totals that are about normal and may vary more in one
+    world. Raise ValueError if a total lies outside the declared range.
     """
     episodes = min(len(offline), len(online))
     if declared is None:
@@ -183,10 +185,10 @@ def loss_between(
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
     """Return the loss that a test at `risk` detects with probability POWER; inputs have shape (episodes,).
 
-    The result is a normal approximation; infinite if there are so few permutations of the episodes that no loss is
+    The result is a normal approximation. It is infinite if the episodes have so few permutations that no loss can be
     significant.
     """
-    if comb(offline.size + online.size, online.size) <= 1 / risk:  # exact, where a float overflows
+    if comb(offline.size + online.size, online.size) <= 1 / risk:  # integers, since a float would overflow
         return inf
     spread = np.sqrt(sum(one.var(ddof=1) / one.size for one in (offline, online) if one.size > 1))
     normal = NormalDist()

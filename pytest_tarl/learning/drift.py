@@ -1,7 +1,9 @@
 """Compare two worlds: test for a loss of performance and for a drift, and find the cells that differ.
 
-The tests compare the Bellman residuals of the designed utility. They permute whole episodes and correct over all
-columns by the largest statistic.
+The designed world is the one of the recording (`offline`), the deployed world is the one compared (`online`). A cell is
+a combination of sensor bins. The drift test compares Bellman residuals, that is the differences between what a step
+brings and what the recorded utility predicts. Whole episodes are permuted, and p-values are corrected over all columns
+by the largest statistic.
 """
 
 from __future__ import annotations
@@ -24,14 +26,15 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-MATERIAL = 0.1  # minimum share of the largest significant difference for a cell of the region
+MATERIAL = 0.1  # a cell of the region has at least this share of the largest significant difference
 
 
 @dataclass(frozen=True)
 class Difference:
-    """The result of comparing two samples.
+    """The result of comparing two samples of episodes.
 
-    `changes` holds, by cell, the difference between the worlds in the part of the residual that determines the region.
+    `changes` holds for each cell the difference between the worlds in the part of the residual, move or reward, that
+    determined the region.
     """
 
     verdict: Verdict
@@ -40,7 +43,10 @@ class Difference:
 
 
 def tolerated(offline: Sample, stated: float | None) -> float:
-    """Return δ, the tolerated loss per episode: 5 % of the designed reward, or the marker's tolerance."""
+    """Return δ, the tolerated loss per episode.
+
+    It is 5 % of the mean recorded reward or the marker's tolerance, whichever is larger.
+    """
     return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
 
 
@@ -57,8 +63,9 @@ def compare(
 ) -> Difference:
     """Compare the deployed world with the designed one; `tolerance` is the tolerated loss per episode.
 
-    `sensors` are needed for tiled utilities; without them the utility is a table. Correcting over many comparisons
-    needs more `permutations`. `declared` is the range of totals, if any. Both samples are rounded as in a recording.
+    `sensors` are needed only for tiled utilities; without them the utility is a table. A correction over many
+    comparisons needs more `permutations`. `declared` is the range of totals, if known. Both samples are rounded as in a
+    recording.
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
@@ -77,12 +84,12 @@ def compare(
 
 
 def as_compared(sample: Sample) -> Sample:
-    """Return the sample with its chain, the only compared part, rounded as in a recording."""
+    """Return the sample with its chain rounded as in a recording; only the chain is compared."""
     return replace(sample, chain=represented_chain(sample.chain))
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with the result that follows from its numbers."""
+    """Return the verdict with the result that follows from its p-values and loss."""
     result: Result = "no difference"
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
         result = "degraded"
@@ -92,7 +99,7 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 
 
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
-    """Return the verdicts of several comparisons with p-values and results corrected by Holm's method."""
+    """Return the verdicts of several comparisons, with Holm's correction of their p-values and the new results."""
     p_drift, p_loss = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_loss"))
     return [
         judged(replace(one, p_drift=drift, p_loss=loss), alpha)
@@ -103,7 +110,7 @@ def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
 def loss_bounds(
     offline: Floats, online: Floats, risk: float, declared: Range | None = None
 ) -> tuple[float, float]:
-    """Return the confidence interval of the loss, each end at `risk`; totals have shape (episodes,)."""
+    """Return the confidence interval of the loss; each end has the risk `risk`. Totals have shape (episodes,)."""
     bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
 
@@ -117,9 +124,9 @@ def _compared_without(
     sensors: Sequence[Sensor],
     found: Region,
 ) -> tuple[Region, dict[Cell, float]]:
-    """Return the region (deployed cells) and the change by cell if some sensors are left out.
+    """Return the region and the change of each deployed cell, computed without some sensors.
 
-    They do not affect p_drift, so they add no false alarms.
+    This does not affect p_drift, so it adds no false alarms.
     """
     kept = [sensor for d, sensor in enumerate(sensors) if d not in without]
     shorter = projected(offline, without), projected(online, without)
@@ -141,7 +148,7 @@ def _drift(
     sensors: Sequence[Sensor],
     permutations: int,
 ) -> tuple[float, Region, dict[Cell, float]]:
-    """Return p_drift, the region and the change by cell; both samples share their cells."""
+    """Return p_drift, the region, and the change by cell; both samples must share one table of cells."""
     evidence = gathered(offline, online, sensors)
     blocks = evidence.columns()
     p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator, permutations)
@@ -167,10 +174,11 @@ def _drift(
 
 
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
-    """Return the cells that deployed episodes avoid significantly, shape (cells,).
+    """Return the cells that deployed episodes avoid significantly, boolean of shape (cells,).
 
-    If the worlds are equal and K of all N episodes visit a cell, all n deployed episodes avoid it with probability
-    C(N - K, n) / C(N, n). This must be below α divided by the number of cells.
+    Let K of all N episodes visit a cell. If the worlds are equal, none of the n deployed episodes does so with
+    probability C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of candidate
+    cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))
@@ -184,8 +192,8 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the significant cells whose difference is at least MATERIAL of the largest one, shape (cells,).
 
-    The designed mean per visit has an estimation error. If deployed episodes visit a cell more or less often, this
-    error becomes significant with enough episodes, but it stays small.
+    The designed mean per visit has an estimation error. Where deployed episodes visit a cell more or less often, this
+    error becomes significant with enough episodes. It stays small, so the limit removes such cells.
     """
     size = np.where(significant, np.abs(difference), 0.0)
     material: NDArray[np.bool_] = size >= MATERIAL * size.max(initial=0.0)
@@ -193,9 +201,9 @@ def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[n
 
 
 def paper_region(offline: Floats, online: Floats) -> Ints:
-    """Return the cells whose utility differs by at least half of the largest difference, as the paper's region.
+    """Return the region as the paper defines it: cells whose utility differs by at least half of the maximum.
 
-    Inputs have shape (cells, sites), NaN for unvisited ones; only cells visited in both worlds count.
+    Inputs have shape (cells, sites), with NaN for unvisited entries. Only entries visited in both worlds count.
     """
     gap = np.abs(np.nansum(online - offline, axis=1))
     return np.flatnonzero(gap >= 0.5 * gap.max()) if gap.max(initial=0.0) > 0 else np.empty(0, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Columns for comparing two worlds: sums of an episode's residuals, per cell and over groups of cells."""
+"""Build the columns that a comparison tests: sums of residuals per episode, by cell and by group of cells."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # visits from which a cell unknown to the fit counts as novel ...
-NOVEL_EPISODES = 2  # ... and least episodes with such a visit
+NOVEL_VISITS = 3  # a cell that the fit does not know is novel if it has at least this many visits
+NOVEL_EPISODES = 2  # and if at least this many episodes visit it
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Columns for comparing the worlds, shape (episodes, columns): deployed episodes first.
+    """Columns for comparing two worlds, shape (episodes, columns); deployed episodes come first.
 
-    A drift may be strong in a few cells or weak in many. So there are also columns for slabs (the sums over all cells
-    that share a bin of one sensor) and for the episodes' totals.
+    A drift may be strong in a few cells or weak in many. Therefore there are also columns for slabs, which sum over all
+    cells that share a bin of one sensor, and a column for the total reward of each episode.
     """
 
-    move: Floats  # one column per cell, as in the next two fields
+    move: Floats  # one column per cell, like the next two fields
     reward: Floats
     novel: Floats
-    move_error: Floats  # rounding error of `move` and `reward`, which are 0 if not above it
+    move_error: Floats  # rounding errors of `move` and `reward`; values below their error are set to 0
     reward_error: Floats
-    slabs: tuple[Ints, ...]  # indices of the cells in each slab
+    slabs: tuple[Ints, ...]  # row numbers of the cells in each slab
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:
-        """Return the blocks of columns, each of shape (episodes, …): cells three times, slabs twice, totals."""
+        """Return the blocks of columns, each of shape (episodes, …): move, reward, novel, two of slabs, totals."""
         parts = ((self.move, self.move_error), (self.reward, self.reward_error))
         slabs = [beyond(_summed(part, self.slabs), _summed(error, self.slabs)) for part, error in parts]
         return (self.move, self.reward, self.novel, *slabs, self.totals)
 
     def covered(self, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return the cells in the chosen slabs, boolean of shape (cells,)."""
+        """Return which cells belong to a significant slab, boolean of shape (cells,)."""
         chosen = np.zeros(self.move.shape[1], dtype=bool)
         for slab in np.flatnonzero(significant).tolist():
             chosen[self.slabs[slab]] = True
@@ -48,7 +48,7 @@ class Evidence:
 
 
 def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
-    """Fit on one half of the recorded episodes, and compare the other half with the deployed ones."""
+    """Fit a model to one half of the recorded episodes; compare the other half with the deployed ones."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
@@ -72,9 +72,10 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
 
 
 def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
-    """Return the rows of the cells in each slab, arrays of shape (cells of the slab,).
+    """Return the row numbers of the cells in each slab, arrays of shape (cells of the slab,).
 
-    There is a slab for every bin of every sensor, and a last one with all cells. The bins of a single sensor are the
+    There is a slab for every bin of every sensor, and a last one with all cells. A single sensor has only the last one,
+    because its bins are the cells themselves.
     """
     table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
     columns = table.T if table.shape[1] > 1 else ()

@@ -1,13 +1,14 @@
-"""The recording of a test (utility fixture): written by `--tarl-record`, read by `--tarl-online`.
+"""The recording of a test: `--tarl-record` writes it, `--tarl-online` reads it.
 
-One `.npz` file: a JSON header with a format version and a digest, and the columns of the statistics, packed. Loaded
-without pickle, written to a temporary file and renamed; the same episodes give the same bytes.
+It is one `.npz` file: a JSON header with a format version and a digest, and the packed columns of the statistics. It
+is loaded without pickle. It is written to a temporary file, which is then renamed. The same episodes give the same
+bytes.
 
-FORMAT_VERSION history:
+Format versions:
 1  Columns of float64.
-2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. With formulas, the header also
-   has `formulas` and `signals`, and there are columns `robustness` and `lost`. Older versions ignore these, and also
-   `stated` (bounds) and `world` (digests of the test's modules).
+2  Sums as logarithms (packing.py), which takes a sixth of the size; Σ|f| per episode and site. If the test has
+   formulas, the header also has `formulas` and `signals`, and there are columns `robustness` and `lost`. Older
+   readers of format 2 ignore these, and also `stated` (bounds) and `world` (digests of the test's modules).
 """
 
 from __future__ import annotations
@@ -44,12 +45,15 @@ from pytest_tarl.sensors import Sensor
 FORMAT_VERSION = 2
 HEADER = "header"
 RECORD_AGAIN = "Record it again with `pytest --tarl-record`."
-TUPLES = ("categories", "edges")  # fields of a sensor that are lists in JSON
+TUPLES = ("categories", "edges")  # fields of a sensor that are tuples, which JSON stores as lists
 
 
 @dataclass(frozen=True)
 class Fixture:
-    """The recording of a test. `sarsa` holds the learned table per taint list, shape (cells, sites)."""
+    """The recording of a test; `sarsa` holds the learned table of each taint list, shape (cells, sites).
+
+    A taint list names the statements (sites) that a message passes on its way from a source to a sink.
+    """
 
     test: str
     seed: int
@@ -58,9 +62,9 @@ class Fixture:
     topics: Mapping[str, str]  # sensor topic → message type
     sample: Sample
     sarsa: tuple[Floats, ...]
-    learner: str = "sarsa"  # its learning rule, a key of sarsa.LEARNERS
-    design: tuple[str, ...] = ()  # permanent drifts that are part of the design
-    signals: tuple[Signal, ...] = ()  # signals for formulas that are read from messages
+    learner: str = "sarsa"  # name of the learning rule, a key of sarsa.LEARNERS
+    design: tuple[str, ...] = ()  # names of permanent drifts that are part of the design
+    signals: tuple[Signal, ...] = ()  # signals that formulas read from messages
     stated: Guarantee | None = None
     world: Mapping[str, Mapping[str, str]] = field(
         default_factory=dict
@@ -68,7 +72,7 @@ class Fixture:
 
     @property
     def statements(self) -> list[tuple[str, str, list[str]]]:
-        """Return source, sink and the ids of the statements of each taint list."""
+        """Return the source, the sink, and the ids of the statements of each taint list."""
         return [(one.source, one.sink, [place.id for place in one.sites]) for one in self.lists]
 
 
@@ -99,7 +103,7 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # no options: numpy before 2.1 stores them as arrays
+    np.savez_compressed(buffer, **arrays)  # no options as keywords: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
@@ -107,7 +111,7 @@ def save(fixture: Fixture, path: Path) -> None:
 
 
 def prepare(path: Path) -> None:
-    """Raise FixtureError if a recording cannot be written, before its episodes run."""
+    """Check before the episodes run that the recording can be written. Raise FixtureError if not."""
     try:
         check_writable(path)
     except OSError as problem:
@@ -119,7 +123,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a recording. Raise FixtureError if it is missing, damaged or of another format."""
+    """Read a recording. Raise FixtureError if it is missing, unreadable, damaged or of another format."""
     try:
         content = path.read_bytes()
     except FileNotFoundError:
@@ -134,9 +138,9 @@ def load(path: Path) -> Fixture:
 
 
 def parsed(content: bytes, path: str) -> Fixture:
-    """Return the recording in a file's content; `path` names it in messages.
+    """Return the recording from the content of a file; `path` names the file in messages.
 
-    Raise FixtureError if it is damaged or of another format.
+    Raise FixtureError if it is damaged, too large for the memory, or of another format.
     """
     try:
         columns = read_arrays(content)
@@ -171,7 +175,7 @@ def parsed(content: bytes, path: str) -> Fixture:
             check(fixture.sample, len(fixture.sensors), fixture.sarsa)
     except FixtureError:
         raise
-    except Exception as problem:  # a matching digest does not make the content valid
+    except Exception as problem:  # a file with a matching digest can still have invalid content
         raise FixtureError(
             f"The recording {path} is not valid in format {FORMAT_VERSION}{_why(problem)}.",
             RECORD_AGAIN,
@@ -186,7 +190,7 @@ def _why(problem: Exception) -> str:
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
-    """Return the bytes on disk of the columns of each taint list."""
+    """Return for each taint list the bytes that its columns take on disk."""
     with ZipFile(path) as archive:
         entries = archive.infolist()
     return tuple(
@@ -260,7 +264,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
 
 
 def _guarantee(told: Mapping[str, Any]) -> Guarantee:
-    """Return the bounds in a header. Raise DamagedError if they are invalid."""
+    """Return the bounds in a header. Raise DamagedError if they are not numbers."""
     declared = None if told.get("declared") is None else tuple(told["declared"])
     bounds = {"success": Bound(**told["success"]), "mean": Bound(**told["mean"])}
     found = Guarantee(**{**told, **bounds, "declared": declared})

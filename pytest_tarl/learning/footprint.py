@@ -1,7 +1,7 @@
-"""Estimate the memory that recorded episodes need, and warn before it runs out.
+"""Estimate the memory that recording episodes needs, and warn before it runs out.
 
-While episodes run, their statistics are kept as columns of 8 bytes. Merging, packing and writing them takes `PEAK`
-times that. Both grow in proportion to the episodes, so the first few allow an estimate for all of them.
+While episodes run, their statistics are kept as columns with 8 bytes per number. Merging, packing and writing them
+takes `PEAK` times as much. Both grow in proportion to the episodes, so the first few allow an estimate for all.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
-PEAK = 5  # bytes of memory per byte of columns at the peak (benchmarks/limits.py, case recording)
-FIRST = 3  # episodes before the first estimate; later ones are made each time their number has doubled
+PEAK = 5  # peak bytes of memory per byte of columns (benchmarks/limits.py, case recording)
+FIRST = 3  # episodes before the first estimate, which is repeated whenever their number has doubled
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9
 
 
 def nbytes(sample: Sample) -> int:
-    """Return the bytes of all columns of a sample."""
+    """Return the number of bytes of all columns of a sample."""
     return sum(array.nbytes for array in _arrays(sample))
 
 
@@ -40,7 +40,7 @@ def _arrays(value: Any) -> Iterator[np.ndarray[Any, Any]]:
 
 @dataclass
 class Footprint:
-    """The memory of the episodes so far and of those expected; `tell` gets the warning at once."""
+    """The memory of the episodes so far and of all expected episodes; `tell` receives the warning."""
 
     expected: int
     tell: Callable[[str], None] = lambda _: None
@@ -51,7 +51,7 @@ class Footprint:
     _look_at: int = field(default_factory=lambda: STRIDE)
 
     def add(self, sample: Sample) -> None:
-        """Count an episode. Raise RecordingError if there is too little memory left to write those so far."""
+        """Count an episode. Raise RecordingError if the memory no longer suffices to write the episodes so far."""
         self.episodes += 1
         self.held += nbytes(sample)
         if self.episodes == self._estimate_at:
@@ -81,7 +81,7 @@ class Footprint:
             )
 
     def _needed(self, columns: int) -> int:
-        """Return the further bytes needed to write columns of this size, beyond those recorded so far."""
+        """Return the additional bytes needed to write columns of this size."""
         return PEAK * columns - self.held
 
     def _advice(self, free: int) -> str:

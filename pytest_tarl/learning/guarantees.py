@@ -1,4 +1,4 @@
-"""Bounds on future episodes of a world, over the worlds that a test samples."""
+"""State bounds on future episodes in the worlds that a test samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import (
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 
-CONFIDENCE = 0.95  # default of the marker's confidence
+CONFIDENCE = 0.95  # default confidence of the marker
 QUANTILE = 0.05
 
 
@@ -30,9 +30,9 @@ def stated(
     anytime: bool = False,
     varied: bool = True,
 ) -> Guarantee:
-    """Return the bounds from these episodes; each holds separately.
+    """Return the bounds that these episodes support; each holds on its own.
 
-    `anytime` means that the number of episodes depended on their results; then there is no bound of a quantile. Raise
+    Set `anytime` if the number of episodes depended on their results; then there is no bound of a quantile. Raise
     ValueError if a total lies outside the declared range.
     """
     sure, count = confidence or CONFIDENCE, len(passed)
@@ -52,7 +52,7 @@ def stated(
 
 
 def varies(sample: Sample) -> bool:
-    """Return whether any two episodes differ in their steps or rewards."""
+    """Return whether any two episodes differ in their steps, results or rewards."""
     chain = sample.chain
     rows = np.bincount(chain.episode, minlength=sample.episodes)
     if np.ptp(sample.total) or np.ptp(sample.steps) or np.ptp(sample.passed.astype(int)) or np.ptp(rows):

@@ -1,4 +1,4 @@
-"""Results of formulas over many episodes: one row per episode, one column per formula."""
+"""Results of temporal formulas over many episodes: one row per episode, one column per formula."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.model import FormulaRow, FormulaWorld
 
 
 def judgements(judged: Sequence[Judged]) -> Judgements | None:
-    """Return the row of one episode; None if it has no formulas."""
+    """Return the row of one episode, or None if it has no formulas."""
     if not judged:
         return None
     ordered = sorted(judged)
@@ -25,7 +25,11 @@ def judgements(judged: Sequence[Judged]) -> Judgements | None:
 
 
 def together(samples: Sequence[Sample], picked: Sequence[tuple[int, int]]) -> Judgements | None:
-    """Return the rows of the picked episodes, pairs of sample and row, over all formulas that any of them had."""
+    """Return the rows of the picked episodes, with a column for every formula of any sample.
+
+    A picked episode is a pair: the index of its sample and its row there. Entries are NaN where a sample lacks a
+    formula.
+    """
     return _united([one.judgements for one in samples], picked)
 
 
@@ -45,7 +49,7 @@ def _united(have: Sequence[Judgements | None], picked: Sequence[tuple[int, int]]
 
 
 def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
-    """Summarise a formula over the episodes that judged it; None if there is none."""
+    """Summarise a formula over the episodes that judged it; return None if no episode did."""
     if judged is None or formula not in judged.formulas:
         return None
     column = judged.formulas.index(formula)
@@ -64,7 +68,7 @@ def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
 
 
 def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple[FormulaRow, ...]:
-    """Return one row per formula: those in `order` first, then others of any world."""
+    """Return one row per formula: first those in `order`, then others that any world has."""
     others = sorted({name for one in worlds.values() if one is not None for name in one.formulas})
     found = []
     for formula in dict.fromkeys((*order, *others)):
@@ -76,7 +80,7 @@ def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple
 def with_worlds(
     known: Sequence[FormulaRow], worlds: Mapping[str, Sequence[Sequence[Judged]]]
 ) -> tuple[FormulaRow, ...]:
-    """Add worlds to the rows, from the formulas' results by episode."""
+    """Add worlds to the rows, from the results of the formulas in each of their episodes."""
     summed = {name: stacked(episodes) for name, episodes in worlds.items()}
     return tuple(
         replace(
@@ -95,13 +99,13 @@ def with_worlds(
 
 
 def stacked(episodes: Iterable[Sequence[Judged]]) -> Judgements | None:
-    """Return the rows of several episodes; those without any judgement are left out."""
+    """Return the rows of several episodes; episodes without results are skipped."""
     found = [one for one in map(judgements, episodes) if one is not None]
     return _united(found, [(i, 0) for i in range(len(found))])
 
 
 def accounts(judged: Judgements | None) -> tuple[str, ...]:
-    """Return one line per formula on the episodes of one world."""
+    """Return one line per formula that summarises the episodes of one world."""
     lines = []
     for name in judged.formulas if judged is not None else ():
         one = world(judged, name)
@@ -112,7 +116,7 @@ def accounts(judged: Judgements | None) -> tuple[str, ...]:
 
 
 def never_judged(judged: Judgements | None) -> tuple[str, ...]:
-    """Return the formulas that no episode was long enough for."""
+    """Return the formulas for which every episode was too short."""
     if judged is None:
         return ()
     columns = enumerate(judged.formulas)

@@ -1,4 +1,7 @@
-"""Rank the sites to blame: slices (Eq. 2) as a prior, effects confirmed by simulation as evidence."""
+"""Rank sites, the statements that may cause a loss.
+
+The slices of Eq. 2 of the paper give a first ranking; effects confirmed by simulation replace it.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,13 @@ from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
 
-BELOW = 0.49  # highest score of a site without an operand if others have one
+BELOW = 0.49  # maximum score of a site without an operand if other sites have one
 
 
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
-    """Sum each site's utility over the region (Eq. 2); inputs have shape (cells, sites).
+    """Sum the utility of each site over the region (Eq. 2); inputs have shape (cells, sites).
 
-    Only cells that both worlds have visited at that site count.
+    Cells that one of the worlds has not visited at a site do not count for this site.
     """
     both = ~np.isnan(offline[region]) & ~np.isnan(online[region])
     before = np.where(both, offline[region], 0.0).sum(axis=0)
@@ -31,10 +34,10 @@ def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints)
 def prior(
     per_list: Iterable[Sequence[Slice]], changeable: Collection[str] | None = None
 ) -> tuple[tuple[SitePlace, float], ...]:
-    """Rank sites by their score, the size of their slice difference as a share of the largest one of a taint list.
+    """Rank sites by score: the difference of a site's slices, relative to the largest one in its taint list.
 
-    A site in several lists has its best score; sites without a difference are left out. `changeable` holds the ids of
-    sites with an operand: their scores are above 0.5, all others below, since those cannot be repaired.
+    A site in several lists gets its best score. Sites without a difference are omitted. `changeable` holds the ids of
+    the sites with an operand that a repair can change: their scores are above 0.5, those of all others below.
     """
     best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:
@@ -48,7 +51,7 @@ def prior(
 
 
 def _difference(one: Slice) -> float:
-    """Return the magnitude of a slice's difference; 0 if within rounding errors or unknown."""
+    """Return the absolute difference of a slice, or 0 if it is unknown or within rounding errors."""
     size = abs(one.difference)
     return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
 
@@ -66,10 +69,10 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites by the effects that simulation by `method` found, or by their slices if it found none.
+    """Rank sites by the effects that simulation found, or by their slices if it found none.
 
-    `effects` maps site ids to effects; an effect of `loss` (reward per episode) has the score 1. Sites of the confirmed
-    repair have the highest score, sites that were not simulated have none.
+    `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
+    the confirmed repair get the highest score; sites that were not simulated get 0.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]

@@ -1,4 +1,7 @@
-"""The union of samples by seed: rows are in key order, so sums do not depend on which process recorded what."""
+"""Merge samples by seed.
+
+Rows are sorted by key, so sums do not depend on which process recorded which episode.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,9 @@ Columns = TypeVar("Columns", Chain, Edges, Visits)
 
 
 def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
-    """Return the union by seed; if a seed occurs twice, the first sample wins. At least one sample is needed.
+    """Return the union of samples by seed; if a seed occurs twice, the first sample wins.
 
-    The cells are those of all samples and the given ones.
+    The table of cells includes those of all samples and the given ones. At least one sample is required.
     """
     cells = tuple(sorted({*cells, *(cell for one in samples for cell in one.cells)}))
     names = tuple(sorted({name for one in samples for name in one.part_names}))
@@ -47,17 +50,20 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
 
 
 def aligned(first: Sample, second: Sample) -> tuple[Sample, Sample]:
-    """Return both samples over one table of cells, so that their rows can be compared."""
+    """Return both samples with one common table of cells, so that their rows can be compared."""
     return merge([first], second.cells), merge([second], first.cells)
 
 
 @dataclass(frozen=True)
 class _Place:
-    """The target rows of a sample in the merged one; `episode` is -1 for episodes of an earlier sample."""
+    """The rows of a sample in the merged one.
+
+    `episode` is -1 for episodes whose seed an earlier sample has.
+    """
 
     sample: Sample
     episode: Ints
-    cell: Ints  # new row of each cell; index -1 (END) maps to END
+    cell: Ints  # new row of each cell; the index -1 (END) maps to END
     part: Sequence[int]
     parts: int
 
@@ -75,7 +81,7 @@ class _Place:
         return _kept(moved)
 
     def state(self, state: Ints, width: int) -> Ints:
-        """Return renumbered states of the same shape; the start and the end keep their numbers."""
+        """Return the states with new numbers, in the same shape; START and END stay unchanged."""
         cell, site = np.divmod(np.maximum(state - 1, 0), max(width, 1))
         return np.where(state > START, 1 + self.cell[cell] * width + site, state) if state.size else state
 
@@ -90,7 +96,7 @@ class _Place:
         return _kept(moved)
 
     def flow(self, i: int, merged: Floats) -> None:
-        """Write the flows of a taint list to its episodes' rows of `merged`, shape (merged episodes, sites)."""
+        """Write the flows of a taint list to the rows of its episodes in `merged`, shape (merged episodes, sites)."""
         kept = self.episode >= 0
         merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
 
@@ -116,13 +122,13 @@ def _merge_list(places: Sequence[_Place], i: int, episodes: int) -> ListSample:
 
 
 def _kept(columns: Columns) -> Columns:
-    """Drop the rows of episodes that another sample contributes."""
+    """Drop the rows of episodes that come from another sample."""
     keep = columns.episode >= 0
     return type(columns)(*(getattr(columns, f.name)[keep] for f in fields(columns)))
 
 
 def _stack(tables: Sequence[Columns], *keys: str) -> Columns:
-    """Concatenate and sort by episode and then by `keys`."""
+    """Concatenate tables and sort the rows by episode, then by `keys`."""
     kind = type(tables[0])
     whole = {f.name: np.concatenate([getattr(t, f.name) for t in tables]) for f in fields(kind)}
     order = np.lexsort([whole[key] for key in (*reversed(keys), "episode")])

@@ -1,4 +1,4 @@
-"""Multiple testing: correct p-values to control the family-wise error rate of a run."""
+"""Correct p-values for multiple testing, to control the family-wise error rate of a run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def holm(p_values: Sequence[float]) -> tuple[float, ...]:
-    """Return the p-values corrected step-down under any dependence (Holm 1979)."""
+    """Return the p-values corrected step by step, valid under any dependence (Holm 1979)."""
     order = sorted(range(len(p_values)), key=lambda i: p_values[i])
     corrected = [1.0] * len(p_values)
     reached = 0.0

@@ -1,12 +1,12 @@
-"""Pack columns of statistics into small arrays: integers unchanged, sums as logarithms minus a prediction.
+"""Pack columns of statistics into small arrays.
 
-A sum z is stored as its sign and round(2¹⁶·log₂|z|), with a relative error of at most 5.3e-6. In this form, values
-that are proportional, such as those of `delta` and `5 * delta`, differ by a constant, which deflate compresses well. A
-sum of squares is close to the squared sum divided by the count, so only the difference is stored, to 0.14 %. Packing
-unpacked arrays gives the same arrays.
+Integers are stored unchanged. A sum z is stored as its sign and round(2¹⁶·log₂|z|), minus a prediction; the relative
+error is at most 5.3e-6. In this form, proportional values, such as those of `delta` and `5 * delta`, differ by a
+constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count, so only the
+difference is stored, with an error of at most 0.14 %. Packing unpacked arrays again gives the same arrays.
 
-Samples compared with a recording pass through the same representation (`represented`): otherwise, where rewards are
-constant, rounding alone would distinguish the recorded world from the live one.
+Samples that are compared with a recording are rounded in the same way (`represented`). Otherwise, if rewards are
+constant, rounding alone would make the recorded world differ from the live one.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from pytest_tarl.learning.tables import START, Chain, Edges, Floats, Ints, ListS
 Arrays = dict[str, NDArray[Any]]
 Signs = NDArray[np.int8]
 
-FINE = 1  # step of the logarithm of a sum, in units of 2⁻¹⁶
-COARSE = 256  # step of the logarithm of a sum of squares, in the same units
+FINE = 1  # step of the stored logarithm of a sum, in units of 2⁻¹⁶
+COARSE = 256  # step of the stored logarithm of a sum of squares, in the same units
 UNIT = 65536.0
-ROUNDING = 5.3e-6  # largest error of a packed sum, relative to it: 2^(1/2 / UNIT) - 1
+ROUNDING = 5.3e-6  # maximum relative error of a packed sum: 2^(1/2 / UNIT) - 1
 
 
 def represented(sample: Sample) -> Sample:
-    """Return the sample rounded as in a recording; idempotent."""
+    """Return the sample rounded as in a recording; doing it again changes nothing."""
     lists = (
         unpacked_list("list", packed_list("list", one), one.width) if one.width else one
         for one in sample.lists
@@ -44,7 +44,7 @@ def represented_chain(chain: Chain) -> Chain:
 
 
 def packed_chain(chain: Chain) -> Arrays:
-    """Return the arrays of a chain."""
+    """Return the packed arrays of a chain."""
     sums = (chain.reward, *chain.parts.T)
     foretold = np.zeros(chain.count.size, np.int64)
     whole = narrowed(np.stack([chain.episode, chain.cell, chain.next_cell, chain.count]))
@@ -52,7 +52,7 @@ def packed_chain(chain: Chain) -> Arrays:
 
 
 def unpacked_chain(arrays: Mapping[str, NDArray[Any]]) -> Chain:
-    """Return the chain of these arrays."""
+    """Return the chain from its packed arrays. Raise KeyError if one is missing."""
     episode, cell, next_cell, count = arrays["chain"].astype(np.int64)
     foretold = np.zeros(count.size, np.int64)
     sums = [_unpacked(one, foretold, FINE)[0] for one in _columns("chain", arrays)]
@@ -61,7 +61,7 @@ def unpacked_chain(arrays: Mapping[str, NDArray[Any]]) -> Chain:
 
 
 def packed_list(name: str, recorded: ListSample) -> Arrays:
-    """Return the arrays of a taint list, without visit counts, which follow from the edges."""
+    """Return the packed arrays of a taint list; visit counts are omitted, since they follow from the edges."""
     edges, visits = recorded.edges, recorded.visits
     before = _before(visits, recorded.width)
     count = _logarithms(visits.count.astype(np.float64))
@@ -82,7 +82,7 @@ def packed_list(name: str, recorded: ListSample) -> Arrays:
 
 
 def unpacked_list(name: str, arrays: Mapping[str, NDArray[Any]], width: int) -> ListSample:
-    """Return the taint list of these arrays."""
+    """Return a taint list from its packed arrays. Raise KeyError if one is missing."""
     edges = Edges(*arrays[name].astype(np.int64))
     episode, state, count = _visited(edges)
     visits = Visits(episode, state, count, *(np.zeros(count.size) for _ in range(4)))
@@ -100,7 +100,7 @@ def unpacked_list(name: str, arrays: Mapping[str, NDArray[Any]], width: int) -> 
 
 
 def packed_table(name: str, table: Floats) -> Arrays:
-    """Return the arrays of a table, shape (cells, sites), that may contain NaN."""
+    """Return the packed arrays of a table of shape (cells, sites) that may contain NaN."""
     seen = ~np.isnan(table)
     values = np.where(seen, table, 0.0).ravel()
     arrays = _stacked(name, [_packed(values, np.zeros(values.size, np.int64), FINE)])
@@ -108,7 +108,7 @@ def packed_table(name: str, table: Floats) -> Arrays:
 
 
 def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
-    """Return the table of these arrays, shape (cells, sites)."""
+    """Return the table from its packed arrays, shape (cells, sites). Raise KeyError if one is missing."""
     seen = arrays[f"{name}.seen"]
     (column,) = _columns(name, arrays)
     values, _ = _unpacked(column, np.zeros(seen.size, np.int64), FINE)
@@ -116,7 +116,10 @@ def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
 
 
 def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
-    """Return episode, state and count of every visit; each visit has one outgoing edge, the last one to the end."""
+    """Return the episode, state and count of all visits.
+
+    Each visit has one outgoing edge, so the edges determine the counts; the edge of the last visit leads to END.
+    """
     span = int(edges.state.max(initial=START)) + 1
     codes, inverse = np.unique(edges.episode * span + edges.state, return_inverse=True)
     count = sum_by(inverse, edges.count, codes.size).astype(np.int64)
@@ -124,7 +127,7 @@ def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
 
 
 def _before(visits: Visits, width: int) -> Ints:
-    """Return for each row the index of the previous row if it has the same cell and episode, else -1; shape (rows,)."""
+    """Return for each row the index of the previous row if cell and episode are the same, else -1; shape (rows,)."""
     cell = np.where(visits.state > START, (visits.state - 1) // max(width, 1), -1)
     same = (np.diff(cell) == 0) & (np.diff(visits.episode) == 0)
     row = np.arange(cell.size, dtype=np.int64) - 1
@@ -132,14 +135,14 @@ def _before(visits: Visits, width: int) -> Ints:
 
 
 def _logarithms(values: Floats) -> Ints:
-    """Return round(2¹⁶·log₂|z|), 0 for zero; infinite squares stay infinite."""
+    """Return round(2¹⁶·log₂|z|), or 0 for zero; squares that overflowed to infinity stay infinite."""
     size = np.abs(values)
     with np.errstate(divide="ignore"):
         return np.where(size > 0, np.rint(np.minimum(np.log2(size), 1024.0) * UNIT), 0).astype(np.int64)
 
 
 def _packed(values: Floats, foretold: Ints, step: int) -> tuple[Signs, Ints]:
-    """Return the signs, and the distance of each logarithm from its prediction in steps."""
+    """Return the signs, and the difference between each logarithm and its prediction, in steps."""
     signs = np.sign(values).astype(np.int8)
     away = np.rint((_logarithms(values) - foretold) / step).astype(np.int64)
     return signs, np.where(signs == 0, 0, away)
@@ -153,7 +156,10 @@ def _unpacked(column: tuple[Signs, Ints], foretold: Ints, step: int) -> tuple[Fl
 
 
 def _unpacked_in_turn(column: tuple[Signs, Ints], before: Ints) -> tuple[Floats, Ints]:
-    """Unpack values that are predicted by their previous row; the prediction is 0 without one or if it is zero."""
+    """Unpack values whose prediction is the value of the previous row.
+
+    The prediction is 0 if there is no previous row or its value is zero.
+    """
     signs, away = column
     starts = (before < 0) | (np.append(0, signs[:-1])[: signs.size] == 0)
     whole = np.cumsum(away)
@@ -169,14 +175,17 @@ def _values(signs: Signs, code: Ints) -> Floats:
 
 
 def narrowed(whole: Ints) -> NDArray[Any]:
-    """Return whole numbers, in any shape, as the smallest sufficient type."""
+    """Return integers of any shape in the smallest type that holds them."""
     kinds = (np.int8, np.int16, np.int32, np.int64)
     low, high = whole.min(initial=0), whole.max(initial=0)
     return whole.astype(next(k for k in kinds if np.iinfo(k).min <= low and high <= np.iinfo(k).max))
 
 
 def _stacked(name: str, columns: list[tuple[Signs, Ints]]) -> Arrays:
-    """Return signs, shape (columns, rows), and bytes by significance, shape (columns, 4, rows); many are 0."""
+    """Return signs, shape (columns, rows), and bytes by significance, shape (columns, 4, rows).
+
+    Most of the more significant bytes are 0, so grouping them compresses well.
+    """
     signs = np.stack([one for one, _ in columns])
     away = np.stack([one for _, one in columns])
     folded = ((away << 1) ^ (away >> 63)).astype("<u4")

@@ -1,4 +1,7 @@
-"""Find the cells in which parts of the reward are lost."""
+"""Find the cells in which parts of the reward are lost.
+
+A test may split its reward into named parts.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,11 @@ from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MATERIAL = 0.1  # minimum share of its part's largest loss for a cell to be reported
+MATERIAL = 0.1  # a reported cell has at least this share of the largest loss of the part
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return the mean of each part of the reward per episode in both worlds."""
+    """Return for each part of the reward its mean sum per episode, in the designed and the deployed world."""
     names = sorted({*offline.part_names, *online.part_names})
     return {
         name: (
@@ -29,9 +32,10 @@ def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
 def lost(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> Mapping[str, tuple[Cell, ...]]:
-    """Return the cells where each part earns significantly less in the deployed world; both samples share their cells.
+    """Return the cells where each part earns significantly less in the deployed world.
 
-    Corrected over all cells of all parts. Includes cells that earn less because they are no longer reached.
+    Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result includes
+    cells that earn less because episodes no longer reach them.
     """
     names = sorted({*offline.part_names, *online.part_names})
     if not names:
@@ -49,7 +53,7 @@ def lost(
 
 
 def _by_cell(world: Sample, name: str) -> Floats:
-    """Return the sums of a part, shape (episodes, cells); zeros if the world does not have the part."""
+    """Return the sums of a part, shape (episodes, cells), or zeros if the world lacks the part."""
     shape = (world.episodes, len(world.cells))
     if name not in world.part_names:
         return np.zeros(shape)

@@ -1,6 +1,7 @@
-"""Permutation tests under the hypothesis that both groups of episodes are exchangeable.
+"""Permutation tests of the hypothesis that two groups of episodes are exchangeable.
 
-Corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young 1993).
+P-values are corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young
+1993).
 """
 
 from __future__ import annotations
@@ -14,15 +15,15 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
-ARITHMETIC = 1e-12  # error of a few sums of floats, relative to the largest of them
+ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
 SETTLED = (
-    0.2  # a p-value that is at least this large after PERMUTATIONS shuffles is not refined by further ones
+    0.2  # further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
 )
-AT_ONCE = 64  # shuffles drawn together, so that they stay in the processor's cache
+AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
-    """Return the number of shuffles at which a result can be significant after correcting for the comparisons."""
+    """Return the number of shuffles that allows a significant result after a correction for the comparisons."""
     return (
         min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
         if comparisons > 1
@@ -40,13 +41,12 @@ def permuted_loss(
 ) -> float:
     """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ by at most rounding errors are ties, and count against a loss. The p-value is exact at levels
-    below SETTLED.
+    Sums that differ only by rounding errors are ties and count against a loss. P-values below SETTLED use all shuffles.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
-    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of a sum changes its rounding
+    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # the order of summation changes the rounding
     observed = observed_sum(pooled, online.size) + tie
 
     def reached(shuffled: Floats) -> Ints:
@@ -62,12 +62,12 @@ def max_statistic(
     permutations: int = PERMUTATIONS,
     error: float = ARITHMETIC,
 ) -> Floats:
-    """Return each column's p-value corrected over all columns, shape (columns,).
+    """Return the p-value of each column, corrected over all columns; shape (columns,).
 
-    The first `first` rows form one group, the rest the other. The statistic is the difference of the groups' means in
-    units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is compared
-    with the maximum over the columns that do not differ more (step-down). A column counts as constant if it
-    varies by at most `error` of its largest entry.
+    The first `first` rows form one group, the other rows the second. The statistic is the difference between the group
+    means in units of the column's standard deviation; it orders columns as the pooled t statistic does. Each column is
+    compared with the maximum over all columns with no larger difference (step-down). A column that varies by at most
+    `error` of its largest entry counts as constant and has the p-value 1.
     """
     deviation = columns - columns.mean(axis=0)
     extent, largest = (np.abs(part).max(axis=0, initial=0.0) for part in (deviation, columns))
@@ -75,7 +75,7 @@ def max_statistic(
     p_values = np.ones(columns.shape[1])
     if not alive.size or not 0 < first < columns.shape[0]:
         return p_values
-    relative = deviation[:, alive] / extent[alive]  # scaled, so that squares neither overflow nor underflow
+    relative = deviation[:, alive] / extent[alive]  # scaled so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
     observed = np.abs(observed_sum(standard, first))
     order = np.argsort(observed, kind="stable")
@@ -97,11 +97,12 @@ def _p_values(
     generator: np.random.Generator,
     permutations: int,
 ) -> Floats:
-    """Return a p-value for each count that `reached` returns for the sums of some shuffles, shape (counts,).
+    """Return one-sided p-values, shape (counts,).
 
-    More than PERMUTATIONS shuffles are needed only for p-values that must stay small after correcting for many
-    comparisons. So the rest is left out if the smallest p-value is then at least SETTLED. A p-value below SETTLED comes
-    from all shuffles; leaving some out never adds one.
+    `reached` receives the sums of some shuffles and returns how many of them reach the observed value, for each
+    statistic. More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over
+    many comparisons. The remaining shuffles are skipped if the smallest p-value is at least SETTLED after that many.
+    Skipping never creates a p-value below SETTLED.
     """
     counts, done = None, 0
     for shuffled in shuffled_sums(values, first, generator, permutations):
@@ -114,7 +115,7 @@ def _p_values(
 
 
 def observed_sum(values: Floats, first: int) -> Floats:
-    """Return the sum over the first rows, shape (...), of values of shape (rows, ...)."""
+    """Return the sum over the first `first` rows, shape (...), of values of shape (rows, ...)."""
     picked = np.zeros((1, len(values)))
     picked[0, :first] = 1.0
     return np.asarray((picked @ values)[0])
@@ -123,9 +124,10 @@ def observed_sum(values: Floats, first: int) -> Floats:
 def shuffled_sums(
     values: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> Iterator[Floats]:
-    """Yield the sums over random groups of `first` rows, some shuffles at once, each shape (shuffles, ...).
+    """Yield sums over random groups of `first` rows, for several shuffles at once, shape (shuffles, ...).
 
-    `values` have shape (rows, ...). A shuffle draws a number for each row and picks the rows with the smallest.
+    `values` has shape (rows, ...). A shuffle draws a random number for each row and picks the rows with the smallest
+    numbers.
     """
     for done in range(0, permutations, AT_ONCE):
         draws = generator.random((min(AT_ONCE, permutations - done), len(values)))
@@ -133,10 +135,10 @@ def shuffled_sums(
 
 
 def _smallest(draws: Floats, first: int) -> Floats:
-    """Return 1 for the `first` smallest numbers of each row, else 0; same shape."""
+    """Return 1 for the `first` smallest numbers of each row and 0 for the others, in the same shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    tied = np.flatnonzero(picked.sum(axis=1) != first)  # equal numbers at the limit
+    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which equal numbers lie at the limit
     for row in tied.tolist():
         picked[row] = 0.0
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

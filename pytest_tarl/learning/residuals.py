@@ -1,10 +1,11 @@
-"""The Bellman residual of each step against the designed utility, in its two parts.
+"""Compute the Bellman residual of each step, in two parts: the move to the next cell, and the reward.
 
-Its expectation is zero wherever the world is unchanged since the utility was fitted, so it locates the change itself,
-not cells upstream of it (performance-difference lemma, Kakade & Langford 2002).
+A residual is the difference between what a step brings and what the designed utility predicts. Its expectation is zero
+wherever the world is unchanged since the fit. Residuals therefore locate the change itself, and not the cells upstream
+of it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual below its own error is set to 0: for a constant reward, it only reflects the rounding of sums (packing.py)
-and the order of their computation.
+A residual smaller than its error is set to 0. Such a residual of a constant reward only reflects rounding (packing.py)
+and the order of sums.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from pytest_tarl.learning.utility import GAMMA_STEP
 
 @dataclass(frozen=True)
 class Residuals:
-    """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells.
+    """The two parts of the Bellman residual and the visits to novel cells, each of shape (episodes, cells).
 
-    The errors bound the rounding error of each residual; the error of a sum is the sum of the errors.
+    The errors bound the rounding error of each residual. The error of a sum is the sum of the errors.
     """
 
     move: Floats
@@ -36,7 +37,7 @@ class Residuals:
 
 
 def in_fit(seed: int) -> bool:
-    """Return whether a recorded episode is used to fit the utility; the others are compared."""
+    """Return whether a recorded episode is used to fit the utility; all others are used for the comparison."""
     return zlib.crc32(str(seed).encode()) % 2 == 0
 
 
@@ -45,9 +46,9 @@ class Model:
     """The expected contribution of a step in each cell of the designed world, shape (cells,); NaN if unknown."""
 
     utility: Floats
-    move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
+    move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode
     reward: Floats
-    size: Floats  # mean |Σr| per step; the error of `reward` is relative to it
+    size: Floats  # per step; the| mean |Σr| per step, the scale of the rounding error of `reward`
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
@@ -62,10 +63,10 @@ def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
 
 
 def residuals(compared: Sample, model: Model) -> Residuals:
-    """Return each episode's residuals per cell, minus the designed mean per visit of each part.
+    """Return the residuals of each episode by cell, minus the designed mean per visit.
 
-    So both parts have zero expectation in that world, however often a cell is visited. The last step of an episode
-    has no move. Transitions from or to a cell of unknown utility are left out.
+    Without a drift, both parts then have expectation zero, however often a cell is visited. The last step of an episode
+    has no move. Transitions from or to a cell of unknown utility are skipped.
     """
     chain, shape = compared.chain, (compared.episodes, len(compared.cells))
     known = ~np.isnan(model.utility)
@@ -86,12 +87,12 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, 0 if not larger than their error; all of the same shape."""
+    """Return the values, with 0 for those not larger than their error; all arrays have the same shape."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:
-    """Return γU(x')-U(x) of every transition, 0 for the last step, NaN if a utility is unknown."""
+    """Return γU(x')-U(x) of each transition: 0 for the last step, NaN if a utility is unknown."""
     inside = chain.next_cell != END
     return np.where(
         inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0
@@ -99,5 +100,5 @@ def _gain(chain: Chain, utility: Floats) -> Floats:
 
 
 def _by_episode(chain: Chain, weights: Floats, shape: tuple[int, int]) -> Floats:
-    """Return the sums per episode and cell, shape (episodes, cells)."""
+    """Return the sums of the weights by episode and cell, shape (episodes, cells)."""
     return sum_by(chain.episode * shape[1] + chain.cell, weights, shape[0] * shape[1]).reshape(shape)

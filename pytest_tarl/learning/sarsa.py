@@ -1,4 +1,7 @@
-"""Learn the utility event by event as in the paper: SARSA, and its relatives expected SARSA and TD(λ)."""
+"""Learn the utility event by event: SARSA as in the paper, and the related expected SARSA and TD(λ).
+
+An event is one execution of a site. q(c) is the expected reward from a state c, a pair of cell and site, on.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +21,9 @@ LAMBDA = 0.8
 class Learner:
     """Learn q(c) of one taint list, episode by episode; subclasses implement the update rule.
 
-    All rules are linear in ρ = r·[last event of its step] + r·|f|/F: each term has its own table, and F, which is known
-    only after the last episode, is applied when they are added. So no episode has to be kept.
+    The learning signal is ρ = r·[last event of its step] + r·|f|/F, where f is the flow value. F, the mean of |f|, is
+    known only after the last episode. All rules are linear in ρ, so each term has its own table, and F is applied when
+    both are added. Thus no episode has to be stored.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -27,12 +31,12 @@ class Learner:
         self.gamma = gamma
         self.alpha = alpha
         self._row: dict[Cell, int] = {}
-        self._full = [0.0]  # one entry per state; the first one is the start
+        self._full = [0.0]  # one entry per state, starting with START
         self._scaled = [0.0]
         self._seen = set[int]()
 
     def learn(self, sequence: EventSequence, cells: Sequence[Cell]) -> None:
-        """Learn from one sequence of events whose cells are numbered as in the given ones."""
+        """Learn from one sequence of events; its states refer to rows of `cells`."""
         states = self._numbered(sequence.state, cells).tolist()
         self._seen.update(states)
         self._follow(states, sequence.reward.tolist(), self._full)
@@ -40,7 +44,10 @@ class Learner:
         self._passed(states)
 
     def table(self, cells: Sequence[Cell], scale: float) -> Floats:
-        """Return q(x, n), shape (cells, sites); NaN if never visited. `scale` is F; infinite: no flow term."""
+        """Return q(x, n), shape (cells, sites), with NaN for unvisited entries.
+
+        `scale` is F; infinity omits the flow term.
+        """
         q = np.array(self._full) + np.array(self._scaled) / scale
         q[[state for state in range(q.size) if state not in self._seen]] = np.nan
         by_row = q[START + 1 :].reshape(len(self._row), self.sites)
@@ -50,14 +57,14 @@ class Learner:
         return table
 
     def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
-        """Learn from one sequence of states and the reward at each."""
+        """Update `q` in place from a sequence of states and their rewards."""
         raise NotImplementedError
 
     def _passed(self, states: Sequence[int]) -> None:
         """Update internal counts after a sequence."""
 
     def _numbered(self, state: Ints, cells: Sequence[Cell]) -> Ints:
-        """Number states in the order in which their cells first occurred."""
+        """Renumber states in the order in which their cells first occurred."""
         row = np.array([self._row.setdefault(cell, len(self._row)) for cell in cells], dtype=np.int64)
         more = [0.0] * (1 + len(self._row) * self.sites - len(self._full))
         self._full += more
@@ -69,7 +76,7 @@ class Learner:
 
 
 class Sarsa(Learner):
-    """Learn q(c) ← q(c) + α[ρ + γq(c') - q(c)], as in the paper."""
+    """SARSA as in the paper: q(c) ← q(c) + α[ρ + γq(c') - q(c)]."""
 
     def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
         alpha, gamma = self.alpha, self.gamma
@@ -79,9 +86,10 @@ class Sarsa(Learner):
 
 
 class ExpectedSarsa(Learner):
-    """Learn q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)] with the transition frequencies P of all episodes so far.
+    """Expected SARSA: q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)].
 
-    Sutton & Barto 2018, §6.6, where program and world choose the next site and cell.
+    P are the transition frequencies of all episodes so far. This is Sutton & Barto 2018, §6.6; program and world,
+    instead of a policy, choose the next site and cell.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -103,9 +111,10 @@ class ExpectedSarsa(Learner):
 
 
 class TDLambda(Learner):
-    """Learn from λ-returns at the end of each episode: q(c) ← q(c) + α[G - q(c)], G = ρ + γ[(1 - λ)q(c') + λG'].
+    """TD(λ) with updates at the end of an episode: q(c) ← q(c) + α[G - q(c)], G = ρ + γ[(1 - λ)q(c') + λG'].
 
-    The off-line λ-return algorithm, Sutton & Barto 2018, §12.1; λ = 0 is SARSA with the table held fixed in an episode.
+    This is the off-line λ-return algorithm, Sutton & Barto 2018, §12.1. λ = 0 is SARSA with a table that changes only
+    after an episode.
     """
 
     def __init__(
@@ -145,6 +154,6 @@ def _added(first: Mapping[int, int], second: Mapping[int, int]) -> dict[int, int
 
 
 def _shares(counts: Mapping[int, int]) -> list[tuple[int, float]]:
-    """Return the next states and their probabilities, without the end, whose utility is 0."""
+    """Return the next states and their probabilities; END is omitted, since its utility is 0."""
     whole = sum(counts.values())
     return [(then, count / whole) for then, count in counts.items() if then != END]

@@ -1,7 +1,7 @@
-"""Group-sequential testing: looks at which a comparison may end early, with shared risk (alpha spending).
+"""Group-sequential testing: a comparison may end early at planned looks, which share its risk (alpha spending).
 
-Of the risk α, α·t² is spent once a share t of the episodes has run (Lan & DeMets 1983). The looks add up to
-α under any dependence between them, so ending early does not increase false alarms.
+After a share t of the episodes, α·t² of the risk α is spent (Lan & DeMets 1983). The shares of all looks sum to α. By
+the union bound, the risk of a false alarm is then at most α, however the looks depend on each other.
 """
 
 from __future__ import annotations
@@ -12,40 +12,40 @@ from dataclasses import dataclass, replace
 from pytest_tarl.learning.drift import Difference, judged
 from pytest_tarl.model import Region
 
-FEWEST = 10  # episodes before the first look
+FEWEST = 10  # minimum number of episodes at the first look
 
 
 @dataclass(frozen=True)
 class Look:
-    """A planned look: its number of episodes, and the share of α spent there."""
+    """A planned look: the number of episodes after which it takes place, and its share of α."""
 
     episodes: int
     share: float
 
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
-    """Return at most `looks` looks; each has twice the episodes of the previous one, and the last one has all."""
+    """Return at most `looks` looks; each doubles the episodes of the previous one, and the last has all of them."""
     return spending([episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)])
 
 
 def spending(ends: Sequence[int]) -> tuple[Look, ...]:
-    """Return looks after these increasing numbers of episodes, which together spend all of α."""
+    """Return looks after the given ascending numbers of episodes; together they spend all of α."""
     spent = [(end / ends[-1]) ** 2 for end in ends]
     shares = [after - before for before, after in zip([0.0, *spent], spent, strict=False)]
     return tuple(Look(end, share) for end, share in zip(ends, shares, strict=True))
 
 
 def certain(difference: Difference) -> bool:
-    """Return whether the verdict is final: both the loss and its region are significant."""
+    """Return whether the verdict is final: both the loss and a region of cells are significant."""
     region = difference.region
     return difference.verdict.result == "degraded" and bool(region.cells or region.novel)
 
 
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
-    """Return the result of the last look, with p-values and intervals adjusted for the whole sequence.
+    """Return the result of the last look, with p-values and interval adjusted for all looks.
 
-    The adjusted p-value is the least p / share. The interval of the last look is computed at that look's risk, so it
-    holds at whatever look the run ended.
+    The adjusted p-value is the smallest p / share. The interval of the last look uses the risk of that look, so it is
+    valid at whichever look the comparison ends.
     """
     last = seen[-1][1]
     p_drift, p_loss = (

@@ -1,6 +1,6 @@
-"""Confidence interval of the shift between two groups, by inverting a studentised permutation test.
+"""Compute a confidence interval of the shift between two groups by inverting a studentised permutation test.
 
-It is exact if the groups differ by a constant (Janssen 1997), however skewed they are.
+The interval is exact if the groups differ by a constant (Janssen 1997), however skewed they are.
 """
 
 from __future__ import annotations
@@ -16,17 +16,20 @@ from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.seeds import generator
 
-COARSE = 30  # halvings; p-values from shuffles are less precise than floats
+COARSE = 30  # number of halvings; p-values from shuffles do not support the precision of floats
 LEAST_PERMUTATIONS = 999
-PER_RISK = 20  # permutations expected beyond the statistic at the requested risk
+PER_RISK = 20  # expected number of permutations beyond the statistic at the requested risk
 MOST_PERMUTATIONS = 40_000
-AT_ONCE = 2_000  # shuffles drawn together, which take a few MB
+AT_ONCE = 2_000  # number of shuffles drawn together; they take a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
-    """Return the least and the largest shift that a permutation test at `risk` does not reject; inputs (episodes,)."""
+    """Return the smallest and largest shift that a permutation test at `risk` does not reject.
+
+    The inputs have shape (episodes,). The interval is infinite if there are too few permutations to reject anything.
+    """
     difference = float(offline.mean() - online.mean())
-    unit = float(np.ptp(offline) + np.ptp(online))  # beyond this shift, the groups do not overlap
+    unit = float(np.ptp(offline) + np.ptp(online))  # larger shifts leave no overlap between the groups
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit
     before, after = (offline - offline.mean()) / unit, (online - online.mean()) / unit
@@ -36,7 +39,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     group, whole = (_sums(after, before, some) for some in (rows, np.arange(offline.size + online.size)))
 
     def refuted(shift: float, sign: float) -> bool:
-        """Return whether the deployed group, shifted by this amount, is significantly too low (or too high)."""
+        """Return whether the deployed group, after this shift, is significantly too low (or too high)."""
         return _studentised_p(group, whole, shift, sign) <= risk
 
     if not refuted(-1.0, 1.0) or not refuted(1.0, -1.0):
@@ -48,7 +51,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=8)
 def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
-    """Return the rows of one group in many shuffles, shape (shuffles, chosen)."""
+    """Return the rows that form the first group in each shuffle, shape (shuffles, chosen)."""
     draws = generator(0, f"shifts/{rows}/{chosen}")
     parts = [
         np.argpartition(draws.random((min(AT_ONCE, shuffles - done), rows)), chosen - 1, axis=1)[:, :chosen]
@@ -59,9 +62,10 @@ def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
 
 @dataclass(frozen=True)
 class _Sums:
-    """Sums over some rows of x, with d = 1 for deployed episodes, else 0; shape (shuffles,), or () for one group.
+    """Sums over rows of x and of d, which is 1 for deployed episodes and 0 for others.
 
-    They give the sums of x + t·d and of its square for every shift t, since d² = d.
+    They have shape (shuffles,), or () for a single group. Since d² = d, they give the sums of x + t·d and of its square
+    for every shift t.
     """
 
     rows: int
@@ -71,14 +75,14 @@ class _Sums:
     deployed_value: Floats  # Σx·d
 
     def around(self, mean: float, shift: float) -> tuple[Floats, Floats]:
-        """Return Σ(x + t·d - m) and Σ(x + t·d - m)²."""
+        """Return Σ(x + t·d - m) and Σ(x + t·d - m)² for the mean m and the shift t."""
         value = self.value + shift * self.deployed
         square = self.square + shift * (2.0 * self.deployed_value + shift * self.deployed)
         return value - mean * self.rows, square - 2.0 * mean * value + mean * mean * self.rows
 
 
 def _sums(deployed: Floats, designed: Floats, rows: Ints) -> _Sums:
-    """Return the sums over some rows, shape (..., rows of a group), of the deployed and the designed values."""
+    """Return the sums over the given rows, shape (..., rows of a group), of all deployed and designed values."""
     values = np.concatenate((deployed, designed))
     owned = np.append(np.ones(deployed.size), np.zeros(designed.size))
     columns = (values, values * values, owned, values * owned)
@@ -86,9 +90,9 @@ def _sums(deployed: Floats, designed: Floats, rows: Ints) -> _Sums:
 
 
 def _studentised_p(group: _Sums, whole: _Sums, shift: float, sign: float) -> float:
-    """Return the one-sided p-value of a shifted group being lower, by t statistics of unequal variances.
+    """Return the one-sided p-value that a shifted group is lower, by t statistics for unequal variances.
 
-    The first of the shuffles is as observed.
+    The first row of `group` is the observed one.
     """
     mean = float(whole.value + shift * whole.deployed) / whole.rows
     (added, squared), (total, squares) = (one.around(mean, shift) for one in (group, whole))

@@ -1,7 +1,8 @@
 """Share a fixed number of episodes among several comparisons: further episodes go to an undecided one.
 
-The looks of every comparison are set before the first episode, with all of its α. The sum of the shares bounds its
-error wherever it ends, so which comparison continues may depend on all the data, also of the other comparisons.
+The looks of every comparison are planned before the first episode, and together spend its whole α. The sum of their
+shares bounds the error of a comparison at whichever look it ends. The choice of the comparison that continues may
+therefore depend on all data, including those of other comparisons.
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ from dataclasses import dataclass
 
 from pytest_tarl.learning.sequential import Look, planned, spending
 
-MOST = 1.5  # maximum number of episodes of a comparison, in even shares
+MOST = 1.5  # maximum number of episodes of a comparison, as a multiple of an even share
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Part of a comparison: the looks set for all of it, and the number of episodes after which the part ends."""
+    """Part of a comparison: the looks of the whole comparison, and the number of episodes at the end of this part."""
 
     looks: tuple[Look, ...]
     episodes: int
@@ -32,10 +33,10 @@ class Standing:
 
 
 def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
-    """Return the looks of every comparison, whose first looks together need at most the total.
+    """Return the looks of each comparison; the first looks of all comparisons fit into `total` episodes.
 
-    These are the looks of a comparison that gets an even share. One more look follows after MOST times as many
-    episodes, provided that every other comparison can still have its first look.
+    A comparison first gets the looks of an even share. One more look follows after MOST times the even share, provided
+    that every other comparison can still reach its first look.
     """
     even = total // comparisons
     ends = [look.episodes for look in planned(even, looks)]
@@ -44,16 +45,17 @@ def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
 
 
 def next_look(standing: Standing, looks: Sequence[Look]) -> Look | None:
-    """Return the next look of a comparison; None if it is decided, or has had its last look."""
+    """Return the next look of a comparison, or None if it is decided or has had its last look."""
     if standing.decided:
         return None
     return next((look for look in looks if look.episodes > standing.episodes), None)
 
 
 def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> int | None:
-    """Return the comparison that continues with `left` episodes to spend; None if none can reach its next look.
+    """Return the index of the comparison that continues, or None if none can reach its next look.
 
-    It is the undecided one with the least p-value for a loss, which is nearest to a decision; the first one of equals.
+    `left` is the number of episodes left. The undecided comparison with the smallest p-value for a loss continues,
+    since it is nearest to a decision; among equal ones, the first.
     """
     able = [
         number

@@ -1,4 +1,7 @@
-"""Sufficient statistics of a recorded episode for utility and comparison; statistics of episodes can be merged."""
+"""Compute the sufficient statistics of a recorded episode, for the utility and the comparison.
+
+Statistics of several episodes can be merged (merging.py).
+"""
 
 from __future__ import annotations
 
@@ -27,12 +30,12 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
-CANCELLED = 1e-13  # share of the sum of magnitudes below which a sum is a rounding error
-DENSE = 4  # possible pairs per pair seen up to which they are counted in a table
+CANCELLED = 1e-13  # a sum below this share of the sum of magnitudes is a rounding error
+DENSE = 4  # pairs are counted in a table if there are at most this many possible pairs per row
 
 
 def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]) -> Sample:
-    """Return the statistics of one episode; `lists` holds each taint list's global site numbers."""
+    """Return the statistics of one episode; `lists` holds the global site numbers of each taint list."""
     cells = tuple(sorted(trace.cells))
     sorted_trace = _relabelled(trace, cells)
     names = tuple(sorted(trace.parts))
@@ -81,9 +84,10 @@ def total_reward(reward: Floats) -> float:
 
 
 def total_rewards(reward: Floats, ends: Ints) -> Floats:
-    """Return the exact `total_reward` of each episode; `ends` has shape (episodes + 1,).
+    """Return the same bits as `total_reward` for each episode.
 
-    Episodes of equal length are summed together; numpy sums each row of a matrix to the same bits as the row alone.
+    `ends` has shape (episodes + 1,) and holds the boundaries of the episodes. Episodes of equal length are summed
+    together: numpy sums each row of a matrix to the same bits as the row alone.
     """
     lengths = np.diff(ends)
     found = np.zeros(lengths.size)
@@ -95,7 +99,7 @@ def total_rewards(reward: Floats, ends: Ints) -> Floats:
 
 
 def summed(index: Ints, column: Floats, size: int) -> Floats:
-    """Return the sum at each index, exactly 0 if it cancels out; shape (size,)."""
+    """Return the sum of the column at each index, shape (size,); exactly 0 if the values cancel out."""
     return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
 
 
@@ -139,22 +143,23 @@ def _joined(columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def _followers(state: Ints) -> Ints:
-    """Return the state after each event, the end for the last one."""
+    """Return the state after each event, with END after the last one."""
     following = np.empty_like(state)
     following[:-1], following[-1:] = state[1:], END
     return following
 
 
 def _flows(state: Ints, flow: Floats, width: int) -> Floats:
-    """Return Σ|f| of each site over all cells, shape (1, sites)."""
+    """Return the sum of |f| of each site over all cells, shape (1, sites)."""
     events = state != START
     return sum_by((state[events] - 1) % max(width, 1), flow[events], width)[None, :]
 
 
 def _unique_pairs(first: Ints, second: Ints, inverse: bool = True) -> tuple[tuple[Ints, Ints], Ints, Ints]:
-    """Return the distinct (first, second) pairs in order, the index of each row's pair if requested, and the counts.
+    """Return the distinct (first, second) pairs in order, the index of each row's pair, and the counts.
 
-    If few pairs are possible, a table of counts is used, which is much faster than sorting.
+    The index is computed only if `inverse` is set. If few pairs are possible, they are counted in a table, which is
+    much faster than sorting.
     """
     span = int(max(first.max(initial=0), second.max(initial=0))) + 2
     codes = first * span

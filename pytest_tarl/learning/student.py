@@ -1,6 +1,6 @@
-"""Student's t: bounds of a mean and of a difference of means, for totals that are about normal.
+"""Bounds by Student's t of a mean and of a difference of means, for totals that are about normal.
 
-Their coverage is too low for skewed totals and few episodes, so only learning/bounds.py, which states this, may use
+For skewed totals and few episodes, their coverage is too low. Only learning/bounds.py, which documents this, may use
 them.
 """
 
@@ -12,12 +12,12 @@ from statistics import NormalDist, fmean, variance
 
 import numpy as np
 
-FEW_DEGREES = 20  # degrees of freedom below which the density is integrated
+FEW_DEGREES = 20  # below this many degrees of freedom, the density is integrated
 
 
 def difference_bounds(first: Sequence[float], second: Sequence[float], risk: float) -> tuple[float, float]:
-    """Return the one-sided lower and upper bounds of mean(first) - mean(second), each at `risk` (Welch)."""
-    unit = max(map(abs, (*first, *second))) or 1.0  # scaled, so that squares neither overflow nor underflow
+    """Return one-sided lower and upper bounds of mean(first) - mean(second), each at `risk` (Welch)."""
+    unit = max(map(abs, (*first, *second))) or 1.0  # scaled so that squares neither overflow nor underflow
     parts = [_spread([value / unit for value in group]) for group in (first, second)]
     spread = sqrt(sum(parts))
     freedom = [part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (first, second), strict=True)]
@@ -28,15 +28,16 @@ def difference_bounds(first: Sequence[float], second: Sequence[float], risk: flo
 
 
 def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, float]:
-    """Return the two-sided interval of a mean (Student)."""
+    """Return the two-sided confidence interval of a mean (Student)."""
     reach = student_quantile((1 + confidence) / 2, max(len(values) - 1, 1)) * sqrt(_spread(values))
     return fmean(values) - reach, fmean(values) + reach
 
 
 def student_quantile(probability: float, degrees: float) -> float:
-    """Return a quantile of Student's t above the median; for many degrees by Abramowitz & Stegun 26.7.5.
+    """Return a quantile of Student's t above the median.
 
-    For few degrees, where this expansion is far too low, integrate the density over θ = atan(t / √degrees): cosᵈ⁻¹θ.
+    For many degrees of freedom, use the expansion 26.7.5 of Abramowitz & Stegun. For few degrees, where the expansion
+    is far too low, integrate the density over θ = atan(t / √degrees), which is proportional to cosᵈ⁻¹θ.
     """
     if degrees < FEW_DEGREES:
         angle = np.linspace(0.0, np.pi / 2, 20_001)

@@ -1,7 +1,8 @@
-"""Columns of recorded episodes: one row per (episode, transition) or (episode, state).
+"""Tables of recorded episodes: one row per (episode, transition) or (episode, state).
 
-States of a taint list with `width` sites are numbered 0 for the start of an episode and 1 + cell·width + n for site n
-in a cell. `END` is the state after the last event of an episode.
+A cell is a combination of sensor bins; a site is a statement of a taint list. The states of a taint list with `width`
+sites are numbered: 0 is the start of an episode, and 1 + cell·width + n is site n in a cell. `END` is the state after
+the last event of an episode.
 """
 
 from __future__ import annotations
@@ -22,7 +23,10 @@ END = -1
 
 @dataclass(frozen=True)
 class Chain:
-    """Transitions of the sensor cell, one per simulation step; columns of shape (rows,), `parts` (rows, parts)."""
+    """Transitions between sensor cells, one per simulation step.
+
+    Columns have shape (rows,), except `parts`, which has shape (rows, parts).
+    """
 
     episode: Ints
     cell: Ints
@@ -34,7 +38,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Edges:
-    """Transitions between states of one taint list; columns of shape (rows,)."""
+    """Transitions between states of one taint list; columns have shape (rows,)."""
 
     episode: Ints
     state: Ints
@@ -44,7 +48,7 @@ class Edges:
 
 @dataclass(frozen=True)
 class Visits:
-    """Sums per state of one taint list: of r, of r·|f|, and of the squares of both; shape (rows,)."""
+    """Sums per state of one taint list: of r, of r·|f|, and of the squares of both; columns have shape (rows,)."""
 
     episode: Ints
     state: Ints
@@ -57,7 +61,7 @@ class Visits:
 
 @dataclass(frozen=True)
 class ListSample:
-    """The sample of one taint list with `width` sites; `flow` is Σ|f|, shape (episodes, sites)."""
+    """The statistics of one taint list with `width` sites; `flow` is the sum of |f|, shape (episodes, sites)."""
 
     width: int
     edges: Edges
@@ -66,7 +70,7 @@ class ListSample:
 
     @property
     def mean_flow(self) -> float:
-        """Return F, the mean |f| per event; 1 if it is zero."""
+        """Return F, the mean |f| per event, or 1 if it is zero."""
         events = self.visits.count[self.visits.state != START].sum()
         mean = float(self.flow.sum()) / events if events else 0.0
         return mean or 1.0
@@ -74,9 +78,9 @@ class ListSample:
 
 @dataclass(frozen=True)
 class Judgements:
-    """Results of formulas; columns of shape (episodes, formulas).
+    """Results of formulas; columns have shape (episodes, formulas).
 
-    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, NaN without one.
+    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, or NaN without one.
     """
 
     formulas: tuple[str, ...]  # sorted
@@ -86,7 +90,7 @@ class Judgements:
 
 @dataclass(frozen=True)
 class Sample:
-    """Episodes in order of their seeds. `total` and `passed` have shape (episodes,); cells are sorted."""
+    """Episodes in the order of their seeds; `total`, `passed` and `steps` have shape (episodes,), cells are sorted."""
 
     cells: tuple[Cell, ...]
     seeds: tuple[int, ...]

@@ -1,8 +1,9 @@
-"""The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares (Bradtke & Barto 1996).
+"""The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares.
 
-A sensor with `tilings=T` has T grids of tiles; each tile is T bins wide, and each grid is shifted by one bin. A
-cell's utility is the sum of the weights of the T tiles that contain it, one per grid, so near cells share what they
-learn. Sensors without tilings keep their bins. The weights are fitted to the same counts as the table.
+A sensor with `tilings=T` has T grids of tiles. Each tile is T bins wide, and each grid is shifted by one bin. A cell's
+utility is the sum of the weights of the T tiles that contain it, one per grid, so neighbouring cells share what they
+learn. Sensors without tilings keep their bins. The weights are fitted to the same counts as the table (least-squares
+temporal differences, Bradtke & Barto 1996).
 """
 
 from __future__ import annotations
@@ -16,20 +17,21 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-RIDGE = 1e-6  # times the mean number of visits, added to the diagonal because tilings do not determine all weights
+# factor of the mean number of visits; added to the diagonal, because tilings leave some weights undetermined
+RIDGE = 1e-6
 DENSE = 1500  # maximum number of weights for a direct solution
 
 
 @dataclass(frozen=True)
 class Tiles:
-    """The tiles of every cell, shape (cells, tilings), numbered from 0."""
+    """The tiles of every cell: `of` has shape (cells, tilings) and holds numbers from 0 to `count` - 1."""
 
     of: Ints
     count: int
 
 
 def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
-    """Return the tiles of the cells, None if no sensor has tilings."""
+    """Return the tiles of the cells, or None if no sensor has tilings."""
     grids = max((sensor.tilings for sensor in sensors), default=0)
     if not grids or not cells:
         return None
@@ -42,7 +44,10 @@ def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
 
 
 def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
-    """Return the tile of each cell in one grid; dimensions shift by odd multiples so that tiles do not line up."""
+    """Return the tile of each cell in one grid, shape (cells,).
+
+    Each sensor is shifted by a different odd multiple, so that tile boundaries do not coincide.
+    """
     columns = []
     for d, sensor in enumerate(sensors):
         column = table[:, d]
@@ -64,7 +69,7 @@ def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GA
 def tiled_batch(
     recorded: ListSample, cells: int, scale: float, tiles: Tiles | None, gamma: float = GAMMA_EVENT
 ) -> Floats:
-    """Return q(x, n), shape (cells, sites), NaN if never visited; each site has its own tiles."""
+    """Return q(x, n), shape (cells, sites), with NaN for unvisited entries; each site has its own tiles."""
     if tiles is None:
         return batch(recorded, cells, scale, gamma)
     edges, visits, width = recorded.edges, recorded.visits, recorded.width
@@ -74,12 +79,12 @@ def tiled_batch(
     of = 1 + (tiles.of[:, None, :] + site[None, :, None]).reshape(cells * width, -1)
     of = np.concatenate((np.full((1, of.shape[1]), START), of))
     solved = _fitted(edges.state, edges.next_state, edges.count, reward, of, gamma)
-    solved[sum_by(edges.state, edges.count, states) == 0] = np.nan  # slices show executed code only
+    solved[sum_by(edges.state, edges.count, states) == 0] = np.nan  # only executed code has a utility
     return solved[START + 1 :].reshape(cells, width)
 
 
 def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles | None) -> Floats:
-    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` sums it over `count` visits."""
+    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` is summed over `count` visits."""
     total, visits = sum_by(cell, brought, cells), sum_by(cell, count, cells)
     if tiles is None:
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -88,7 +93,7 @@ def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles 
 
 
 def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints, gamma: float) -> Floats:
-    """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw, NaN if a state has a tile that was never visited."""
+    """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw; NaN if a state has an unvisited tile."""
     size, grids = int(of.max()) + 1, of.shape[1]
     visits = sum_by(state, count, reward.size)
     ridge = RIDGE * float(visits[visits > 0].mean()) if visits.any() else 1.0
@@ -96,7 +101,7 @@ def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints
     start, end, weight = state[inside], next_state[inside], gamma * count[inside]
 
     def spread(values: Floats) -> Floats:
-        """Add a number per state, shape (states,), to all of its tiles; shape (weights,)."""
+        """Add the number of each state, shape (states,), to all of its tiles; return shape (weights,)."""
         return sum_by(of.ravel(), np.repeat(values, grids), size)
 
     def system(weights: Floats) -> Floats:

@@ -1,8 +1,8 @@
-"""Compute the utility of being at a site in a cell from the statistics.
+"""Compute the utility, the expected reward from a site in a cell on, from the statistics.
 
-The learning signal is ρ = r·[last event of its step] + r·|f|/F (the reward-scaled flow value of Lyons &
-Zahra 2020); F is the mean |f| of the recording. `batch` computes the fixed point to which SARSA converges,
-q = (I - γP)⁻¹ρ̄, directly from the counts.
+The learning signal is ρ = r·[last event of its step] + r·|f|/F, with the reward-scaled flow value of Lyons & Zahra
+2020; F is the mean |f| of the recording. `batch` computes the fixed point to which SARSA converges, q = (I - γP)⁻¹ρ̄,
+directly from the counts.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
-PRECISE = 1e-12  # sweeps end when utilities change by less than this share of the largest one
-STEPS = 300  # maximum number of steps of biconjugate gradients; sweeps finish the solution in any case
+PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest one
+STEPS = 300  # maximum number of biconjugate gradient steps; sweeps complete the solution in any case
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
     """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN if a state was never left.
 
-    `reward` is the summed reward per state, shape (states,). Transitions to `END` end the episode.
+    `reward` is the summed reward by state, shape (states,). Transitions to `END` end the episode.
     """
     states = reward.size
     visits = sum_by(state, count, states)
     seen = np.flatnonzero(visits)
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
-    inside = place[next_state] >= 0  # END indexes the last entry, which stays -1
+    inside = place[next_state] >= 0  # END is -1 and thus selects the last entry, which stays -1
     start, end, mean = place[state[inside]], place[next_state[inside]], visits[seen]
     weight = gamma * count[inside] / mean[start]
     solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _approached
@@ -40,24 +40,24 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
 
 
 def _united(start: Ints, end: Ints, weight: Floats) -> tuple[Ints, Ints, Floats]:
-    """Sum the weights of equal transitions over all episodes."""
+    """Add up the weights of equal transitions over all episodes."""
     span = int(end.max(initial=0)) + 1
     codes, place = np.unique(start * span + end, return_inverse=True)
     return codes // span, codes % span, sum_by(place, weight, codes.size)
 
 
 def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve q = ρ̄ + Wq directly, where W holds the weights of the transitions."""
+    """Solve q = ρ̄ + Wq directly; W holds the weights of the transitions."""
     system = np.eye(mean.size)
     np.subtract.at(system, (start, end), weight)
     return np.linalg.solve(system, mean).astype(np.float64, copy=False)
 
 
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve the same by stabilised biconjugate gradients (van der Vorst 1992), then by sweeps, which contract by γ.
+    """Solve the same by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
-    This needs memory for the transitions only, not for all pairs of states. The sweeps complete the solution:
-    one or two if the gradients converged, more if they broke down.
+    This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by γ: one or
+    two suffice if the gradients converged, more are needed if they broke down.
     """
 
     def ahead(values: Floats) -> Floats:
@@ -72,7 +72,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 
 
 def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
-    """Return the best solution of system(x) = right found by biconjugate gradients, shape (states,)."""
+    """Return the best solution of system(x) = right that biconjugate gradients found, shape (states,)."""
     best = solution = right.copy()
     shadow = residual = right - system(solution)
     direction = residual.copy()
@@ -101,7 +101,10 @@ def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
 
 
 def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_EVENT) -> Floats:
-    """Return q(x, n), shape (cells, sites); NaN if never visited. `scale` is F; infinite: no flow term."""
+    """Return q(x, n), shape (cells, sites), with NaN for unvisited entries.
+
+    `scale` is F; infinity omits the flow term.
+    """
     edges, visits = recorded.edges, recorded.visits
     states = 1 + cells * recorded.width
     signal = visits.reward + visits.scaled / scale

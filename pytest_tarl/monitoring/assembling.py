@@ -1,4 +1,7 @@
-"""Assemble missions from the records of one log."""
+"""Assemble missions from the records of one log.
+
+A mission is one run of the robot, between a `mission` and an `end` record.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +19,12 @@ from pytest_tarl.monitoring.mission import Mission, Progress, Steps, Table, adva
 from pytest_tarl.observing.frames import Record
 from pytest_tarl.sensors import Cell
 
-LATEST = 1e11  # seconds since 1970; later times come from a wrong clock
+LATEST = 1e11  # seconds since 1970; a later time comes from a wrong clock
 
 
 @dataclass(frozen=True)
 class Expected:
-    """The sensors and test with which a log must have been written to match the recording."""
+    """The test and the sensors with which a log must have been written to match the recording."""
 
     test: str
     sensors: tuple[str, ...]
@@ -29,7 +32,7 @@ class Expected:
     number: Mapping[Cell, int]
 
     def problem(self, start: Record, path: Path) -> str:
-        """Return why missions after this record are not comparable, as a sentence; empty if they are."""
+        """Return why missions after this `start` record are not comparable, or an empty text if they are."""
         names = start.get("sensors", [])
         if [*names] != [*self.sensors]:
             return (
@@ -51,23 +54,24 @@ class Expected:
 
 @dataclass
 class Assembly:
-    """The state of reading an open log, up to `place`, including an unfinished mission."""
+    """The state of reading an open log up to the offset `place`, including an unfinished mission."""
 
     expected: Expected
     path: Path
-    begun: Progress  # progress when the log was opened, and whether its missions count now
+    begun: Progress  # progress when the log was opened; `refused` says why missions do not count now
     place: int
     missions: int = 0
     unfinished: int = 0
-    _last: Spot | None = None  # the last record of the latest mission, or a later one that belongs to none
+    _last: Spot | None = None  # the last record of the latest mission, or a later one outside missions
     _latest: Spot | None = None  # the last record read
-    _mission: tuple[float, list[Steps]] | None = None  # start time and steps of the unfinished mission
+    # start time in s since 1970, and steps, of the unfinished mission
+    _mission: tuple[float, list[Steps]] | None = None
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = b""  # cells of the table as they are in the log, if they were read with a whole mission
+    _text: bytes = b""  # cells of the table as JSON, if they came with a mission in consecutive records
 
     @property
     def progress(self) -> Progress:
-        """Return the position after the last whole mission."""
+        """Return the progress after the last complete mission."""
         return advanced(self.begun, self._last, self.missions, self.unfinished)
 
     def of_block(self, block: Block) -> Iterator[Mission]:
@@ -112,13 +116,13 @@ class Assembly:
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Process a record that ends no counted mission; `before` is the previous record, if it was read."""
+        """Process a record that does not end a counted mission; `before` is the previous record, or None."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":
             self._mission = valid_time(record["time"]), []
             if not torn and (before is None or before == self._last):
-                return  # a mission begins where the last one ended
+                return  # the mission begins directly after the last one
             last = before
         elif kind == "start":
             self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))
@@ -145,6 +149,6 @@ def _new(steps: Sequence[Steps]) -> tuple[Cell, ...]:
 
 
 def valid_time(told: float | bytes) -> float:
-    """Return seconds since 1970; 0 if a clock was wrong."""
+    """Return the time in seconds since 1970, or 0 if the clock was wrong."""
     time = float(told)
     return time if 0.0 <= time < LATEST else 0.0

@@ -1,4 +1,4 @@
-"""Read whole records of a log in blocks; the result does not depend on block boundaries."""
+"""Read complete records of a log in blocks; the block boundaries do not affect the result."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from typing import BinaryIO
 from pytest_tarl.framed import HEAD, unpack_head
 from pytest_tarl.observing.frames import LARGEST, Record
 
-BLOCK = 1 << 15  # bytes read at once, about 200 records
+BLOCK = 1 << 15  # bytes read at once: about 200 records
 _DECODED = json.JSONDecoder().raw_decode
 _TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
-# A mission in consecutive records, as short ones are written: mission, steps and end
+# A mission in three consecutive records (mission, steps, end), as short missions are written
 _AT_ONCE = re.compile(
     rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
     rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'
@@ -22,19 +22,19 @@ _AT_ONCE = re.compile(
     + rb'"step_cell":"([^"\n]*)","reward":"([^"\n]*)",.*\}\n'
     rb'\{"kind":"end","passed":(true|false),.*\}\n'
 )
-RECORDS = 3  # records of such a mission
+RECORDS = 3  # number of records of such a mission
 
 
 Spot = tuple[int, int, int]  # offset of a record in its log, and length and checksum of its payload
 
 
-# A mission in consecutive records: time and cells as JSON, cells and rewards of its steps as base64, whether it
-# passed as JSON, and the spot of its last record
+# A mission in three consecutive records: its time and cells as JSON, the cells and rewards of its steps as base64,
+# whether it passed as JSON, and the spot of its last record
 AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
 
 
 class Block:
-    """Consecutive records of a log, read one by one or, for missions in consecutive records, three at a time."""
+    """Consecutive records of a log, read one by one, or three at a time for missions in consecutive records."""
 
     def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
         self._texts = texts
@@ -51,7 +51,7 @@ class Block:
         return self._number < len(self._texts)
 
     def at_once(self) -> Iterator[AtOnce]:
-        """Return the next missions, up to the first one that is not in consecutive records."""
+        """Yield the next missions, up to the first one that is not in three consecutive records."""
         match, lines = _AT_ONCE.match, self._lines
         while (found := match(lines, self._at)) is not None:
             self._at = found.end()
@@ -68,18 +68,18 @@ class Block:
         return found
 
     def spot(self) -> Spot:
-        """Return the spot of the last record returned."""
+        """Return the spot of the record that was read last."""
         return self._spots[self._number - 1]
 
 
 def end_of(spot: Spot) -> int:
-    """Return the offset of the next record."""
+    """Return the offset at which the next record begins."""
     begin, length, _ = spot
     return begin + HEAD + length
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return about `size` bytes of records from `place` on; none if there is no complete one."""
+    """Return the complete records in about `size` bytes from `place` on; the block may be empty."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []
@@ -89,7 +89,7 @@ def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
         length, checksum = unpack_head(data, at)
         begin = at + HEAD
         if length > most - at and not spots and length <= LARGEST:
-            data += file.read(begin + length - len(data))  # a record larger than a block
+            data += file.read(begin + length - len(data))  # the record is larger than a block
         payload = data[begin : begin + length]
         if len(payload) < length or length > LARGEST or zlib.crc32(payload) != checksum:
             break

@@ -1,13 +1,13 @@
 """Conformal test martingales: test whether new missions are exchangeable with held-out recorded ones.
 
-The pool starts with the scores of the held-out recorded missions, and every new mission joins it after its test.
-So the smoothed rank of a new score in the pool is exactly uniform and independent of all earlier ranks, as long as the
-missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), for any number of recorded missions. A fixed
-pool would not work: the chance composition of its few missions would accumulate as evidence.
+The pool starts with the scores of the held-out recorded missions. Each new mission is ranked in the pool and then joins
+it. While missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all earlier
+ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theorem 8.1). A fixed pool would not work:
+its few missions are a random selection, and their peculiarities would accumulate as evidence.
 
-Scores are rounded to bins, whose edges come from the other half of the recorded missions, so binning is a fixed
-function of a score. The pool is then a row of counts: of fixed size for any number of missions, and exact, because ties
-are broken at random. A bet is a non-negative function of the rank p with integral 1 over [0, 1].
+Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so binning is a
+fixed function of a score. The pool is then a row of counts, whose size does not grow with the missions. The test stays
+exact, because ties are broken at random. A bet is a non-negative function of the rank p with integral 1 over [0, 1].
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-TAIL = 8  # bins beyond the fitted scores on either side, each twice as wide as the previous one
-TOGETHER = 64  # missions ranked together; a multiple of 8 below 256
-CLOSE = 1e-4  # share of a score's unit below which values count as equal
+TAIL = 8  # number of bins beyond the fitted scores on either side; each is twice as wide as the previous one
+TOGETHER = 64  # number of missions ranked together; a multiple of 8 below 256, see `_counted`
+CLOSE = 1e-4  # differences below this share of a score's unit count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
     """Return the edges of the bins, shape (BINS - 1,), from scores that are not in the pool.
 
-    They lie midway between neighbouring values, so that no rounding of a value moves it into another bin. `unit` is
-    the magnitude of the terms summed in these scores; bins with infinite edges stay empty.
+    Edges lie midway between neighbouring values, so rounding errors do not move a value into another bin. `unit` is the
+    magnitude of the terms that these scores sum. Unused bins have infinite edges and stay empty.
     """
     unit = unit or 1.0
     values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
@@ -47,9 +47,9 @@ def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
 def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
     """Return the smoothed ranks p and 1 - p of new scores, shape (missions, scores), both above 0.
 
-    `pool` holds the counts before the first of these missions, shape (scores, BINS), `bins` those of the new scores, -1
-    if a mission has none; each joins the pool after its ranking. `draws` are uniform on (0, 1], one per mission. At
-    most TOGETHER missions.
+    `pool` holds the counts before the first of these missions, shape (scores, BINS). `bins` holds the bins of the new
+    scores, with -1 if a mission lacks a score. Each mission joins the pool after its ranking. `draws` are uniform on
+    (0, 1], one per mission. There may be at most TOGETHER missions.
     """
     has, score = bins >= 0, np.arange(bins.shape[1])
     before = np.cumsum(pool, axis=1)
@@ -76,7 +76,10 @@ def _earlier(bins: Ints) -> tuple[Ints, Ints]:
 
 
 def _counted(found: NDArray[np.bool_]) -> Ints:
-    """Count true values along the last axis, transposed; adds eight bytes at a time, whose sums stay below 256."""
+    """Count true values along the last axis, and transpose.
+
+    Eight bytes are added at a time; their sums stay below 256, so they do not overflow.
+    """
     words = found.view(np.uint64)
     total = words[..., 0].copy()
     for place in range(1, words.shape[-1]):
@@ -85,7 +88,7 @@ def _counted(found: NDArray[np.bool_]) -> Ints:
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:
-    """Return the pool, shape (scores, BINS), with the scores in `bins`, shape (missions, scores), added."""
+    """Return the pool, shape (scores, BINS), plus the scores in `bins`, shape (missions, scores)."""
     score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
     has = bins >= 0
     added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)
@@ -93,11 +96,11 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 
 
 def factors(low: Floats, high: Floats, found: Floats) -> None:
-    """Write the factor on each bet's stake, shape (missions, bets, scores), from ranks of shape (missions, scores).
+    """Write to `found` the factor of each bet's stake, shape (missions, bets, scores).
 
-    εp^(ε-1) bets on small ranks, the same function of 1 - p on large ones, and of the distance to the nearer end on
-    both; the lines 1 ± (1 - 2p)/2 bet on small shifts. Powers are computed with square roots, which round the same on
-    all platforms.
+    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks. The same
+    function of 1 - p wins on large ranks, and of the distance to the nearer end on both. The lines 1 ± (1 - 2p)/2 win
+    on small shifts. Powers are computed by square roots, which round equally on all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

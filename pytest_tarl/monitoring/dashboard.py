@@ -1,4 +1,4 @@
-"""The status of a watch for dashboards: one versioned JSON document, see `watch.schema.json`."""
+"""The status of a watch for dashboards: a versioned JSON document, specified by `watch.schema.json`."""
 
 from __future__ import annotations
 
@@ -40,7 +40,10 @@ def schema() -> dict[str, Any]:
 
 
 def document(watch: Watch, status: Status) -> dict[str, Any]:
-    """Return the status as plain values; evidence is given as log10, with the alarm at -log10(alpha)."""
+    """Return the status as JSON-compatible values.
+
+    Evidence is given as log10; an alarm is raised at -log10(alpha).
+    """
     words = Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
     lead = status.lead
     return {

@@ -1,9 +1,9 @@
-"""Find the changed cells: the e-BH procedure over one e-value per cell, valid at any time.
+"""Find the changed cells by the e-BH procedure, with one e-value per cell; valid at any time.
 
-Evidence about several cells comes in several filtrations: each cell's ranks are independent of each other, but not
-given those of all cells. With its running maximum adjusted, an e-process remains one in a finer filtration (Choe &
-Ramdas 2024), so this is done before cells are compared; then e-BH (Wang & Ramdas 2022) keeps the share of wrongly
-named cells at α or less in expectation, under any dependence and at any time.
+An e-value measures evidence against a hypothesis: its expectation is at most 1 if the hypothesis is true. The ranks of
+one cell are independent of its earlier ranks, but not of those of other cells. Therefore the running maximum of each
+cell's evidence is first adjusted, so that it remains an e-value given all cells (Choe & Ramdas 2024). Then e-BH (Wang &
+Ramdas 2022) keeps the expected share of wrongly named cells at α or less, under any dependence and at any time.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from pytest_tarl.learning.tables import Floats
 
 
 def adjusted(log_peak: NDArray[np.float64]) -> Floats:
-    """Return log2 of the adjusted running maximum, (x - 1 - ln x) / ln² x, from log2 of x, which is at least 0.
+    """Return log2 of the adjusted running maximum, (x - 1 - ln x) / ln² x, from log2 of x ≥ 1.
 
-    Input and result have the same shape. This is the mean of the adjusters k·x^(1-k) over k in (0, 1): an adjuster F
-    has ∫ F(x)/x² dx ≤ 1 over [1, ∞).
+    Input and result have the same shape. The function is the mean of the adjusters k·x^(1-k) over k in (0, 1). An
+    adjuster is a function F with ∫ F(x)/x² dx ≤ 1 over [1, ∞).
     """
     natural = np.asarray(log_peak) * np.log(2.0)
     small = np.minimum(natural, 30.0)

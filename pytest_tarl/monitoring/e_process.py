@@ -1,8 +1,8 @@
 """Bet against a lower bound on a mean: a sequential test of E[x] ≥ m for observations in [0, 1].
 
-The stake is multiplied by 1 + λ(m - x), which is never negative for 0 ≤ λ ≤ 1/(1 - m), and whose mean is at most 1 as
-long as the mean of x, given all earlier observations, is at least m (Waudby-Smith & Ramdas 2023). For x of 0 and 1,
-it is the likelihood ratio of a success rate of m(1 - λ(1 - m)) against m.
+Each observation multiplies the stake by 1 + λ(m - x). For 0 ≤ λ ≤ 1/(1 - m), this factor is never negative. Its mean is
+at most 1 while the mean of x, given all earlier observations, is at least m (Waudby-Smith & Ramdas 2023). If x is 0 or
+1, the stake is the likelihood ratio of the success rate m(1 - λ(1 - m)) against m.
 """
 
 from __future__ import annotations
@@ -12,16 +12,20 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats
 
-# λ(1 - m), the share of the stake lost by a success, for each of restarts.BETS bets: mild losses to total failure
+# λ(1 - m), the share of the stake that a success loses, for each of restarts.BETS bets: for mild losses to total
+# failure
 SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 0.9)
 
 
 def factors(bound: float, observed: NDArray[np.float64]) -> Floats:
-    """Return the factor on each bet's stake, shape (missions, bets); observations are in [0, 1], shape (missions,)."""
+    """Return the factor of each bet's stake, shape (missions, bets), for observations in [0, 1], shape (missions,)."""
     lost: Floats = (bound - observed) / (1.0 - bound)
     return 1.0 + np.array(SHARES) * lost[:, None]
 
 
 def testable(bound: float) -> bool:
-    """Return whether a bound can be tested: 0 cannot be violated, and a sample cannot support 1."""
+    """Return whether a bound can be tested.
+
+    A bound of 0 cannot be violated, and no sample can support a bound of 1.
+    """
     return 0.0 < bound < 1.0

@@ -1,7 +1,7 @@
-"""Bet on missions: update the processes of one robot, or of several robots side by side.
+"""Update the bets on missions, for one robot or for several robots side by side.
 
-Columns of several robots are the bounds, each for all robots, and then the scores, robot by robot. The columns do not
-mix, and a column's arithmetic does not depend on its neighbours, so each robot has the bits that it has alone.
+The columns are first the bounds, each for all robots, and then the scores, robot by robot. Columns do not affect each
+other, so each robot gets exactly the bits that it would get alone.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ def judged(
     ends: Ints | None = None,
     onsets: bool = True,
 ) -> Ints:
-    """Update the processes with consecutive missions of each robot, and return the pool with them.
+    """Update the processes with consecutive missions of each robot, and return the updated pool.
 
-    `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), the pool
-    (robots · scores, BINS); `first` is the number of the first mission. At most conformal.TOGETHER missions. `ends`,
-    shape (robots,), is each robot's number of missions, if some have fewer; bins of the missing ones are -1.
-    Without `onsets`, the start of a difference is not kept, which is faster.
+    `passed` and `total` have shape (missions, robots), `bins` (missions, robots, scores), `draws` (missions,), and the
+    pool (robots · scores, BINS). `first` is the number of the first mission. There may be at most conformal.TOGETHER
+    missions. If some robots have fewer missions, `ends`, shape (robots,), holds the number of each; their missing bins
+    are -1. Without `onsets`, the start of a difference is not tracked, which is faster.
     """
     count, robots, scores = bins.shape
     flat, split = bins.reshape(count, robots * scores), len(bounds) * robots
@@ -54,27 +54,27 @@ def judged(
 
 
 def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
-    """Return the processes of several robots without missions; `threshold` is that of one robot."""
+    """Return the processes of several robots before the first mission; `threshold` is that of one robot."""
     return restarts.begun(
         np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
     )
 
 
 def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
-    """Return the columns of one of several robots, in the order that a robot has alone."""
+    """Return the columns of one of several robots, in the order in which a single robot has them."""
     rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
     return rows.astype(np.int64)
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions provide an observation for a bound; same shape as the totals."""
+    """Return which missions provide an observation for a bound, in the shape of the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told
 
 
 def _against(bound: Bound, passed: Truths, total: Floats) -> Floats:
-    """Return the factors on stakes against a bound, shape (missions, bets, robots)."""
+    """Return the factors of the stakes against a bound, shape (missions, bets, robots)."""
     least = float(bound.share(bound.least))
     if not e_process.testable(least):
         return np.ones((1, 1, 1))

@@ -1,4 +1,4 @@
-"""A mission read from a log, and the position in the log after it."""
+"""A mission read from a log, and the progress in the log after it."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from pytest_tarl.sensors import Cell
 
 
 class Progress(NamedTuple):
-    """Progress in a log: it was read up to `offset`, the end of the record at `last` with length and checksum `mark`.
+    """The progress in a log, which was read up to `offset`.
 
-    The log is identified by its first record, even after renaming. `refused` is a sentence on why missions at the
-    offset are not comparable with the recording.
+    That is the end of the record at the offset `last`, which `mark` identifies by length and checksum. `log` identifies
+    the log by its first record, so a renamed log is recognised. `refused` says why missions after the offset are not
+    comparable with the recording, or is empty.
     """
 
     log: str
@@ -28,26 +29,29 @@ class Progress(NamedTuple):
     mark: str
     refused: str = ""
     missions: int = 0
-    unfinished: int = 0  # missions without an end
+    unfinished: int = 0  # number of missions without an `end` record
 
 
 @dataclass(frozen=True)
 class Table:
-    """The cells of a record's steps: their rows, with -1 as the last, and the cells unknown to the recording."""
+    """The cells of a `steps` record: `rows` are their rows in the recording, with -1 appended.
+
+    `new` holds the cells that the recording does not know.
+    """
 
     cells: list[Any]
     rows: Ints
     new: Sequence[Cell | None]  # None for known cells; empty if all are known
 
 
-# Steps of a mission as stored in the log: cells and rewards are little-endian columns of int32 and float64
+# The steps of a mission as stored in the log: their cells as little-endian int32, their rewards as float64
 Steps = tuple[Table, bytes, bytes]
 
 
 class Mission(NamedTuple):
     """A finished mission, its cells that the recording does not know, and the progress in its log.
 
-    The progress counts from `begun`, when the log was opened, to the record at `last`.
+    The progress extends from `begun`, when the log was opened, to the record at `last`.
     """
 
     passed: bool
@@ -66,7 +70,7 @@ class Mission(NamedTuple):
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return the progress in a log from `begun` to the record at `last`; None if no record was read."""
+    """Return `begun` advanced to the record at `last`, or only with new counts if `last` is None."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted
@@ -74,7 +78,7 @@ def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int)
 
 
 def mark(spot: Spot) -> str:
-    """Return the identification of a record."""
+    """Return a text that identifies a record by its length and checksum."""
     _, length, checksum = spot
     return f"{length}:{checksum}"
 
@@ -92,6 +96,6 @@ def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
 
 
 def latest(missions: Sequence[Mission]) -> dict[str, Progress]:
-    """Return the progress in each log after its last mission, by the log's first record."""
+    """Return the progress in each log after its last mission; keys are the ids of the logs."""
     last = {one.begun.log: one for one in missions}
     return {log: one.progress for log, one in last.items()}

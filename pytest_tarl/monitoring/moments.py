@@ -1,4 +1,4 @@
-"""Start times of evenly spaced missions, for converting a mission's number to a time."""
+"""Keep start times of evenly spaced missions, to find the time of a mission by its number."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ MOST = 1024  # maximum number of times to keep
 
 @dataclass
 class Moments:
-    """Times of every `stride`-th mission, in seconds since 1970; the stride doubles when there are too many."""
+    """The start times of every `stride`-th mission, in seconds since 1970; the stride doubles at MOST times."""
 
     stride: int = 1
     times: list[float] = field(default_factory=list)
 
     def add(self, first: int, times: Sequence[float]) -> None:
-        """Store the start times of consecutive missions, the first of which has this number."""
+        """Store start times of consecutive missions; `first` is the number of the first one."""
         number = first + -first % self.stride
         while number < first + len(times):
             self.times.append(times[number - first])
@@ -27,6 +27,6 @@ class Moments:
             number += self.stride - number % self.stride
 
     def at(self, number: int) -> float | None:
-        """Return the start time of the latest stored mission up to this one."""
+        """Return the start time of the latest stored mission up to this number, or None."""
         place = bisect_right(range(0, len(self.times) * self.stride, self.stride), number) - 1
         return self.times[place] if place >= 0 else None

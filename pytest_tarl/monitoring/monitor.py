@@ -1,8 +1,9 @@
-"""The monitor: one e-process per bound, one conformal martingale per score, and the alarms.
+"""The monitor: an e-process for each bound, a conformal martingale for each score, and their alarms.
 
-Two tests share α: is performance below the recorded bound, and do missions differ from the recorded ones? Each test
-runs several processes, which share its half of α (a union bound, since the scores' martingales have different
-filtrations). So the probability of ever raising a false alarm is at most α, plus the error of the bound.
+An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
+recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
+(union bound). The probability of a false alarm at any time is therefore at most α, plus the error probability of the
+bound.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from pytest_tarl.monitoring.stated import Bound, bounds
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
-PORTION = 512  # missions scored together
-MOST_NEW = 256  # maximum number of new cells counted
-DRAWS = 4096  # random numbers drawn together
+PORTION = 512  # number of missions scored together
+MOST_NEW = 256  # maximum number of new cells to count
+DRAWS = 4096  # number of random numbers drawn together
 
 
 @dataclass
@@ -43,7 +44,10 @@ class Counts:
 
 @dataclass
 class Monitor:
-    """The state of a watch. Rows of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS)."""
+    """The state of a watch.
+
+    The columns of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS).
+    """
 
     scale: Scale
     bounds: tuple[Bound, ...]
@@ -53,30 +57,31 @@ class Monitor:
     pool: Ints
     counts: Counts = field(default_factory=Counts)
     moments: Moments = field(default_factory=Moments)
-    new: dict[Cell, int] = field(default_factory=dict)  # cell not in the recording → missions there
+    # cell that is not in the recording → number of missions there
+    new: dict[Cell, int] = field(default_factory=dict)
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order. The state does not depend on the portions, to the last bit."""
+        """Update with missions in order; the division into calls does not change the state, to the last bit."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
-        """Update with missions in order; a total is NaN if it is unknown.
+        """Update with missions in order; an unknown total is NaN.
 
-        Cells are numbered as in the scale; all others, which are listed in `new`, share the next number.
+        Cells are numbered as in the scale. All other cells, listed in `new`, share the next number.
         """
         self.moments.add(self.counts.missions, time.tolist())
         self.judge(sample.passed, sample.total, binned(self.scale, sample))
         self._count(sample.steps, sample.total, new)
 
     def judge(self, passed: NDArray[np.bool_], total: Floats, bins: NDArray[np.integer[Any]]) -> None:
-        """Update the processes with missions in order; `bins` are those of their scores, shape (missions, scores)."""
+        """Update the processes with missions in order; `bins` are those of the scores, shape (missions, scores)."""
         for begin in range(0, len(passed), conformal.TOGETHER):
             some = slice(begin, begin + conformal.TOGETHER)
             self._judge(passed[some], total[some], bins[some].astype(np.int64))
 
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
-        """Update the processes with some missions and add them to the pool."""
+        """Update the processes with at most TOGETHER missions and add them to the pool."""
         first, count = self.counts.missions, len(bins)
         one_robot = passed[:, None], total[:, None], bins[:, None, :]
         self.pool = judged(
@@ -86,10 +91,10 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def draws(self, first: int, count: int) -> Floats:
-        """Return numbers in (0, 1] that break ties of some missions; a function of seed and mission number."""
+        """Return numbers in (0, 1] that break ties; they depend only on the seed and the mission's number."""
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
-            drawn = self.drawn  # threads may share a monitor's draws
+            drawn = self.drawn  # read once, since threads may share a monitor
             if drawn[0] != which:
                 drawn = self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
             begin = which * DRAWS
@@ -104,7 +109,7 @@ class Monitor:
         time: Floats,
         new: Sequence[Cell] = (),
     ) -> None:
-        """Count all missions of a monitor whose processes were updated already (judging.py)."""
+        """Count missions whose processes have already been updated (judging.py)."""
         self.moments.add(self.counts.missions, time.tolist())
         self.counts.missions += len(passed)
         self.counts.passed += int(passed.sum())
@@ -135,7 +140,10 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 
 
 def shares(stated: int, scores: int) -> Floats:
-    """Return the shares of α, shape (processes,): half for bounds, if any, the rest for missions and cells."""
+    """Return the shares of α, shape (processes,).
+
+    Half goes to the bounds, if there are any; the rest is divided evenly between scores of whole missions and of cells.
+    """
     cells = scores - len(WHOLE)
     rest = 0.5 if stated else 1.0
     parts = [(stated, 0.5), (len(WHOLE), rest / 2 if cells else rest), (cells, rest / 2)]

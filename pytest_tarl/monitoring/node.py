@@ -1,4 +1,4 @@
-"""A watch as a ROS node: `diagnostic_msgs/DiagnosticArray` on /diagnostics, with rospy or with rclpy."""
+"""A watch as a ROS node that publishes `diagnostic_msgs/DiagnosticArray` on /diagnostics, for rospy or rclpy."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ TOPIC = "/diagnostics"
 NAME = "tarl_watch"
 OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
-NOTICED = 0.5  # maximum seconds between a signal and the end of the watch
+NOTICED = 0.5  # maximum delay in seconds between a signal and the end of the watch
 
-Look = Callable[[], tuple[bool, Watch, Status]]  # whether to continue, and the status
+Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, the watch, and its status
 
 
 def run(library: str, look: Look, period: float, stopped: Event) -> None:
-    """Read the logs every `period` seconds of ROS time and publish the status, until `stopped` is set by a signal.
+    """Read the logs every `period` seconds of ROS time and publish the status.
 
-    ROS may also shut the node down. Its own signal handlers stay off: they would do so while a message is published.
-
-    Raise SettingsError if the library or the message package is not installed.
+    End when a signal sets `stopped` or ROS shuts the node down. The signal handlers of ROS stay off, because they would
+    shut the node down in the middle of a publish call. Raise SettingsError if the library or the message package is not
+    installed.
     """
     try:
         ros, messages = import_module(library), import_module("diagnostic_msgs.msg")
@@ -59,7 +59,10 @@ def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_leve
 
 
 def values(watch: Watch, status: Status) -> list[tuple[str, str]]:
-    """Return the status by key; evidence is given as log10, with the alarm at -log10(alpha)."""
+    """Return the status by key.
+
+    Evidence is given as log10; an alarm is raised at -log10(alpha).
+    """
     found = [
         ("missions", str(status.missions)),
         ("passed", str(status.passed)),

@@ -19,21 +19,24 @@ from pytest_tarl.observing.frames import MAGIC, next_record
 
 @dataclass
 class LogReader:
-    """A log that may grow, be rotated, truncated or not exist yet; `problem` is a sentence on its current problem."""
+    """A log that may grow, be rotated or truncated, or not exist yet.
+
+    `problem` is a sentence about its current problem, or empty.
+    """
 
     path: Path
     expected: Expected
-    known: Mapping[str, Progress]  # progress of every log that was ever counted
+    known: Mapping[str, Progress]  # progress in every log that was ever read
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # whether missions were read but not yet consumed
+    _ahead: bool = False  # whether the last call of `missions` was not read to its end
 
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
 
-        A rotated log is read to its end before the new log of the same name. Missions that were not consumed are
-        yielded again, provided that `known` is kept up to date.
+        A rotated log is read to its end before the new log of the same name. Missions that the caller did not consume
+        are yielded again, provided that the caller keeps `known` up to date.
         """
         if self._ahead:
             self.close()
@@ -47,7 +50,7 @@ class LogReader:
 
     @property
     def progress(self) -> Progress | None:
-        """Return the progress in the log, None if it is not open."""
+        """Return the progress in the log, or None if it is not open."""
         return None if self._open is None else self._open[1].progress
 
     def close(self) -> None:
@@ -79,7 +82,7 @@ class LogReader:
         return self._open
 
     def _begun(self, file: BinaryIO) -> Progress | None:
-        """Identify the log and its progress. Return None if there is nothing to read."""
+        """Identify the log and return the progress in it, or None if there is nothing to read."""
         magic = file.read(len(MAGIC))
         if not MAGIC.startswith(magic):
             self.problem = f"{self.path} is not a log of `tarl observe` of this version: name such a log."
@@ -105,7 +108,10 @@ class LogReader:
         return begun
 
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
-        """Return whether another file has taken the log's name, or the log is shorter than the part already read."""
+        """Return whether the log was rotated or truncated.
+
+        Then another file has its name, or it is shorter than the part already read.
+        """
         mine = os.fstat(file.fileno())
         try:
             there = self.path.stat()
@@ -124,7 +130,7 @@ class LogReader:
         self._damaged(file, assembly.place)
 
     def _damaged(self, file: BinaryIO, place: int) -> None:
-        """Set `problem` if a complete record is unreadable."""
+        """Set `problem` if a complete record cannot be read."""
         rest = os.fstat(file.fileno()).st_size - place
         file.seek(place)
         head = file.read(4)
@@ -136,7 +142,7 @@ class LogReader:
 
 
 def _unchanged(file: BinaryIO, at: Progress) -> bool:
-    """Return whether the last record read is unchanged."""
+    """Return whether the file still has the last record that was read."""
     file.seek(at.last)
     payload = next_record(file)
     if payload is None:

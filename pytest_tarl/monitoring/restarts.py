@@ -2,8 +2,8 @@
 
 One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If started before observation τ, its value is
 ∏_{t ≥ τ} f_t, and 1 before. The mixture over k and τ with weights that sum to 1 is again an e-process (Shin, Ramdas &
-Rinaldo 2023, e-detectors): by Ville's inequality, it ever exceeds 1/α with probability at most α. A restart before
-every observation costs only one product, since
+Rinaldo 2023, e-detectors): by Ville's inequality, it exceeds 1/α at any time with probability at most α. A restart
+before every observation costs only one product, since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
@@ -24,19 +24,22 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats, Ints
 
-BETS = 12  # bets per process
-LARGE = 600  # binary orders of magnitude at which stakes are scaled down; one factor is below 2^70
-LOOK = 4  # check for LARGE when a mission's number is a multiple of this, so that portions do not matter
+BETS = 12  # number of bets per process
+LARGE = 600  # stakes above 2^LARGE are scaled down; one factor is below 2^70
+# stakes are checked when the mission's number is a multiple of this, so that the division into calls does not
+# matter
+LOOK = 4
 
 
 @dataclass
 class Processes:
-    """The state of several e-processes, one per column; `stake`, `best` and `since` have shape (bets, processes).
+    """The state of several e-processes, one per column.
 
-    `stake` is Σ_τ w_τ ∏f and `best` the largest term of that sum, both divided by 2^exponent; `since` is the mission
-    before which the largest term started. `age` counts the observations of a process; `peak` is the largest log2 of its
-    evidence so far, `onset` the mission before which the largest term at that moment had started, `alarm` the mission
-    at which the evidence reached `threshold`, -1 for none.
+    `stake`, `best` and `since` have shape (bets, processes), the others (processes,). `stake` is Σ_τ w_τ ∏f, and `best`
+    is the largest term of that sum, both divided by 2^exponent. `since` is the mission before which the largest term
+    started. `age` is the number of observations. `peak` is log2 of the largest evidence so far, and `onset` is the
+    mission before which the largest term at that moment had started. `alarm` is the mission at which the evidence
+    reached `threshold`, or -1.
     """
 
     stake: Floats
@@ -72,7 +75,7 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the weight of all restarts after `age` observations, same shape: 1 for none, then ½·age^(-1/8)."""
+    """Return the weight of all future restarts after `age` observations: 1 for none, then ½·age^(-1/8)."""
     root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
     return np.where(age > 0, 0.5 / root, 1.0)
 
@@ -87,10 +90,10 @@ def advance(
 ) -> None:
     """Update with consecutive missions, the first of which has the number `first`.
 
-    `taken`, shape (missions, processes), is true if a mission has an observation for a process. `factors`, shape
-    (missions, bets, processes), multiply the stakes; they are 1 without an observation. `ends`, shape (processes,), is
-    the number of these missions that belong to each process; the rest fills up the table (default: all belong).
-    Without `onsets`, `best`, `since` and `onset` are left as they are, which takes half the time.
+    `taken`, shape (missions, processes), says whether a mission has an observation for a process. `factors`, shape
+    (missions, bets, processes), multiply the stakes and are 1 without an observation. If processes have different
+    numbers of missions, `ends`, shape (processes,), holds them, and the other rows are padding. Without `onsets`,
+    `best`, `since` and `onset` are not updated, which halves the time.
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
@@ -115,9 +118,9 @@ def advance(
 
 @dataclass(frozen=True)
 class _Products:
-    """What the stakes of some rows became: sums over the bets and exponents after each mission, shape (missions, rows).
+    """The stakes after each mission: their sums over the bets, and exponents, each of shape (missions, rows).
 
-    `added`, `multiplied` and `shrinks` are what was done at each mission, in this order, for all bets of all rows.
+    `added`, `multiplied` and `shrinks` are the operations of each mission, in this order, for all bets of all rows.
     """
 
     sums: Floats
@@ -130,9 +133,9 @@ class _Products:
 def _multiplied(
     processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int, ends: Ints | None
 ) -> _Products:
-    """Update stakes mission by mission.
+    """Update the stakes mission by mission.
 
-    A row of `stake` is the state of all bets of all processes, before a mission or after the last one.
+    A row of the local array `stake` holds all bets of all processes, before the first mission or after one.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
@@ -160,9 +163,9 @@ def _multiplied(
 
 
 def _started(processes: Processes, rows: Ints, products: _Products, first: int, evidence: Floats) -> None:
-    """Update the largest terms of the stakes and the missions before which they started, now and at the peak.
+    """Update the largest terms of the stakes and the missions before which they started.
 
-    `evidence`, shape (missions, rows), is log2 of it after each mission.
+    `evidence`, shape (missions, rows), is log2 of the evidence after each mission.
     """
     added, count = products.added, len(products.added)
     best = np.empty((count + 1, BETS * len(rows)))
@@ -186,13 +189,13 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return the number of the last mission at which a term was `fresh`, along the first axis; `earlier` without."""
+    """Return the last mission at which a term was `fresh`, along the first axis, or `earlier` if none was."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 
 
 def _summed(stake: Floats) -> Floats:
-    """Sum over the bets, shape (missions, bets, processes), in the same order for any number of processes."""
+    """Sum over the bets of shape (missions, bets, processes), in the same order for any number of processes."""
     total: Floats = stake[:, 0] + stake[:, 1]
     for bet in range(2, BETS):
         total += stake[:, bet]
@@ -200,7 +203,7 @@ def _summed(stake: Floats) -> Floats:
 
 
 def log_evidence(processes: Processes) -> Floats:
-    """Return log2 of the current evidence of every process, shape (processes,)."""
+    """Return log2 of the current evidence of each process, shape (processes,)."""
     left = np.ldexp(reserve(processes.age), -processes.exponent)
     found: Floats = np.log2(_summed(processes.stake[None])[0] / BETS + left) + processes.exponent
     return found

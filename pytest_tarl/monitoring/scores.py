@@ -1,7 +1,7 @@
-"""Scores of missions, exchangeable with those of held-out recorded missions.
+"""Scores of missions that can be compared with those of held-out recorded missions.
 
-The model is fitted on one half of the recorded episodes; scores of the other half begin the pools. New missions are
-rounded as in a recording.
+The model is fitted to one half of the recorded episodes; the scores of the other half start the pools. New missions are
+rounded as in a recording, so that their scores are exchangeable with the recorded ones.
 """
 
 from __future__ import annotations
@@ -22,15 +22,16 @@ from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.monitoring.conformal import BINS, edges
 from pytest_tarl.sensors import Cell
 
-WHOLE = ("success", "total", "residual", "unknown", "steps")  # scores of a mission, before those of its cells
+# scores of a whole mission; the scores of its cells follow
+WHOLE = ("success", "total", "residual", "unknown", "steps")
 FEWEST = 2  # minimum number of episodes in each half of a recording
 
 
 @dataclass(frozen=True)
 class Missions:
-    """Missions in order; step columns have shape (steps,).
+    """Missions in order; columns of steps have shape (steps,).
 
-    `cell` is a row of the scale's cells, one more than the last for any other cell, and -1 before all sensors had a
+    `cell` is the row of the cell in the scale, the number of rows for any other cell, and -1 until all sensors have a
     value. A mission may have no steps.
     """
 
@@ -39,7 +40,7 @@ class Missions:
     mission: Ints  # index of each step's mission
     cell: Ints
     reward: Floats
-    new: tuple[Cell, ...] = ()  # cells not in the scale, once for each mission that visited them
+    new: tuple[Cell, ...] = ()  # cells that are not in the scale, once for each mission that visited them
 
     @property
     def count(self) -> int:
@@ -49,7 +50,7 @@ class Missions:
 
 @dataclass(frozen=True)
 class Scale:
-    """The scoring of missions: fitted model, its cells, and edges of every score's bins, shape (scores, BINS - 1)."""
+    """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
     known: NDArray[
@@ -65,9 +66,9 @@ class Scale:
 
 
 def scale(fixture: Fixture) -> tuple[Scale, Ints]:
-    """Return the scoring of missions, and the bins of the held-out episodes, shape (episodes, scores).
+    """Return the scale, and the bins of the held-out episodes, shape (episodes, scores).
 
-    Raise FixtureError if one half has too few episodes.
+    Raise FixtureError if one half of the recording has too few episodes.
     """
     sample = fixture.sample
     fit = np.array([in_fit(seed) for seed in sample.seeds])
@@ -93,9 +94,10 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 
 
 def binned(scale: Scale, sample: Sample) -> Ints:
-    """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission has none.
+    """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission lacks the score.
 
-    A mission without steps has only the score of its success; one without rewards lacks those that need them.
+    A mission without steps only has the score of its success. A mission without rewards lacks the scores that need
+    them.
     """
     return _binned(scale, _values(scale, sample))
 
@@ -109,7 +111,7 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 
 
 def _values(scale: Scale, sample: Sample) -> Floats:
-    """Return the scores, shape (missions, scores), NaN if a mission has none.
+    """Return the scores, shape (missions, scores), with NaN if a mission lacks one.
 
     The score of a cell is its mean residual per visit.
     """
@@ -135,7 +137,7 @@ def _values(scale: Scale, sample: Sample) -> Floats:
 
 
 def _units(chain: Chain, episodes: int, cells: int) -> Floats:
-    """Return the magnitude of the terms summed in each score, shape (scores,); rounding errors are relative to it."""
+    """Return the magnitude of the terms summed in each score, shape (scores,), as the scale of rounding errors."""
     size = float(np.abs(chain.reward).sum())
     mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
     whole = {"success": 1.0, "total": mission, "residual": mission, "unknown": 1.0, "steps": 1.0}
@@ -143,7 +145,7 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 
 
 def sampled(scale: Scale, missions: Missions) -> Sample:
-    """Return missions in the form of recorded episodes over the scale's cells plus one for all others.
+    """Return missions in the form of recorded episodes, with one more cell for all unknown cells.
 
     The total of a mission is NaN if it has no steps or an unknown reward.
     """

@@ -64,7 +64,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     buffer = io.BytesIO()
     text = np.frombuffer(json.dumps(header).encode(), np.uint8)
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # no options: numpy before 2.1 stores them as arrays
+    np.savez_compressed(buffer, **arrays)  # no options as keywords: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
@@ -76,9 +76,10 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
 def load(
     path: Path, fixture: Fixture, digest: str, *, alpha: float, seed: int
 ) -> tuple[Monitor, dict[str, Progress]]:
-    """Return the monitor of a state file, or a new one without a file.
+    """Return the monitor and the progress in its logs from a state file, or a new monitor if there is no file.
 
-    Raise MonitorError if it is damaged, or belongs to another recording, α or seed.
+    Raise MonitorError if the file is damaged, or belongs to another recording, α or seed. Raise FixtureError if the
+    recording has too few episodes.
     """
     fresh = begun(fixture, alpha=alpha, seed=seed)
     if not path.exists():
@@ -100,7 +101,10 @@ def load(
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Lock a state. Raise MonitorError if another watch has it or its folder cannot be written."""
+    """Lock a state file during the block.
+
+    Raise MonitorError if another watch holds the lock or the file cannot be written.
+    """
     if path.is_dir():
         raise MonitorError(f"The state {path} is a folder: name a file with --state.")
     lock = path.with_name(f".{path.name}.lock")

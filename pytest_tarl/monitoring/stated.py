@@ -1,4 +1,4 @@
-"""The bounds of a recording on future missions, over the worlds that the test samples."""
+"""The bounds of a recording: a minimum success rate and mean reward of future missions."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from pytest_tarl.model import Bound as Rate
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound on the mean of a quantity within [low, high]; it holds with `confidence` over recordings.
+    """A lower bound on the mean of a quantity within [low, high].
 
-    `what` is "success" or "total".
+    `what` is "success" or "total". `confidence` is the probability over recordings that the bound holds.
     """
 
     what: str
@@ -28,15 +28,15 @@ class Bound:
     high: float = 1.0
 
     def share(self, value: NDArray[np.float64] | float) -> Floats:
-        """Scale values of any shape to 0 to 1 over the range; clip values outside."""
+        """Scale values of any shape from [low, high] to [0, 1]; clip values outside."""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
     """Return the bounds of the recording: of success, and of the mean total if its range was declared.
 
-    Empty if all episodes are equal, since they sample one world only. A recording of an older version has no bounds;
-    the bound of success is computed from its episodes.
+    There are none if all episodes are equal, since they sample only one world. Recordings of older versions state no
+    bounds; then the bound of success is computed from the episodes.
     """
     told = fixture.stated
     if told is None:

@@ -13,13 +13,14 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)  # bets of conformal.factors on one end; others bet on both
-FEWEST_NEW = 2  # minimum number of missions in a new cell for it to be named
+# indices of bets on low and on high ranks; the other bets of conformal.factors are on both ends
+LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
+FEWEST_NEW = 2  # a new cell is named if at least this many missions visited it
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A mission, counted from 1, and its start in seconds since 1970; None if unknown."""
+    """A mission, counted from 1, and its start in seconds since 1970, or None if unknown."""
 
     mission: int
     time: float | None
@@ -27,9 +28,9 @@ class Moment:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Evidence on one question, now and at its maximum, as log10, scaled so that an alarm is at 1/α.
+    """The evidence on one question, now and at its maximum, as log10; an alarm is raised at -log10(α).
 
-    `since` is the mission before which the restart with most of the evidence was made; `alarm` the one that raised it.
+    `since` is the mission before which the difference probably began. `alarm` is the mission that raised the alarm.
     """
 
     now: float
@@ -40,7 +41,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Score:
-    """A score of missions, of one cell if given, and the side on which new missions deviate from recorded ones."""
+    """A score of whole missions or of one cell, and the side on which new missions deviate."""
 
     name: str
     cell: Cell | None
@@ -49,7 +50,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Status:
-    """The status of a watch. Evidence against a bound that cannot be violated, such as 0, is None."""
+    """The status of a watch; evidence is None for a bound that cannot be violated, such as 0."""
 
     missions: int
     passed: int
@@ -73,12 +74,12 @@ class Status:
 
     @property
     def alarm(self) -> bool:
-        """Return whether there ever was an alarm; α covers the whole life of a watch."""
+        """Return whether there ever was an alarm; it stays, since α covers the whole life of a watch."""
         return self.below or self.drifted
 
     @property
     def error(self) -> float:
-        """Return the probability of ever raising a false alarm, including the error of the bounds."""
+        """Return the probability of a false alarm at any time, including the error of the bounds."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
@@ -112,7 +113,7 @@ def _testable(bound: Bound) -> bool:
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
-    """Return the evidence of the processes in these rows on one question: the largest, relative to its share of α."""
+    """Return the largest evidence among the processes in these rows, relative to their shares of α."""
     processes = monitor.processes
     unit = -processes.threshold[rows] - np.log2(monitor.alpha)
     now = restarts.log_evidence(processes)[rows] + unit
@@ -134,7 +135,7 @@ def _moment(monitor: Monitor, number: int) -> Moment:
 
 
 def _lead(monitor: Monitor, rows: Ints) -> Score | None:
-    """Return the score with the most evidence."""
+    """Return the score with the most evidence, or None if there is none."""
     if not rows.size:
         return None
     processes = monitor.processes
@@ -148,7 +149,7 @@ def _lead(monitor: Monitor, rows: Ints) -> Score | None:
 
 
 def _region(monitor: Monitor) -> tuple[Cell, ...]:
-    """Return the cells that e-BH rejects: missions in them differ from the recorded ones."""
+    """Return the cells in which missions differ from recorded ones, according to e-BH."""
     peaks = monitor.processes.peak[len(monitor.bounds) + len(WHOLE) :]
     picked = e_bh.chosen(e_bh.adjusted(peaks), monitor.alpha)
     return tuple(monitor.scale.cells[row] for row in np.flatnonzero(picked).tolist())

@@ -1,4 +1,4 @@
-"""A watch: growing logs, the monitor that judges them, and their saved state."""
+"""A watch: growing logs, the monitor that judges their missions, and the saved state."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
 
-SAVED = 1.0  # seconds between two saves of the state while there is more to read
+SAVED = 1.0  # seconds between two saves of the state while there are more missions to read
 
 
 @dataclass
 class Watch:
-    """The watched logs; `known` is the progress in each log, by its first record."""
+    """The watched logs; `known` is the progress in each log, by the id of the log."""
 
     fixture: Fixture
     digest: str
@@ -41,7 +41,8 @@ class Watch:
     def poll(self) -> Iterator[None]:
         """Count the missions that ended since the last call, in the order of their times.
 
-        Yield after each portion; save the state every `SAVED` seconds and at the end.
+        Yield after each portion. Save the state every `SAVED` seconds and at the end. Raise MonitorError if it cannot
+        be saved.
         """
         logs = [one.missions() for one in self.readers]
         coming = logs[0] if len(logs) == 1 else heapq.merge(*logs, key=lambda mission: mission.time)
@@ -58,7 +59,7 @@ class Watch:
             self.save()
 
     def save(self) -> None:
-        """Write the state."""
+        """Write the state. Raise MonitorError if it cannot be written."""
         state.save(self.path, self.monitor, self.known, self.digest)
 
     def status(self) -> Status:
@@ -80,9 +81,9 @@ class Watch:
 
 
 def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
-    """Return a watch that resumes from its state file, or a new one without a file.
+    """Return a watch that resumes from its state file, or a new one if there is no file.
 
-    Raise FixtureError or MonitorError if recording or state cannot be used.
+    Raise FixtureError or MonitorError if the recording or the state cannot be used.
     """
     loaded = load_fixture(fixture)
     digest = hashlib.sha256(fixture.read_bytes()).hexdigest()
@@ -94,7 +95,7 @@ def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed
 
 
 def expectation(fixture: Fixture, monitor: Monitor) -> Expected:
-    """Return the sensors and test that logs must match. Raise FixtureError if the sensors cannot be watched."""
+    """Return the test and sensors that logs must match. Raise FixtureError if the recording has no sensors."""
     if not fixture.sensors:
         raise FixtureError(f"The recording of {fixture.test} has no sensors.")
     names = tuple(sensor.name for sensor in fixture.sensors)

@@ -55,7 +55,7 @@ def headline(watch: Watch, status: Status) -> str:
 
 
 def vocabulary(watch: Watch, status: Status) -> Vocabulary:
-    """Return the names of cells."""
+    """Return the vocabulary that names cells in words."""
     return Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
 
 
@@ -67,7 +67,7 @@ def stated(bound: Bound) -> str:
 
 
 def found(evidence: Evidence | None, alpha: float) -> str:
-    """Describe the evidence against a hypothesis and its onset."""
+    """Describe the evidence against a hypothesis, and when the difference began."""
     if evidence is None:
         return "nothing to test"
     now = f"evidence {_number(evidence.now)}, alarm at {1.0 / alpha:.4g}"
@@ -79,7 +79,7 @@ def found(evidence: Evidence | None, alpha: float) -> str:
 
 
 def led(score: Score, words: Vocabulary) -> str:
-    """Describe the score that differs most."""
+    """Describe the score with the most evidence."""
     what = (
         SCORES[score.name] if score.cell is None else f"the value of a visit to {words.words([score.cell])}"
     )

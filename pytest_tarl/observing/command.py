@@ -21,9 +21,7 @@ from pytest_tarl.ros.argv import command_line
 from pytest_tarl.sensors import binning_digest
 from tarl_lint.api import analyse
 
-SHUT_DOWN = (
-    "ExternalShutdownException"  # rclpy raises it after a signal; rospy's counts as a KeyboardInterrupt
-)
+SHUT_DOWN = "ExternalShutdownException"  # rclpy raises it after a signal; rospy raises a KeyboardInterrupt
 
 
 @dataclass(frozen=True)
@@ -35,17 +33,21 @@ class Order:
     entry: str | None = None  # the function that the node's entry point calls
     log: Path = Path(".tarl/missions.log")
     fixture: Path | None = None
-    modules: tuple[Path, ...] = ()  # further files of the node
+    modules: tuple[Path, ...] = ()  # other files of the node
     reward: str = ""
     mission: str = ""
     idle: float | None = None
     step: float | None = None
-    log_size: int = 0  # bytes at which the log is rotated; 0 for never
+    log_size: int = 0  # size in bytes at which the log is rotated; 0 for never
     log_keep: int = 0  # number of rotated logs to keep; 0 for all
 
 
 def observe(order: Order) -> str:
-    """Run the node until it ends; return the lines to print. Raises LogError, or the node's own exception."""
+    """Run the node until it ends, and return the line to print.
+
+    Raise LogError or AnalysisError if the node cannot be observed, FixtureError if the recording cannot be read, and
+    any exception of the node.
+    """
     _check(order)
     fixture = load(order.fixture or _fixture_of(order.node))
     sites = _sites(order)
@@ -105,7 +107,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """Exclude objects of imports and analysis from garbage collections, which would delay the node."""
+    """Exclude existing objects from garbage collection during the block; long collections would delay the node."""
     gc.collect()
     gc.freeze()
     try:
@@ -138,7 +140,7 @@ def _sites(order: Order) -> Plan:
 def _fixture_of(node: Path) -> Path:
     """Return the only recording below the working directory whose taint lists contain the node's file.
 
-    Raises LogError if there is none or several.
+    Raise LogError if there is none or several.
     """
     found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
     if len(found) != 1:
@@ -175,7 +177,7 @@ def _warn_of_mute_sensors(fixture: Fixture) -> None:
 
 @contextmanager
 def _steps(order: Order, observer: Observer) -> Iterator[None]:
-    """Close steps at a fixed interval if no topic does."""
+    """Close steps at a fixed interval if no reward topic closes them."""
     over = threading.Event()
 
     def tick() -> None:

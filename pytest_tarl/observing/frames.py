@@ -30,7 +30,7 @@ Record = dict[str, Any]
 
 
 class LogFile:
-    """A log opened for appending, by one process at a time."""
+    """A log opened for appending, by one process at a time. Raise LogError if it cannot be opened."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -68,9 +68,9 @@ class LogFile:
         return self._file.tell()
 
     def set_aside(self, keep: int = 0) -> None:
-        """Rotate: rename the file with the next free number (`missions.log.7`) and continue in a new file.
+        """Rotate the log: rename it with the next free number (`missions.log.7`) and continue in a new file.
 
-        `keep` is the number of rotated files to keep; the oldest are removed.
+        `keep` is the number of rotated files to keep, 0 for all; the oldest others are removed.
         """
         self.close()
         older = set_aside(self.path)
@@ -96,18 +96,21 @@ class LogFile:
 
 
 def encoded(record: Record) -> bytes:
-    """Return the bytes of a record in the file."""
+    """Return the bytes of a record as stored in the file."""
     return framed(zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1))
 
 
 def set_aside(path: Path) -> list[Path]:
-    """Return the rotated files of a log, the oldest first."""
+    """Return the rotated files of a log, oldest first."""
     found = [one for one in path.parent.glob(f"{glob.escape(path.name)}.*") if one.suffix[1:].isdecimal()]
     return sorted(found, key=lambda one: int(one.suffix[1:]))
 
 
 def records(path: Path) -> Iterator[Record]:
-    """Yield the complete records of a log; ignore an incomplete last one. Raise LogError on failure."""
+    """Yield the complete records of a log; ignore an incomplete last one.
+
+    Raise LogError if the file cannot be read or is not a log.
+    """
     try:
         file = path.open("rb")
     except OSError as problem:
@@ -140,7 +143,7 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
 
 
 def next_record(file: BinaryIO) -> bytes | None:
-    """Return the payload of the record at the file's position, None if it is incomplete."""
+    """Return the payload of the record at the file's position, or None if it is incomplete."""
     return next_payload(file, LARGEST)
 
 

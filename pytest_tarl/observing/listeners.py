@@ -1,4 +1,4 @@
-"""Subscribe the observer to topics, in the node's process but independently of its own subscriptions."""
+"""Subscribe the observer to topics in the node's process, independently of the node's own subscriptions."""
 
 from __future__ import annotations
 
@@ -16,12 +16,15 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
-DEPTH = 1000  # messages of a topic that wait while the node is busy; rclpy drops the oldest of more
+DEPTH = 1000  # queue length per topic while the node is busy; rclpy then drops the oldest messages
 
 
 @dataclass(frozen=True)
 class Topics:
-    """The observed topics: message types by topic, and the observer."""
+    """The observed topics: `types` holds message types by topic.
+
+    `reward` and `mission` are the topics that close steps and delimit missions, or empty.
+    """
 
     types: Mapping[str, str]
     reward: str = ""
@@ -42,8 +45,8 @@ class Topics:
 
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
-    """Pass messages to the observer while a node of this client library runs."""
-    import_module(library)  # before any message type, because it decides between ROS 1 and ROS 2 messages
+    """Pass messages to the observer while a node of this client library runs. Raise LogError."""
+    import_module(library)  # before any message type, because the library selects ROS 1 or ROS 2 messages
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
     resume = _watch_publishing(library, observer) if idle else None
@@ -85,7 +88,7 @@ def _class(name: str) -> type[Any]:
 
 
 def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe as soon as the node is registered, so that we receive each message before the node does."""
+    """Subscribe right after the node is initialised, so that the observer gets each message before the node does."""
     rospy = import_module("rospy")
     begin = rospy.init_node
 
@@ -103,9 +106,9 @@ def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[
 
 
 def _watch_rclpy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe with the first node that the program creates."""
+    """Subscribe through the first node that the program creates."""
     node_class = import_module("rclpy.node").Node
-    qos = import_module("rclpy.qos")  # best effort and volatile are compatible with every publisher
+    qos = import_module("rclpy.qos")  # best effort and volatile match every publisher
     profile = qos.QoSProfile(depth=DEPTH, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
     make, pending = node_class.__init__, list(listeners)
 

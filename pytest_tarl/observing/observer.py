@@ -1,7 +1,7 @@
-"""Observe a node: latch sensors at their messages, track rewards and missions, and pass them to the writer process.
+"""Observe a node: keep the latest sensor values, track rewards and missions, and send both to the writer process.
 
-A control cycle only appends numbers to lists, which garbage collection does not visit. A thread moves them to memory
-that the writer process shares, every `PERIOD`.
+In a control cycle, the observer only appends numbers to lists, which garbage collection does not visit. Every `PERIOD`
+seconds, a thread moves the lists to memory that the writer process shares.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor
 
-PERIOD = 0.02  # seconds between two cuts; the thread holds the interpreter for about 0.1 ms each time
+PERIOD = 0.02  # seconds between two transfers; each holds the interpreter lock for about 0.1 ms
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
@@ -31,9 +31,10 @@ NEVER = Rotation()
 
 
 class Observer:
-    """The observer of a node. Messages may come from any thread.
+    """The observer of a node; messages may come from any thread.
 
-    Slow work, such as conversion and disk access, happens in the writer process. Raise LogError if it cannot write.
+    Slow work, such as conversion and disk access, happens in the writer process. Raise LogError if the log cannot be
+    written.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Observer:
         }
         self.signals = tuple(signals)  # signals of formulas that are read from messages
         self._signal_readers = {one.name: reader(one.field) for one in self.signals}
-        self._following = following  # whether to record every change, as formulas need it
+        self._following = following  # whether to record every change, which formulas need
         self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
         self._times: list[float] = []  # when steps were closed
         self._begun = monotonic()
@@ -64,22 +65,22 @@ class Observer:
         self._bins: list[int | None] = [None] * len(self.sensors)
         self._values: list[Any] = [None] * len(self.sensors)
         self._numbers: dict[str, float] = {}  # values of signals received in this mission
-        self._before: dict[str, float] = {}  # values before the mission, for signals without a message in it
-        self._readings: list[Any] = []  # the values of all sensors at each step, one step after the other
+        self._before: dict[str, float] = {}  # earlier values, for signals without a message in this mission
+        self._readings: list[Any] = []  # the values of all sensors at each step, one step after another
         self._active = monotonic()
         self.running = False  # whether a mission runs
-        self.problem = ""  # the first error in here: errors must not reach the node
-        self._lock = threading.RLock()  # order of records
+        self.problem = ""  # the first error of the observer; errors must not reach the node
+        self._lock = threading.RLock()  # keeps records in order
         self._over = (
             threading.Lock()
-        )  # held until the end; an Event would cost the node's thread more each period
+        )  # held until the end; waiting for an Event would cost the node more time
         self._over.acquire()
         self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)
         self._outlet.put("start", time())
         self._thread.start()
 
     def told(self, sensor: Sensor, message: Any) -> None:
-        """Latch a sensor whose message is about to reach the node."""
+        """Update a sensor whose message is about to reach the node."""
         try:
             at, read, bin_of, followed = self._how[sensor.name]
             self._values[at] = value = read(message)
@@ -108,14 +109,14 @@ class Observer:
                 self._changes.append([monotonic() - self._begun, name, number])
 
     def step(self, reward: float) -> None:
-        """Close a step with its reward; NaN if the test's `judge` computes it later."""
+        """Close a step with its reward, or NaN if the test's `judge` computes it later."""
         with self._lock:
             self._times.append(monotonic() - self._begun)
             self._readings += self._values
             self.stream.reward(reward)
 
     def begin(self) -> None:
-        """Begin a mission; a running one ends as succeeded."""
+        """Begin a mission; a running mission ends as succeeded."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -141,13 +142,13 @@ class Observer:
             self.running = False
 
     def active(self) -> None:
-        """Register activity of the node; with `idle`, this begins a mission."""
+        """Register activity of the node; if `idle` is set, this begins a mission."""
         self._active = monotonic()
         if self._idle is not None and not self.running:
             self.begin()
 
     def order(self, word: str) -> None:
-        """Follow a message of the mission topic: begin, succeeded or failed."""
+        """Handle a message of the mission topic: begin, succeeded or failed."""
         if word == "begin":
             self.begin()
         elif word in OUTCOMES:
@@ -167,7 +168,7 @@ class Observer:
         return tuple(known) if len(known) == len(self._bins) else None
 
     def _look(self) -> None:
-        """Hand over what was recorded, end idle missions and report a writer that ended."""
+        """Send recorded data, end idle missions, and report a writer that ended."""
         reported = False
         while not self._over.acquire(timeout=PERIOD):
             with self._lock:
@@ -184,7 +185,7 @@ class Observer:
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
-        steps = len(cut.rewards)  # dropped between missions
+        steps = len(cut.rewards)  # steps between missions are dropped
         values = steps * len(self.sensors)
         readings, self._readings = self._readings[:values], self._readings[values:]
         times, self._times = self._times[:steps], self._times[steps:]
@@ -211,4 +212,4 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return None  # reported in `told`; a sensor without a number has no bin
+        return None  # `told` reports it; a sensor without a number has no bin

@@ -18,27 +18,28 @@ from pytest_tarl.observing.ring import SIZE, Ring, shared_memory
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, PERIOD, READY
 
-MOST_WAITING = 1 << 26  # maximum size in bytes of waiting messages; while more wait, events are dropped
+MOST_WAITING = 1 << 26  # maximum bytes of waiting messages; beyond this, events are dropped
 ENDED = (
     f"The process that writes the log was ended: the last {PERIOD:g} s before that may be missing from the log, and "
     "all later records are lost."
 )
 _PIECE = SIZE // 4  # bytes; larger messages are sent in pieces of this size
 _PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
-_LOOKS = 10  # calls of `pump` between two looks whether the writer still runs
-_PAUSE = 0.005  # seconds between two tries while closing
+_LOOKS = 10  # calls of `pump` between two checks that the writer still runs
+_PAUSE = 0.005  # seconds between two attempts while closing
 
 
 class Outlet:
-    """Messages to the writer. `put` and `pump` never wait; callers hold a lock to keep messages in order.
+    """The sender of messages to the writer process.
 
-    A forked child of the node's process sends nothing.
+    `put` and `pump` never wait; callers hold a lock to keep messages in order. A forked child of the node's process
+    sends nothing. Raise LogError if the log cannot be written.
     """
 
     def __init__(self, log: Path, about: Mapping[str, Any], rotation: Rotation) -> None:
         self.problem = ""  # why writing stopped
         self._waiting: deque[bytes] = deque()  # pieces that did not fit into the ring yet
-        self._held = 0  # their bytes
+        self._held = 0  # bytes of the waiting pieces
         self._pumped = 0  # calls of `pump`
         self._owner = os.getpid()
         memory = shared_memory()
@@ -63,7 +64,7 @@ class Outlet:
 
     @property
     def full(self) -> bool:
-        """Return whether more than MOST_WAITING bytes are unsent; callers then put nothing more."""
+        """Return whether more than MOST_WAITING bytes are unsent; callers then stop sending events."""
         return self._held > MOST_WAITING
 
     @property
@@ -93,7 +94,7 @@ class Outlet:
             self._held -= len(self._waiting.popleft())
 
     def close(self) -> None:
-        """Send the rest and wait until it is written."""
+        """Send all queued messages and wait until they are written."""
         if os.getpid() != self._owner:
             return
         self._queue(LENGTH.pack(0))

@@ -1,7 +1,7 @@
-"""Functions that read and bin a sensor's values at little cost, as the control cycle of a node pays it.
+"""Read and bin the values of a sensor quickly, because a node's control cycle waits for it.
 
-They return what `reading` and `Sensor.bin` return. Messages whose fields are attributes, and values of the usual types,
-take a short way; everything else takes the general one.
+The functions return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and for
+values of the usual types, and use the general functions otherwise.
 """
 
 from __future__ import annotations
@@ -17,19 +17,23 @@ from pytest_tarl.sensors import Sensor, field_value
 Read = Callable[[Any], Any]
 Bin = Callable[[Any], int | None]
 _EXACT = 2**53  # smaller integers convert to float exactly
-_MOST = 64  # message classes kept per field
+_MOST = 64  # maximum number of message classes kept per field
 
 
 def reader(field: str | Read | None) -> Read:
-    """Return the function that reads a field, dotted or a function, from a message. It raises as `reading` does."""
+    """Return a function that reads a field of a message; it raises the same exceptions as `reading`.
+
+    `field` is a dotted path or a function.
+    """
     if callable(field):
         return field
     path = field or ""
     parts = path.split(".")
     if not all(part.isidentifier() and not hasattr(dict, part) for part in parts):
-        return lambda message: field_value(message, path)  # an index, or a name that a mapping also has
+        # the path has an index, or a name that mappings also have
+        return lambda message: field_value(message, path)
     fast = attrgetter(path)
-    known: set[type] = set()  # classes of messages that have been read by their attributes
+    known: set[type] = set()  # message classes for which the fast path is known to work
 
     def read(message: Any) -> Any:
         try:
@@ -40,13 +44,13 @@ def reader(field: str | Read | None) -> Read:
                 known.add(type(message))
             return value
         except AttributeError:
-            return field_value(message, path)  # with a mapping inside, or without the field
+            return field_value(message, path)  # the message contains a mapping, or lacks the field
 
     return read
 
 
 def binner(sensor: Sensor) -> Bin:
-    """Return the function that bins a sensor's values. It raises as `Sensor.bin` does."""
+    """Return a function that bins values of a sensor; it raises the same exceptions as `Sensor.bin`."""
     general = sensor.bin
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return general if sensor.categories or sensor.bins is not None else _whole(general)

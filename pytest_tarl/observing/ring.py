@@ -1,8 +1,8 @@
-"""A stream of bytes through memory that two processes share. Neither side waits or calls the system.
+"""A stream of bytes through memory that two processes share; neither side waits or makes system calls.
 
-The memory holds two 64-bit counters, bytes written and bytes taken, and then the buffer, in which positions wrap
-around. A piece is `length, crc32` and that many bytes. The checksum tells the reader if it sees the counter before the
-bytes, as processors with weak memory ordering allow; it then reads the piece again later.
+The memory holds two 64-bit counters, the bytes written and the bytes taken, and then a ring buffer. A piece is `length,
+crc32` and that many bytes. On processors with weak memory ordering, the reader may see the new counter before the
+bytes. The checksum then fails, and the reader tries the piece again later.
 """
 
 from __future__ import annotations
@@ -14,12 +14,15 @@ from zlib import crc32
 
 from pytest_tarl.framed import HEAD, framed, unpack_head
 
-SIZE = 1 << 20  # bytes of the buffer
-_START = 16  # bytes of the counters
+SIZE = 1 << 20  # size of the buffer in bytes
+_START = 16  # size of the counters in bytes
 
 
 def shared_memory() -> int:
-    """Return the descriptor of new memory for a ring, filled with zeros; it is freed with its last descriptor."""
+    """Return a file descriptor of new shared memory for a ring, filled with zeros.
+
+    The memory is freed when its last descriptor is closed.
+    """
     length = _START + SIZE
     if hasattr(os, "memfd_create"):
         descriptor = os.memfd_create("tarl-observe")
@@ -31,12 +34,12 @@ def shared_memory() -> int:
 
 
 class Ring:
-    """One end of the stream: `write` belongs to one process, `read` to the other, each to one thread at a time."""
+    """One end of the stream: one process calls `write`, the other `read`, each from one thread at a time."""
 
     def __init__(self, descriptor: int, *, writes: bool = False) -> None:
         self._memory = mmap.mmap(descriptor, 0)
         if writes:
-            self._memory[:] = bytes(len(self._memory))  # map every page now instead of in a control cycle
+            self._memory[:] = bytes(len(self._memory))  # map every page now, not during a control cycle
         self._size = len(self._memory) - _START
         self._counters = memoryview(self._memory)[:_START].cast("Q")
 
@@ -63,7 +66,7 @@ class Ring:
         return True
 
     def read(self) -> bytes | None:
-        """Take the next piece; None if there is no complete one."""
+        """Take the next piece, or return None if there is no complete one."""
         written, taken = self._counters
         if written - taken < HEAD:
             return None

@@ -1,4 +1,4 @@
-"""A recorder drained while the node runs, so that memory stays bounded for missions of any length."""
+"""A recorder that is emptied while the node runs, so that memory stays bounded for missions of any length."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.sensors import Cell
 
-MOST_ENTRIES = 4_000_000  # waiting list entries (two per event); further events are dropped and counted
+MOST_ENTRIES = 4_000_000  # maximum waiting entries (two per event); further events are dropped and counted
 
 
 @dataclass(frozen=True)
 class Chunk:
-    """The events between two cuts.
+    """The events between two cuts, as columns.
 
-    Event columns have shape (events,), step columns (steps,); `step` counts from the first step of the chunk, and
-    events after its last reward belong to a step that the next chunk closes.
+    Columns of events have shape (events,), columns of steps (steps,). `step` counts from the first step of the chunk.
+    Events after its last reward belong to a step that the next chunk closes.
     """
 
     cells: tuple[Cell, ...]
@@ -44,8 +44,8 @@ class Cut(NamedTuple):
     """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
 
     cells: list[Cell]  # cells that are new in this cut
-    latched: list[int]  # number of the current cell, by mark
-    rewards: list[int]  # the marks that close a step
+    latched: list[int]  # number of the current cell at each mark
+    rewards: list[int]  # indices of the marks that close a step
     totals: list[float]
     threads: list[tuple[list[Any], list[int]]]  # entries of each thread, and their number at each mark
 
@@ -56,7 +56,7 @@ class Cut(NamedTuple):
 
 
 class Stream(Recorder):
-    """An endless recorder: `cut` takes the events recorded so far."""
+    """An endless recorder; `cut` returns and removes the events recorded so far."""
 
     _packing = False  # any thread may close a step, so closing one must not pack a buffer
 
@@ -66,7 +66,7 @@ class Stream(Recorder):
         self._told = 0  # number of cells in earlier cuts
 
     def reward(self, total: float, parts: Mapping[str, float] | None = None) -> None:  # noqa: ARG002 - as the base
-        """Close a step with its reward; a log holds no parts."""
+        """Close a step with its reward; a log stores no parts of rewards."""
         with self._lock:
             latched = self._latched
             self._rewards.append(len(latched))
@@ -74,9 +74,10 @@ class Stream(Recorder):
             self._totals.append(float(total))
 
     def cut(self, drop: bool = False) -> Cut:
-        """Return and drop the events recorded since the last call. Callable from any thread; it only slices lists.
+        """Return and remove the events recorded since the last call; any thread may call this.
 
-        With `drop` the events are only counted, for lack of memory; rewards and cells are kept.
+        It only slices lists, to be fast. With `drop`, for lack of memory, events are only counted; rewards and cells
+        are kept.
         """
         if drop:
             self.relieve(0)
@@ -93,7 +94,10 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop the events of a thread with more than `most` waiting entries (MOST_ENTRIES); `dropped` counts them."""
+        """Drop the events of each thread with more than `most` waiting entries, and count them in `dropped`.
+
+        The default of `most` is MOST_ENTRIES.
+        """
         most = MOST_ENTRIES if most is None else most
         for buffer in tuple(self._buffers):
             if len(buffer.entries) > most:
@@ -116,7 +120,7 @@ def chunk(cut: Cut, known: list[Cell]) -> Chunk:
 
 
 def merged(cuts: Sequence[Cut]) -> Cut:
-    """Return consecutive cuts, at least one, as one."""
+    """Merge consecutive cuts, at least one, into one."""
     if len(cuts) == 1:
         return cuts[0]
     cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
@@ -142,7 +146,7 @@ def _in_order(one: Chunk) -> Chunk:
 
 
 def _cut(entries: list[Any]) -> list[Any]:
-    """Remove complete events from the front while the owner may append. Each of the three operations is atomic."""
+    """Remove complete events from the front while the owning thread may append; each operation is atomic."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
         count -= 1  # keep a site whose value is not appended yet

@@ -1,6 +1,6 @@
-"""Convert the messages of an observer to records of the log, in the writer process.
+"""Convert messages of an observer to records of the log, in the writer process.
 
-Columns, base64, JSON, compression and syncing happen here, so that the node's process never waits for them.
+Columns, base64, JSON, compression and disk access are handled here, so the node's process never waits for them.
 """
 
 from __future__ import annotations
@@ -17,19 +17,22 @@ from pytest_tarl.observing.frames import LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Cut, chunk, merged
 from pytest_tarl.sensors import Cell
 
-MOST_HELD = 200_000  # approximate entries (two per event) per record, which bounds memory
+MOST_HELD = 200_000  # approximate maximum of entries (two per event) per record, to bound memory
 
 
 @dataclass(frozen=True)
 class Rotation:
-    """When to rotate a log: before a mission begins, once it has `size` bytes; `keep` 0 keeps all."""
+    """When to rotate a log: before a mission, if the log has at least `size` bytes.
+
+    `keep` is the number of rotated files to keep, 0 for all.
+    """
 
     size: int = 0  # 0: never
     keep: int = 0
 
 
 class Writer:
-    """Convert messages to records. A message is a tuple: its kind, then its parts (`take`)."""
+    """Convert messages to records. A message is a tuple: its kind, then its parts."""
 
     def __init__(self, log: LogFile, about: Mapping[str, Any], rotation: Rotation) -> None:
         self._log = log
@@ -42,10 +45,10 @@ class Writer:
         self._changes: list[list[Any]] = []
         self._following = False
         self._dropped = 0
-        self._held = 0  # entries of the cuts
+        self._held = 0  # number of entries in the cuts
 
     def take(self, message: tuple[Any, ...]) -> None:
-        """Take one message; `sync` writes pending events of the running mission."""
+        """Process one message; events may wait until `sync` or `close`."""
         what, *parts = message
         getattr(self, f"_take_{what}")(*parts)
 
@@ -109,7 +112,10 @@ class Writer:
 
 
 def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
-    """Return the record of some steps; the watch has a fast path for this order of fields."""
+    """Return the record of some steps.
+
+    Keep the order of the fields: the watch has a fast path for it (monitoring/blocks.py).
+    """
     return {
         "kind": "steps",
         "cells": [list(cell) for cell in one.cells],

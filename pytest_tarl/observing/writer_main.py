@@ -1,7 +1,7 @@
-"""The writer process: copy messages of an observer from shared memory to its log.
+"""The writer process: copy messages of an observer from shared memory to the log.
 
-It ends on request, or when standard input ends because the node's process is gone, and writes all messages that were
-sent.
+It ends on request, or when standard input closes because the node's process has ended. In both cases it first writes
+all messages that were sent.
 """
 
 from __future__ import annotations
@@ -23,19 +23,20 @@ from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # seconds between two syncs; a power cut loses little more than this
+PERIOD = 0.25  # seconds between two syncs: the most that a power cut loses, approximately
 LENGTH = struct.Struct("<I")  # length of a message in bytes; 0 marks the end
 READY = "ready"
-NICER = 5  # nice value, so that the node's threads have priority
-_POLL = 0.02  # seconds between two looks into the shared memory
+NICER = 5  # nice value that gives the node's threads priority
+_POLL = 0.02  # seconds between two checks of the shared memory
 
 
 def main() -> int:
-    """Run the writer; print to standard output that it is ready, or the reason why it cannot write."""
+    """Run the writer; print that it is ready, or why it cannot write."""
     for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(one, signal.SIG_IGN)  # the node's process decides when to end
     with contextlib.suppress(OSError, AttributeError):
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))  # not the node's real-time scheduler
+        # do not inherit the node's real-time scheduler
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
     with contextlib.suppress(OSError):
         os.nice(NICER)
     order: dict[str, Any] = json.loads(sys.argv[1])
@@ -76,7 +77,7 @@ def _serve(writer: Writer, ring: Ring) -> None:
 
 
 def _synced(writer: Writer, due: float) -> float:
-    """Sync if it is due; return when it is due next."""
+    """Sync if it is due; return the time of the next sync."""
     if monotonic() < due:
         return due
     writer.sync()

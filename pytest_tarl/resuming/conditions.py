@@ -1,4 +1,4 @@
-"""What the episodes of a run depend on: kept ones are used again only if all of it is unchanged."""
+"""The conditions of a run: kept episodes are used again only if all of them are unchanged."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.modules_of_tests import modules
 from pytest_tarl.options import Options
 from pytest_tarl.sensors import declared
 
-NAMED = 3  # changes named in a message
+NAMED = 3  # maximum number of changes named in a message
 FOLDERS = (".venv", "__pycache__", ".git", ".tarl")
 
 
@@ -26,7 +26,7 @@ def conditions(
 ) -> dict[str, Any]:
     """Return the conditions of a run by name, as JSON: digests of files, and values of settings.
 
-    `files` are those in which something is recorded. Settings that only select or judge episodes are left out: their
+    `files` are those in which something is recorded. Settings that only select or judge episodes are omitted: their
     number, the level of significance, the search.
     """
     nodes = [(folder / node).resolve() for node in designation.nodes]
@@ -49,7 +49,7 @@ def conditions(
 
 
 def changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return what differs between two runs, in words; empty if nothing does."""
+    """Return in words what differs between two runs, or an empty text."""
     found = list(_changes(before, now))
     more = f" and {len(found) - NAMED} more" if len(found) > NAMED else ""
     return "; ".join(found[:NAMED]) + more

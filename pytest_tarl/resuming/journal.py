@@ -1,7 +1,7 @@
-"""The file of a run's finished episodes: appended one by one, and read again after an interruption.
+"""The file of a run's finished episodes, which are appended one by one and read after an interruption.
 
-A line names the format. The first record holds the conditions of the run as JSON, each further one a key and an
-episode. A record that an interruption cut off is ignored and removed.
+The first line names the format. The first record holds the conditions of the run as JSON; every other record holds a
+key and an episode. A record that an interruption cut off is ignored and removed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ except ImportError:  # pragma: no cover - Windows: two runs of one test at a tim
 MAGIC = b"tarl episodes 1\n"
 KEY = 32  # bytes of an episode's key
 LARGEST = 1 << 30  # maximum size in bytes of a record
-SYNC = 1.0  # s between two syncs; a power cut costs at most the episodes of this time
+SYNC = 1.0  # seconds between two syncs; a power cut loses at most the episodes of this time
 
 
 class TakenError(OSError):
@@ -33,7 +33,10 @@ class TakenError(OSError):
 
 
 class Journal:
-    """The kept episodes of one run. `keep` may be called in any thread; trouble with the disk only stops keeping."""
+    """The kept episodes of one run.
+
+    Any thread may call `keep`. If the disk fails, episodes are no longer kept, but the run continues.
+    """
 
     def __init__(self, path: Path, conditions: dict[str, Any]) -> None:
         self.path = path
@@ -50,7 +53,7 @@ class Journal:
         return sum(map(len, self._places.values()))
 
     def resume(self) -> None:
-        """Continue the file: its episodes can be taken, and further ones are appended. Raise OSError on failure."""
+        """Continue the file: its episodes can be taken, and new ones are appended. Raise OSError on failure."""
         file = _locked(self.path, "r+b")
         end = _start(file)
         while (payload := next_payload(file, LARGEST)) is not None:
@@ -61,7 +64,7 @@ class Journal:
         self._file = file
 
     def taken(self, key: bytes, count: int) -> bytes | None:
-        """Return the episode kept as the `count`-th one with that key, counted from 0; None if there is none."""
+        """Return the episode number `count`, from 0, among those with this key, or None if there is none."""
         places = self._places.get(key, ())
         if count >= len(places):
             return None
@@ -82,7 +85,7 @@ class Journal:
                 self.problem = problem
 
     def close(self) -> None:
-        """Make everything durable and close the file."""
+        """Write everything to disk and close the file."""
         with self._lock:
             file, self._file = self._file, None
             if file is not None:
@@ -129,7 +132,7 @@ class Journal:
 
 
 def conditions_of(path: Path) -> tuple[dict[str, Any], int] | None:
-    """Return the conditions under which a file's episodes ran, and their number; None if it keeps no episode."""
+    """Return the conditions of a file's episodes, and their number; None if it has no episode."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC or (first := next_payload(file, LARGEST)) is None:
@@ -151,7 +154,7 @@ def _start(file: BinaryIO) -> int:
 
 
 def _locked(path: Path, mode: str) -> BinaryIO:
-    """Open a file that no other run has open. Raise TakenError if one has."""
+    """Open a file that no other run has open. Raise TakenError if another run has it open."""
     file: Any = path.open(mode)
     if fcntl is not None:
         try:
@@ -164,7 +167,7 @@ def _locked(path: Path, mode: str) -> BinaryIO:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make the entry of a new file durable, where the system can."""
+    """Write the entry of a new file to disk, where the system supports it."""
     with suppress(OSError):
         place = os.open(folder, os.O_RDONLY)
         try:

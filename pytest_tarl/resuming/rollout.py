@@ -1,7 +1,7 @@
-"""A rollout that keeps the episodes it has run, and takes those that an interrupted run has kept.
+"""A rollout that keeps the episodes it has run, and reuses those that an interrupted run has kept.
 
-An episode is a function of its plan, so a kept one replaces a run of it. Equal plans are told apart by their number:
-the recording runs its first episode twice.
+An episode is a function of its plan, so a kept episode can replace a run of the plan. Equal plans are numbered, because
+a recording runs its first episode twice.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pytest_tarl.workers import protocol
 
 
 class KeptRollout:
-    """Run episodes of another rollout, except those that the journal has. `shown` is the journal's path in messages."""
+    """Run episodes of another rollout, except those in the journal; `shown` is the journal's path for messages."""
 
     def __init__(
         self, rollout: Rollout, journal: Journal, scope: bytes, shown: str, *, checked: bool = False
@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether a kept episode is known to have the same result still
+        self._checked = checked  # whether a kept episode was shown to still have the same result
 
     @property
     def workers(self) -> int:
@@ -45,7 +45,7 @@ class KeptRollout:
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Request an episode. Raise RecordingError if the first kept one no longer has the same result."""
+        """Request an episode. Raise RecordingError if a repetition of the first kept episode has another result."""
         key = episode_key(plan, self._scope)
         count = self._begun[key]
         self._begun[key] += 1
@@ -66,7 +66,7 @@ class KeptRollout:
         self._begun[key] -= 1
 
     def _check(self, key: bytes, kept: EpisodeRun) -> None:
-        """Run the first kept episode again, and keep that run, too. Raise RecordingError if the result differs."""
+        """Run the first kept episode again, and keep the new run. Raise RecordingError if the result differs."""
         if self._checked or kept.simulator:  # a simulator may give another result each time
             return
         self._checked = True

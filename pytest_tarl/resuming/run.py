@@ -1,4 +1,4 @@
-"""The kept episodes of the tests of one run of pytest: found, continued, and removed once the run is complete."""
+"""Find, continue and remove the kept episodes of all tests in one run of pytest."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ COMPLETE = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 @dataclass
 class ResumableTest:
-    """A designated test in one mode, whose finished episodes are kept. `tell` prints a sentence at once."""
+    """A test in one mode whose finished episodes are kept; `tell` prints a sentence immediately."""
 
     item: pytest.Function
     designation: Designation
@@ -37,9 +37,9 @@ class ResumableTest:
     finished: bool = False
 
     def keeping(self, rollout: Rollout, instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
-        """Return the rollout, which now keeps its episodes and takes kept ones.
+        """Return a rollout that keeps its episodes and reuses kept ones.
 
-        Raise RecordingError if a run cannot be continued.
+        Raise RecordingError if an interrupted run cannot be continued.
         """
         if self.options.log is not None or self.options.bags:
             return rollout
@@ -48,7 +48,7 @@ class ResumableTest:
         return KeptRollout(rollout, self.journal, scope, self._shown, checked=checked)
 
     def interrupted(self) -> str:
-        """Return a sentence on the episodes that an interrupted run has kept; empty if there are none."""
+        """Return a sentence about the episodes that an interrupted run has kept, or an empty text."""
         if self.journal is None:
             return ""
         if self.journal.problem is not None:
@@ -58,7 +58,7 @@ class ResumableTest:
         return f"{_counted(count)} kept: add --tarl-resume to continue." if count else ""
 
     def close(self) -> None:
-        """Make the kept episodes durable."""
+        """Write the kept episodes to disk."""
         if self.journal is not None:
             self.journal.close()
 
@@ -132,7 +132,7 @@ class ResumableRun:
         return self.tests[-1]
 
     def ended(self, status: int) -> None:
-        """Remove the episodes of finished tests if the run is complete; make all others durable."""
+        """Remove the episodes of finished tests if the run is complete; write all others to disk."""
         for one in self.tests:
             one.close()
             if one.finished and one.journal is not None and status in COMPLETE:

@@ -1,1 +1,1 @@
-"""`--tarl-stress`: the nearest drifts of a space under which the guarantee of a recording fails."""
+"""Stress test (`--tarl-stress`): find the smallest drifts under which the guarantee of a recording fails."""

@@ -1,4 +1,8 @@
-"""Find the boundary along a ray: a coarse sweep, bisection, and confirmation on fresh seeds."""
+"""Find the boundary along a ray: a coarse sweep, bisection, and confirmation on fresh seeds.
+
+A ray changes one direction (a declared parameter of the world) from its nominal value to one end of its range. `t` is
+the place on the ray, 0 at the nominal value and 1 at the end.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +12,23 @@ from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
-RESOLUTION = 0.02  # share of the declared range at which a bisection ends
-NOISY = 0.04  # the same if the failing end is undecided, because noise then hides a finer boundary
+RESOLUTION = 0.02  # share of the declared range; bisection stops when the interval is this narrow
+NOISY = 0.04  # the same while the failing end is undecided: noise then hides a finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
-    """Run the points of the coarse sweep along a ray, the farthest first."""
+    """Run episodes at the points of the coarse sweep along a ray, starting at the far end. Raise BudgetSpentError."""
     for t in curve.ray.places:
         curve.evidence[t] = evaluator.examine(curve.ray.point(t), COARSE)
     curve.swept = True
 
 
 def bisect(curve: Curve, evaluator: Evaluator) -> None:
-    """Halve the interval between the nearest failing point and the holding one before it, down to RESOLUTION."""
+    """Bisect between the nearest failing point and the holding point before it.
+
+    Stop when the interval is narrower than RESOLUTION, or than NOISY while the failing end is undecided. Raise
+    BudgetSpentError.
+    """
     _settle(curve, evaluator)
     while curve.ray.continuous and (found := curve.bracket):
         near, far = found
@@ -32,9 +40,9 @@ def bisect(curve: Curve, evaluator: Evaluator) -> None:
 
 
 def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
-    """Test failing points on fresh seeds, the k-th at risk / k(k + 1), until one is confirmed.
+    """Test failing points on fresh seeds until one is confirmed; the k-th test has the risk `risk / (k(k + 1))`.
 
-    All rays share these seeds, since no point was chosen with them.
+    The search did not see these seeds, so all rays can share them. Raise BudgetSpentError.
     """
     for k, t in enumerate(_candidates(curve, evaluator.guarantee, risk), 1):
         if curve.confirmed is not None and t >= curve.confirmed:
@@ -46,9 +54,10 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 
 
 def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
-    """Return values to test: the nearest expected to be confirmed, decided ones with lower margins, farther ones.
+    """Return the values of t to confirm: the most promising ones, ascending, then values farther away.
 
-    Exactly at the boundary, even very many episodes rarely show a failure.
+    The promising values are the nearest one that the model expects to be confirmed, and failing ones with clearly low
+    margins. A value exactly at the boundary is no candidate, because even many episodes rarely show a failure there.
     """
     decided = sorted(t for t, one in curve.evidence.items() if one.result == "fails")
     if not decided:
@@ -62,13 +71,13 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         most, share = FRESH[-1], risk / 2 / len(FRESH)
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
-        chosen += [t for t in decided if t in curve.ray.extra]  # ends of must_hold
-    beyond = [t for t in decided if t > max(chosen)]  # few episodes often agree by chance near the boundary
+        chosen += [t for t in decided if t in curve.ray.extra]  # the ends of the declared `must_hold` range
+    beyond = [t for t in decided if t > max(chosen)]  # fallbacks, since a few episodes may all fail by chance
     return [*sorted(set(chosen)), *dict.fromkeys([*beyond[len(beyond) // 2 :][:1], *beyond[-1:]])]
 
 
 def _settle(curve: Curve, evaluator: Evaluator) -> None:
-    """Run all episodes at the nearest failing point if it is undecided, since it may be due to noise."""
+    """Run more episodes at the nearest failing point while it is undecided, because its failures may be noise."""
     while curve.failing:
         nearest = curve.evidence[curve.failing[0]]
         if nearest.result != "open" or nearest.episodes >= FINE:

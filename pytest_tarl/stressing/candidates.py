@@ -1,7 +1,7 @@
 """Choose values of a ray at which fresh episodes can show that the guarantee holds or fails.
 
-The choice is approximate and uses the episodes of a search. It decides how narrow an interval gets, not whether the
-interval is correct.
+The choice uses an approximate model of the episodes of a search. A poor choice makes the resulting interval wider, but
+not wrong.
 """
 
 from __future__ import annotations
@@ -17,29 +17,31 @@ import numpy as np
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
-HOPE = 0.8  # expected probability that a test at a chosen value succeeds
-HOLDING = 3.0  # standard errors between the loss and the tolerated one for a bound at 4 % to be met four times in five
-FAILING = 4.0  # the same at 0.4 %
+HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
+HOLDING = 3.0  # standard errors below the tolerated loss: a bound at 4 % then succeeds 4 times in 5
+FAILING = 4.0  # standard errors above the tolerated loss: a bound at 0.4 % then shows it 4 times in 5
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
-CENTRES = np.linspace(
-    0.0, 1.25, 251
-)  # centres of the drifts at which an episode begins to fail, as shares of a ray
-SCALES = np.geomspace(0.002, 0.3, 16)  # scales of their logistic distribution
+CENTRES = np.linspace(0.0, 1.25, 251)  # values of t at which half of the episodes fail
+SCALES = np.geomspace(0.002, 0.3, 16)  # scales of the logistic distribution, in units of t
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model of a ray from a search's episodes: each fails beyond a drift of its own, and loses reward before it.
+    """A model of the episodes along a ray.
 
-    The drifts at which episodes begin to fail have a logistic distribution, with a uniform prior over CENTRES and
-    SCALES. The loss is linear between the measured values, and its spread is that of the next measured value.
+    Each episode has its own threshold: it fails if t exceeds the threshold. Thresholds follow a logistic distribution,
+    with a uniform prior over CENTRES and SCALES. The mean loss of reward is interpolated linearly between the measured
+    values of t. Its standard deviation is that of the nearest measured value beyond t.
     """
 
     evidence: Mapping[float, Evidence]
     tolerance: float
 
     def holding(self, episodes: int, paired: int) -> float:
-        """Return the farthest t at which all of `episodes` pass, and `paired` of them lose little; else 0."""
+        """Return the farthest t at which a test is expected to show that the guarantee holds, or 0.
+
+        All of `episodes` must pass there, and the loss, bounded by `paired` episodes, must be tolerated.
+        """
 
         def beyond(t: float) -> bool:
             return (
@@ -50,7 +52,10 @@ class Model:
         return PLACES[at - 1] if at else 0.0
 
     def failing(self, episodes: int, passed: int) -> float | None:
-        """Return the nearest t at which at most `passed` of `episodes` pass, or much is lost; else None."""
+        """Return the nearest t at which a test is expected to show a failure, or None.
+
+        There, at most `passed` of `episodes` pass, or the loss is clearly larger than tolerated.
+        """
         few = bisect_left(PLACES, HOPE, key=lambda t: 1.0 - self._passing(t, episodes, passed + 1))
         lost = (t for t in PLACES[:few] if self._loss(t, -FAILING, episodes) > self.tolerance)
         return next(lost, PLACES[few] if few < len(PLACES) else None)
@@ -66,7 +71,10 @@ class Model:
         return float((self._weights * chance).sum())
 
     def _loss(self, t: float, errors: float, episodes: int) -> float:
-        """Return the expected loss at t plus some standard errors, of the search and of `episodes` fresh episodes."""
+        """Return the expected loss at t plus `errors` standard errors.
+
+        The standard error includes that of the search's episodes and that of `episodes` fresh episodes.
+        """
         ts = sorted(self.evidence)
         every = [self.evidence[one] for one in ts]
         loss = np.maximum.accumulate([0.0, *(one.loss for one in every)])
@@ -78,7 +86,7 @@ class Model:
 
     @cached_property
     def _weights(self) -> Floats:
-        """Return the posterior of each centre and scale, shape (centres, scales)."""
+        """Return the posterior probability of each centre and scale, shape (centres, scales)."""
         ts = np.array(sorted(self.evidence))
         passed = np.array([self.evidence[t].passed for t in ts])
         failed = np.array([self.evidence[t].episodes for t in ts]) - passed

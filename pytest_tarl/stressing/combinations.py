@@ -1,4 +1,7 @@
-"""Find directions that together break the guarantee, although none of them does alone; confirm them on fresh seeds."""
+"""Find combinations of directions that break the guarantee although each direction alone holds.
+
+The combinations are confirmed on fresh seeds.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +17,18 @@ from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed,
 from pytest_tarl.stressing.nearest import EXPECTED, FIRM, NEAR, Nearest, Steps
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
-INSIDE = 0.9  # share of each boundary at which directions are combined; each direction alone passes there
-FIRST = 0.5  # share of the budget that the approach to the nearest failing drift may use
-VETTED = 0.55  # share of the budget after which the found drift gets no more episodes, so that the rest can confirm it
-LAST = 0.85  # share of the budget after which pairs and evolution end, so that the rest can confirm
-QUICK = SIZES[0]  # episodes at a point of a ray before the approach
+# share of the distance to each boundary at which pairs are tested; each direction alone holds there
+INSIDE = 0.9
+FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
+# share of the budget after which the search stops vetting its result, to keep episodes for confirmation
+VETTED = 0.55
+LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
+QUICK = SIZES[0]  # episodes per point of a ray before the first search
 
 
 @dataclass
 class Together:
-    """The failing combinations found so far; together they are wrong with a probability of at most `risk`."""
+    """The confirmed combinations; the probability that any of them is a false alarm is at most `risk`."""
 
     risk: float
     curves: Sequence[Curve]
@@ -33,13 +38,13 @@ class Together:
     tests: int = 0
     expected: list[Failure] = field(
         default_factory=list
-    )  # drifts that fail according to the model of the search, not confirmed
+    )  # drifts that fail according to the model but are not confirmed
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
-        """Test drifts on fresh seeds, in order, until one is confirmed; the k-th test of all has risk / k(k + 1).
+        """Test drifts in order on fresh seeds until one is confirmed; the k-th test overall has risk / (k(k + 1)).
 
-        All tests share the seeds of the rays, because no drift is chosen with them. A drift is left out if it changes
-        at least all that a confirmed one changes. Raise BudgetSpentError.
+        No drift is chosen with the seeds of the rays, so all tests share these seeds. Stop at a drift that contains a
+        confirmed failure: one that changes the same values at least as much. Raise BudgetSpentError.
         """
         for point in chain:
             one = failure(evaluator.space, point)
@@ -73,14 +78,17 @@ def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
 
 
 class Combined:
-    """The search in several directions: one part before the single directions are examined, one after."""
+    """The search in several directions: `begin` runs before the single directions are examined, `end` after."""
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together
         self.nearest = Nearest(evaluator, together.curves, risk=together.risk)
 
     def begin(self) -> None:
-        """Run few episodes on each ray, approach the nearest failing drift, and confirm it. Raise BudgetSpentError."""
+        """Run a few episodes on each ray, search for the nearest failing drift, and confirm it.
+
+        Raise BudgetSpentError.
+        """
         with self.evaluator.limited(FIRST):
             for curve in self.together.curves:
                 for t in curve.ray.places:
@@ -91,7 +99,7 @@ class Combined:
         self._confirm(FIRM)
 
     def end(self) -> None:
-        """Look for nearer drifts, test pairs, and confirm what was found. Raise BudgetSpentError."""
+        """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
             self.nearest.improve()
@@ -102,7 +110,7 @@ class Combined:
             self.together.confirm([point], self.evaluator)
 
     def draw(self) -> None:
-        """Predict the map and the nearest failures from all episodes, if the budget sufficed for the rays."""
+        """Predict the map and the nearest failures from all episodes, if every ray has some."""
         if all(curve.evidence for curve in self.together.curves):
             found = self.nearest.expected(EXPECTED)
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
@@ -114,9 +122,10 @@ class Combined:
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:
-    """Test pairs of directions just inside their boundaries, and bisect towards nominal where a pair fails.
+    """Test pairs of directions just inside their boundaries; if a pair fails, bisect towards nominal.
 
-    Pairs farther than a confirmed combination are left out.
+    Append the nearest failing drift of each pair to `proposed`. Skip pairs farther from nominal than a confirmed
+    combination. Raise BudgetSpentError.
     """
     inside = list(_inside(together.curves))
     nearest = min((one.distance for one in together.found), default=inf)
@@ -135,7 +144,7 @@ def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> No
 
 
 def _inside(curves: Sequence[Curve]) -> Iterator[tuple[Ray, float]]:
-    """Yield each direction's ray and how far it may change alone; options that fail alone are left out."""
+    """Yield each ray with the largest t to use in a pair; skip options that fail alone."""
     for curve in curves:
         if not curve.failing:
             yield curve.ray, 1.0

@@ -1,6 +1,6 @@
-"""Drifts as vectors: the distances of the ranges from nominal, in units of the declared ranges.
+"""Drifts as vectors: for each range, the difference from nominal in units of the declared range.
 
-Options are not coordinates; a base point fixes them.
+Options of a choice have no coordinate; a base point fixes them.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ ROUNDING = 1e-12  # a number this close to nominal counts as nominal
 
 @dataclass(frozen=True)
 class Coordinates:
-    """The coordinates of the drifts that have the options of `base`; 0 is nominal."""
+    """The coordinates of all drifts with the same options as `base`; the zero vector is nominal."""
 
     space: Space
     base: Point
 
     @cached_property
     def spans(self) -> dict[str, Span]:
-        """Return the ranges by direction, in the order of the coordinates."""
+        """Return the ranges by the name of their direction, in the order of the coordinates."""
         return {name: one for name, one in self.space.extents.items() if isinstance(one, Span)}
 
     @cached_property
     def low(self) -> Vector:
-        """Return the smallest coordinates, at most 0."""
+        """Return the smallest value of each coordinate, at most 0; shape (ranges,)."""
         return np.array([(one.low - nominal(one)) / (one.high - one.low) for one in self.spans.values()])
 
     @cached_property
     def high(self) -> Vector:
-        """Return the largest coordinates, at least 0."""
+        """Return the largest value of each coordinate, at least 0; shape (ranges,)."""
         return np.array([(one.high - nominal(one)) / (one.high - one.low) for one in self.spans.values()])
 
     @cached_property
@@ -55,7 +55,7 @@ class Coordinates:
         )
 
     def point(self, vector: Vector) -> Point:
-        """Return the point at coordinates, which are cut at the ends of the ranges."""
+        """Return the point at a vector, whose coordinates are clipped to the ranges."""
         found = dict(self.base)
         for (name, one), number in zip(self.spans.items(), np.clip(vector, self.low, self.high), strict=True):
             usual = nominal(one)
@@ -68,9 +68,9 @@ class Coordinates:
         return all(point[name] == self.base[name] for name in self.base if name not in self.spans)
 
     def within(self, vector: Vector, limit: float) -> Vector | None:
-        """Return the vector, shortened so that its point is at most `limit` from nominal.
+        """Return the vector, shortened if necessary so that its point is at most `limit` from nominal.
 
-        None if the options alone are farther.
+        Return None if the options alone are farther away.
         """
         room = limit**2 - self.options
         length = distance(self.space, self.point(vector)) ** 2 - self.options

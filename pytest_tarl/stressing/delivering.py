@@ -18,7 +18,7 @@ from pytest_tarl.stressing.sobol_indices import affordable
 
 @dataclass(frozen=True)
 class Delivered:
-    """The lines of the terminal, why the test fails, and whether Ctrl-C ended the run."""
+    """The lines for the terminal, why the test fails (or empty), and whether Ctrl-C ended the run."""
 
     lines: tuple[str, ...]
     problem: str
@@ -27,7 +27,10 @@ class Delivered:
 
 
 def deliver(request: Request, root: Path) -> Delivered:
-    """Replay kept drifts, stress, write result and page. Raise RecordingError if the test itself is broken."""
+    """Replay the drifts of earlier failures, run the stress test, and write its result and page.
+
+    Raise RecordingError if the test itself is broken.
+    """
     name = f"{slug(request.fixture.test)}-{slug(request.drift)}"
     memory = root / ".tarl" / "stress" / f"{name}-failing.json"
     try:
@@ -47,7 +50,7 @@ def deliver(request: Request, root: Path) -> Delivered:
 
 
 def deliver_repairs(found: Stress, root: Path) -> list[str]:
-    """Write result and page again, with the repairs; return a line for each file that could not be written."""
+    """Write the result and the page again, with the repairs; return a line for each file that failed."""
     name = f"{slug(found.test)}-{slug(found.drift)}"
     jobs = _documents(found, root, name)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
@@ -55,7 +58,7 @@ def deliver_repairs(found: Stress, root: Path) -> list[str]:
 
 
 def _documents(found: Stress, root: Path, name: str) -> dict[Path, Callable[[Path], None]]:
-    """Return how to write the result and the page."""
+    """Return a function for each file, the result and the page, that writes it to a path."""
     return {
         root / ".tarl" / "stress" / f"{name}.json": _as_text(json_result.text(found)),
         _page(root, name): _as_text(page.render(found)),
@@ -82,7 +85,7 @@ def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
 
 
 def _without_salib(found: Stress) -> tuple[str, ...]:
-    """Return the advice to install SALib, if only that is missing for the Sobol indices."""
+    """Return the advice to install SALib if only the missing package prevents the Sobol indices."""
     left = found.budget - found.episodes if found.seconds is None else 0
     if found.ended not in ("", "budget") or not affordable(len(found.space.extents), left):
         return ()
@@ -91,7 +94,7 @@ def _without_salib(found: Stress) -> tuple[str, ...]:
 
 
 def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
-    """Write the files; return a line for each that could not be written. The result does not depend on them."""
+    """Write the files; return a line for each failed one, and one with the path of the page."""
     folder = root / ".tarl"
     report = _page(root, name)
     jobs = _documents(found, root, name)
@@ -104,11 +107,12 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         jobs[folder / "report" / f"{name}-stress-map.svg"] = lambda path: write_atomically(
             path, drawn.encode()
         )
-    if not found.ended or found.failures:  # an incomplete run without a failure keeps the earlier findings
+    # an incomplete run that found no failure must not delete the earlier ones
+    if not found.ended or found.failures:
         jobs[memory] = lambda path: kept.write(found.failures, path)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
     lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
-    if report in failed:  # an existing page is that of an earlier run
+    if report in failed:  # an existing page would be that of an earlier run
         return lines
     return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"]
 
@@ -122,7 +126,10 @@ def _failure(write: Callable[[Path], None], path: Path) -> OSError | None:
 
 
 def _problem(found: Stress) -> str:
-    """Return why the test fails: a broken `must_hold`, or a nominal world other than the recorded one; else empty."""
+    """Return why the test fails, or an empty text.
+
+    It fails if a direction breaks `must_hold`, or if the nominal world differs from the recorded one.
+    """
     if found.ended == "nominal":
         return words.nominal_words()
     return " ".join(words.broken_promises(found))

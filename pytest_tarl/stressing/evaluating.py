@@ -1,4 +1,4 @@
-"""Run the episodes of drifts, within a budget."""
+"""Run episodes under drifts within a budget, and keep their outcomes."""
 
 from __future__ import annotations
 
@@ -21,25 +21,28 @@ from pytest_tarl.stressing.guarantee import (
     refuted,
 )
 
-SIZES = (4, 8, 16, 32)  # episodes at a drift after which the search decides
-FRESH = (16, 32)  # episodes on fresh seeds after which a failure along a ray is confirmed or not
+SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
+FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
 NEAREST = (
     16,
     32,
     64,
-)  # the same for a combination; more episodes can confirm failures nearer to the boundary
+)  # the same for a combination: more episodes can confirm failures nearer to the boundary
 RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
 
 
 class BudgetSpentError(Exception):
-    """The budget does not suffice for the next episodes."""
+    """The remaining budget does not cover the next episodes."""
 
 
 @dataclass
 class Evaluator:
-    """Run drifts of the space `drift` on pools of common seeds, and remember the outcomes; `spent` counts episodes."""
+    """Run episodes at points of the space `drift`, and keep their outcomes.
+
+    All points share the seeds of a pool, so their episodes can be compared in pairs. `spent` counts the episodes.
+    """
 
     rollout: Rollout
     space: Space
@@ -49,15 +52,18 @@ class Evaluator:
     budget: int
     progress: Progress
     spent: int = 0
-    short: bool = False  # whether a result was left out because the budget did not suffice
-    seconds: float | None = None  # a time limit in addition to that of the episodes
+    short: bool = False  # whether a result is missing because the budget did not cover it
+    seconds: float | None = None  # time limit in seconds, in addition to the number of episodes
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
 
     @contextmanager
     def limited(self, share: float) -> Iterator[None]:
-        """End the block without an error once this share of the whole budget is spent; set `short` in that case."""
+        """Run the block with only this share of the whole budget.
+
+        If the share is spent, end the block without an error and set `short`.
+        """
         whole, self.budget = self.budget, min(self.budget, round(share * self.budget))
         time, self.seconds = self.seconds, None if self.seconds is None else share * self.seconds
         try:
@@ -69,16 +75,16 @@ class Evaluator:
 
     @property
     def left(self) -> int:
-        """Return how many episodes the budget allows, at the speed so far if it is a time."""
+        """Return how many more episodes the budget allows; a time limit is converted at the mean speed so far."""
         if self.seconds is None:
             return self.budget - self.spent
         passed = monotonic() - self.begun
         return int(self.spent * max(self.seconds - passed, 0.0) / max(passed, 1e-9))
 
     def examine(self, point: Point, most: int) -> Evidence:
-        """Return the evidence at a point after at most `most` episodes; end early once it is decided.
+        """Return the evidence at a point from at most `most` episodes; stop once it is decided.
 
-        Raise BudgetSpentError before an episode that the budget does not cover.
+        Raise BudgetSpentError before episodes that the budget does not cover.
         """
         found = self._evidence(point, SIZES[0])
         for size in SIZES[1:]:
@@ -88,10 +94,11 @@ class Evaluator:
         return found
 
     def confirm(self, point: Point, pool: str, risk: float, sizes: Sequence[int] = FRESH) -> bool:
-        """Return whether the fresh seeds of a pool, paired with nominal runs, show at `risk` that the guarantee fails.
+        """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails at a point.
 
-        A pool may serve several points if none of them was chosen by its outcomes. The test ends after the first of
-        `sizes` at which the failure is shown, or hardly can be any more; the risk is divided among them.
+        Episodes are paired by seed with nominal ones. Several points may share a pool if none of them was chosen by its
+        outcomes. `risk` is divided evenly among `sizes`, the numbers of episodes after which the test checks for a
+        decision. It also stops once a failure can hardly be shown any more. Raise BudgetSpentError.
         """
         share = risk / len(sizes)
         for size in sizes:
@@ -104,11 +111,14 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        nominal = self.common(self.space.nominal, count)  # first, as no point may have more outcomes
+        nominal = self.common(self.space.nominal, count)  # first: each outcome is paired with a nominal one
         return examined(self.guarantee, self.common(point, count), nominal)
 
     def measured(self, point: Point) -> tuple[float, float]:
-        """Return the margin of all episodes that the search ran at a point, and its approximate standard deviation."""
+        """Return the margin at a point and its approximate standard deviation, from all episodes of the search.
+
+        Raise KeyError if the search ran no episode there.
+        """
         outcomes = self._known[("search", *point.values())]
         key = (len(outcomes), *point.values())
         if key not in self._measured:
@@ -118,9 +128,10 @@ class Evaluator:
         return self._measured[key]
 
     def losses(self, point: Point) -> tuple[list[float], int]:
-        """Return the losses of all episodes that the search ran at a point, and how many of the episodes failed.
+        """Return the loss of each episode that the search ran at a point, and how many of them failed.
 
-        A loss is relative to the nominal episode of the same seed, as a share of the tolerated loss.
+        A loss is the difference from the nominal episode with the same seed, in units of the tolerated loss. Raise
+        KeyError if the search ran no episode there.
         """
         outcomes = self._known[("search", *point.values())]
         unit = self.guarantee.tolerance
@@ -130,17 +141,20 @@ class Evaluator:
         return shares, sum(not one.passed for one in outcomes)
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
-        """Return the outcomes on the search's first seeds. Raise BudgetSpentError if the budget does not cover them."""
+        """Return the outcomes of the first `count` seeds of the search.
+
+        Raise BudgetSpentError if the budget does not cover the missing ones.
+        """
         return self._of("search", point, count)
 
     def fresh(self, point: Point, count: int) -> Sequence[Outcome]:
-        """Return outcomes on the seeds that confirm results of rays. Raise BudgetSpentError."""
+        """Return the outcomes of the first `count` seeds that confirm results along rays. Raise BudgetSpentError."""
         return self._of(RAYS, point, count)
 
     def affords(self, point: Point, count: int, paired: int) -> bool:
-        """Return whether the budget covers `count` fresh episodes at a point, `paired` of them with nominal ones.
+        """Return whether the budget covers `count` fresh episodes at a point and `paired` nominal ones.
 
-        If it does not, `short` is set.
+        Set `short` if it does not. Episodes that already ran cost nothing.
         """
         wanted = ((point, count), (self.space.nominal, paired))
         missing = (count - len(self._known.get((RAYS, *at.values()), ())) for at, count in wanted)
@@ -157,9 +171,10 @@ class Evaluator:
         return known[:count]
 
     def recalled(self, pool: str, point: Point) -> list[tuple[EpisodePlan, bool]]:
-        """Return the plans of the episodes that a pool ran at a point, and whether each fails.
+        """Return the plan of each episode that a pool ran at a point, and whether the episode failed.
 
-        An episode fails if it does not pass, or loses more than tolerated against the nominal one on its seed.
+        An episode fails if it does not pass, or if its reward is lower than that of the nominal episode with the same
+        seed by more than the tolerated loss.
         """
         known = self._known.get((pool, *point.values()), [])
         nominal = self._known.get((pool, *self.space.nominal.values()), [])
@@ -174,7 +189,10 @@ class Evaluator:
         ]
 
     def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:
-        """Return the outcome of each point on one seed: the seed with the number of its row. Raise BudgetSpentError."""
+        """Return the outcome of one episode at each point; point i has the seed with number `rows[i]`.
+
+        Raise BudgetSpentError.
+        """
         seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows) + 1)
         return self._run(points, [seeds[row] for row in rows])
 
@@ -195,7 +213,10 @@ class Evaluator:
 
 
 def outcome(run: EpisodeRun) -> Outcome:
-    """Return the outcome of an episode; a node that never waits has failed. Raise RecordingError for a broken test."""
+    """Return the outcome of an episode; an episode with a node that never yields has failed.
+
+    Raise RecordingError if the test itself is broken.
+    """
     if run.broken and not run.stuck:
         where = ", ".join(f"{name}={number:g}" for name, number in (run.plan.point or {}).items())
         raise RecordingError(

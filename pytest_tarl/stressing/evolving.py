@@ -1,4 +1,4 @@
-"""Evolve drifts towards low margins with CMA-ES, from the package `cma`."""
+"""Search for drifts with low margins by an evolution strategy, CMA-ES from the package `cma`."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from pytest_tarl.stressing.coordinates import Vector
 def evolve(
     start: Vector, spread: float, draws: np.random.Generator, margin: Callable[[Vector], float | None]
 ) -> None:
-    """Call `margin` with vectors, from a normal distribution that adapts to low margins, until it returns None.
+    """Call `margin` with vectors from a normal distribution that adapts to low margins, until it returns None.
 
-    `spread` is the first standard deviation. `cma` would seed numpy's global generator, which nodes may use, so that
-    it takes its numbers from `draws` instead.
+    `spread` is the initial standard deviation. The random numbers come from `draws`, because `cma` would otherwise seed
+    numpy's global generator, which nodes may use.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # it warns when matplotlib is not installed
+        warnings.simplefilter("ignore")  # cma warns if matplotlib is not installed
         import cma
 
         strategy = cma.CMAEvolutionStrategy(

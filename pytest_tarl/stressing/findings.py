@@ -12,16 +12,19 @@ from pytest_tarl.stressing.guarantee import Evidence, Guarantee
 from pytest_tarl.stressing.rays import Ray, distance
 
 CONFIDENCE = 0.9  # confidence that a boundary lies in its interval
-FAR_RISK = (1.0 - CONFIDENCE) / 6  # largest risk that the guarantee holds at the far end of the interval
-NEARER = 0.98  # share of a distance below which another one is nearer
-NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK  # largest risk that it does not hold at the near end
+# maximum probability that the guarantee still holds at the far end of the interval
+FAR_RISK = (1.0 - CONFIDENCE) / 6
+NEARER = 0.98  # a distance must be below this share of another one to count as nearer
+# maximum probability that the guarantee already fails at the near end
+NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 
 
 @dataclass
 class Curve:
-    """The evidence along a ray, which grows during a search.
+    """The evidence along a ray, by the place t; a search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure; `rejected` are those at which they did not.
+    `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which they showed
+    none.
     """
 
     ray: Ray
@@ -33,12 +36,12 @@ class Curve:
 
     @property
     def failing(self) -> list[float]:
-        """Return the t of failing points, ascending."""
+        """Return each t at which the evidence so far shows a failure, ascending."""
         return sorted(t for t, one in self.evidence.items() if one.failing)
 
     @property
     def bracket(self) -> tuple[float, float] | None:
-        """Return the nearest failing t after the farthest holding one before it; None without a failing one."""
+        """Return the last measured t before the nearest failing one, and the failing one; None if none fails."""
         if not self.failing:
             return None
         far = self.failing[0]
@@ -46,7 +49,7 @@ class Curve:
 
     @property
     def boundary(self) -> Boundary | None:
-        """Return the boundary; None unless fresh seeds confirmed a failure."""
+        """Return the boundary, or None unless fresh seeds confirmed a failure."""
         if self.confirmed is None or self.bracket is None:
             return None
         near, far = self.bracket
@@ -58,17 +61,17 @@ class Curve:
 
     @property
     def monotone(self) -> bool:
-        """Return whether no measured point beyond the nearest failing one holds."""
+        """Return whether all measured points beyond the nearest failing one fail, too."""
         nearest = self.failing[0] if self.failing else 1.0
         return not any(t > nearest and not one.failing for t, one in self.evidence.items())
 
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """The boundary along a ray: the guarantee holds up to `near`, fails at `far`, and `at` is the estimate.
+    """The boundary along a ray: the guarantee holds up to `near` and fails at `far`; `at` is the estimate.
 
-    If the margin does not rise with the drift, the boundary lies from `near` to `far` at the confidence CONFIDENCE;
-    `near` is None if no value but the nominal one was shown to hold.
+    If the margin never rises with the drift, the boundary lies between `near` and `far` at the confidence CONFIDENCE.
+    `near` is None if no value except the nominal one was shown to hold.
     """
 
     at: float
@@ -83,14 +86,15 @@ class Failure:
 
     point: Point
     distance: float
-    names: tuple[str, ...]  # directions with a value other than the nominal one
+    names: tuple[str, ...]  # directions whose value is not the nominal one
 
 
 @dataclass(frozen=True)
 class MarginMap:
-    """The predicted margins over two ranges: rows by the second one, ascending, and their standard deviations.
+    """The predicted margins over two ranges, and their standard deviations.
 
-    A value is that in the middle of a cell; the cells divide the ranges evenly.
+    Row i belongs to the i-th cell of the second range, ascending. The cells divide the ranges evenly, and a value is
+    that of the middle of its cell.
     """
 
     names: tuple[str, str]
@@ -101,9 +105,10 @@ class MarginMap:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """A direction's Sobol indices: shares of the margin's variance over the space, with the halves of their intervals.
+    """The Sobol indices of a direction: how much of the margin's variance over the space it explains.
 
-    `first` is the share that the direction explains alone, `total` that of it and its combinations with others.
+    `first` is the share of the direction alone; `total` includes its combinations with others. An error is half the
+    width of a confidence interval.
     """
 
     name: str
@@ -115,7 +120,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Sobol:
-    """The Sobol indices of all directions, from this number of episodes."""
+    """The Sobol indices of all directions, and the number of episodes behind them."""
 
     episodes: int
     shares: tuple[Share, ...]
@@ -123,7 +128,7 @@ class Sobol:
 
 @dataclass(frozen=True, slots=True)
 class Executed:
-    """A statement that ran in this number of failing episodes and in no other."""
+    """A statement that ran in `failing` failing episodes and in no other episode."""
 
     path: str
     line: int
@@ -133,7 +138,7 @@ class Executed:
 
 @dataclass(frozen=True)
 class Statements:
-    """The statements that ran only in failures, among so many failing episodes and others."""
+    """The statements that ran only in failing episodes, and the numbers of failing and other episodes compared."""
 
     failing: int
     others: int
@@ -142,9 +147,10 @@ class Statements:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """How a repair moves a boundary: in words, and by the values that were shown to hold and to fail, if any.
+    """How a repair moves a boundary: in words, and the values that were shown to hold and to fail.
 
-    Values are numbers of the direction; for a combination, they are distances from nominal.
+    A value that was not shown is None. Values are numbers of the direction; for a combination they are distances from
+    nominal.
     """
 
     name: str
@@ -159,14 +165,14 @@ class Moved:
 
 @dataclass(frozen=True, slots=True)
 class Draws:
-    """Episodes at fresh draws from the whole space, without and with a repair."""
+    """Episodes at random points of the whole space, without and with a repair."""
 
     episodes: int
     passed_before: int
     passed_after: int
-    reward_before: float  # mean total
+    reward_before: float  # mean reward per episode
     reward_after: float
-    success_at_least: float  # lower bound of the success rate with the repair
+    success_at_least: float  # lower confidence bound of the success rate with the repair
 
 
 @dataclass(frozen=True)
@@ -174,10 +180,10 @@ class Attempt:
     """A search for a repair in a region, and what an accepted repair changes."""
 
     region: str
-    told: str  # the repair, or why there is none
+    told: str  # a description of the repair, or why there is none
     accepted: bool = False
-    patch: str | None = None  # None, too, if it is withheld
-    withheld: str = ""  # why
+    patch: str | None = None  # also None if the repair is withheld
+    withheld: str = ""  # reason, or empty
     moved: tuple[Moved, ...] = ()
     draws: Draws | None = None
 
@@ -195,10 +201,10 @@ class Stress:
     episodes: int
     curves: tuple[Curve, ...]
     combinations: tuple[Failure, ...] = ()
-    expected: tuple[Failure, ...] = ()  # drifts that fail by the model of the search, but are not confirmed
-    seconds: float | None = None  # the limit of the time, if that is the budget
+    expected: tuple[Failure, ...] = ()  # drifts that fail according to the model but are not confirmed
+    seconds: float | None = None  # time limit in seconds, if the budget is a time
     must_hold: Mapping[str, Sequence[Any]] = field(default_factory=dict)
-    tried: int = 0  # combinations
+    tried: int = 0  # number of combinations tried
     margin_map: MarginMap | None = None
     statements: Statements | None = None  # None without a confirmed failure
     sobol: Sobol | None = None  # None if the budget did not suffice, or SALib is not installed
@@ -207,20 +213,23 @@ class Stress:
 
     @property
     def nearer(self) -> Failure | None:
-        """Return the nearest drift that fails according to the model, if it is nearer than every confirmed failure."""
+        """Return the nearest drift that the model predicts to fail without confirmation.
+
+        Return None if a confirmed failure is about as near or nearer.
+        """
         limit = min((one.distance for one in self.failures), default=inf)
         return next((one for one in self.expected if one.distance < NEARER * limit), None)
 
     @property
     def failures(self) -> tuple[Failure, ...]:
-        """Return all confirmed failing drifts, the nearest first."""
+        """Return all confirmed failing drifts, nearest first."""
         return tuple(
             sorted([*confirmed(self.curves), *self.combinations], key=lambda one: (one.distance, one.names))
         )
 
 
 def failure(space: Space, point: Point) -> Failure:
-    """Return a failing drift."""
+    """Return the failure at a point, with its distance and directions."""
     names = tuple(name for name, number in point.items() if number != space.nominal[name])
     return Failure(point, distance(space, point), names)
 

@@ -1,4 +1,4 @@
-"""Generate drifts with Hypothesis, which climbs towards low margins with `target`."""
+"""Generate drifts with Hypothesis, whose `target` steers them towards low margins."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ BITS = 4  # a range has 2 ** BITS sizes on each side of nominal
 
 
 def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], float | None]) -> None:
-    """Call `margin` with up to `tries` generated drifts, until it returns None or raises; raise what it raises.
+    """Call `margin` with up to `tries` generated drifts until it returns None. Re-raise what `margin` raises.
 
-    Hypothesis draws booleans only: among numbers it would mix constants from the modules that happen to be imported,
-    which differ between one worker and several. Its database is off for the same reason.
+    Only booleans are drawn. For numbers, Hypothesis mixes in constants from imported modules, and these differ between
+    worker processes. Its database is off because it also makes runs differ.
     """
     import hypothesis
     from hypothesis import strategies as st
@@ -36,7 +36,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
         nonlocal ended, raised
         try:
             found = None if ended else margin(_point(space, drawn))
-        except Exception as problem:  # hidden from Hypothesis, which would run the drift again
+        except Exception as problem:  # Hypothesis must not see the error, since it would run the drift again
             found, raised = None, problem
         if found is None:
             ended = True
@@ -49,7 +49,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
 
 
 def _point(space: Space, drawn: tuple[tuple[bool, ...], ...]) -> Point:
-    """Return the point of drawn bits: whether a direction takes part, its side, and its size."""
+    """Return the point for drawn bits: for each direction, whether it changes, to which side, and how far."""
     found: dict[str, float] = {}
     for (name, extent), (part, side, *bits) in zip(space.extents.items(), drawn, strict=True):
         number = sum(bit << place for place, bit in enumerate(bits))

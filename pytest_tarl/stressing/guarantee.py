@@ -1,4 +1,7 @@
-"""The guarantee of a recording, and the evidence on it from episodes under a drift."""
+"""The guarantee of a recording, and what episodes under a drift show about it.
+
+The guarantee has two parts: a minimum success rate, and a maximum loss of mean reward.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +19,12 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
-LOWEST = -1.5  # margins below this are cut off: a drift that fails clearly says little about the boundary
-LEAST = 8  # episodes before a drift may count as harmless; one that fails 1 in 12 passes them all half of the time
-HOPEFUL = 0.84  # confidence of a bound one standard error above the mean
-SEARCH_RISK = 0.05  # approximate risk of each decision of the search; it gives no guarantee
+LOWEST = -1.5  # lower limit of margins: how clearly a drift fails says little about where the boundary is
+LEAST = 8  # minimum episodes to count as holding; a drift that fails 1 in 12 passes all half of the time
+HOPEFUL = 0.84  # one-sided confidence of a bound one standard error above the mean
+SEARCH_RISK = (
+    0.05  # approximate error probability of each decision of the search; only fresh seeds give a guarantee
+)
 
 Answer = Literal["fails", "holds", "open"]
 
@@ -34,27 +39,30 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """The evidence from episodes under a drift.
+    """What episodes under a drift show about the guarantee.
 
-    `margin` is 1 for the designed performance, and 0 if the guarantee is just met.
+    `margin` is 1 for the performance of the recording, and 0 if the guarantee is just met.
     """
 
     result: Answer
     margin: float
     episodes: int
     passed: int
-    loss: float  # reward per episode, against the nominal drift with the same seeds
+    loss: float  # mean loss of reward per episode against the nominal episode with the same seed
     spread: float  # standard deviation of the loss of an episode
 
     @property
     def failing(self) -> bool:
-        """Return whether the guarantee fails here according to the evidence so far."""
+        """Return whether the guarantee appears to fail, according to the evidence so far."""
         return self.result == "fails" or (self.result == "open" and self.margin < 0.0)
 
 
 @dataclass(frozen=True)
 class Guarantee:
-    """The guaranteed success rate, and the tolerated loss of reward per episode; `totals` are the recorded rewards."""
+    """The guaranteed success rate and the tolerated loss of reward per episode.
+
+    `totals` are the total rewards of the recorded episodes.
+    """
 
     rate: float
     tolerance: float
@@ -63,7 +71,10 @@ class Guarantee:
     declared: Range | None = None
 
     def margin(self, passed: float, loss: float) -> float:
-        """Return the margin of a pass rate and a loss to the guarantee, as a share of the designed margin."""
+        """Return how far a pass rate and a mean loss are from breaking the guarantee.
+
+        1 is the performance of the recording, 0 just meets the guarantee.
+        """
         room = max(self.share - self.rate, 1e-9)
         of_rate = (passed - self.rate) / room
         of_loss = 1.0 - loss / self.tolerance if self.tolerance > 0 else (1.0 if loss <= 0.0 else -1.0)
@@ -71,7 +82,11 @@ class Guarantee:
 
 
 def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
-    """Return the guarantee of a recording: its bound of the success rate, at most min_success, and the loss δ."""
+    """Return the guarantee of a recording.
+
+    The success rate is its lower confidence bound in the recording, but at most `min_success`. The tolerated loss comes
+    from the tolerance of the marker.
+    """
     sample = fixture.sample
     outcomes = [
         Outcome(bool(passed), float(total)) for passed, total in zip(sample.passed, sample.total, strict=True)
@@ -92,7 +107,10 @@ def guaranteed(outcomes: Sequence[Outcome], tolerance: float, designation: Desig
 
 
 def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]) -> Evidence:
-    """Return the approximate evidence of outcomes, paired by seed with nominal ones, to guide the search."""
+    """Return the evidence from outcomes that are paired by seed with nominal ones.
+
+    The evidence is approximate, which suffices to guide the search.
+    """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
     loss = fmean(losses)
@@ -105,17 +123,18 @@ def examined(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Ou
 
 
 def margin_of_one(given: Guarantee, outcome: Outcome, nominal: Outcome) -> float:
-    """Return the margin of a single episode, paired by seed with a nominal one."""
+    """Return the margin of a single episode, paired by seed with a nominal episode."""
     return given.margin(float(outcome.passed), nominal.total - outcome.total)
 
 
 def margin_of(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome]
 ) -> tuple[float, float]:
-    """Return the margin of outcomes, at least LOWEST, and its approximate standard deviation.
+    """Return the margin of outcomes, cut off at LOWEST, and its approximate standard deviation.
 
-    If episodes fail, that is half of the margin's 80 % interval. If all pass, it is that of the mean loss, with two
-    more losses of a spread of a third of the tolerance, since few outcomes may agree by chance.
+    If some episodes failed, the deviation is half the width of the margin's 80 % interval. If all passed, it is the
+    standard error of the mean loss. That error includes two assumed losses whose deviation is a third of the tolerance,
+    because the losses of a few episodes may agree by chance.
     """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
@@ -131,10 +150,10 @@ def margin_of(
 
 
 def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:
-    """Return whether fresh episodes show at `risk` that the guarantee fails: too few pass, or too much is lost.
+    """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails.
 
-    The loss is paired by seed with the nominal drift. Its bound is exact if the marker declares total_range, and
-    Student's otherwise.
+    It fails if too few episodes pass or too much reward is lost. Losses are paired by seed with nominal episodes. The
+    bound of the loss is exact if the marker declares total_range; otherwise it is Student's approximation.
     """
     if _too_few_pass(given, outcomes, risk / 2):
         return True
@@ -142,7 +161,7 @@ def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Out
 
 
 def most_passed(given: Guarantee, count: int, risk: float) -> int:
-    """Return the largest number of passed episodes that refutes the guarantee; -1 if no number does."""
+    """Return the largest number of passed episodes that refutes the guarantee, or -1 if no number does."""
     return _most_passed(given.rate, count, risk)
 
 
@@ -155,10 +174,10 @@ def _most_passed(least: float, count: int, risk: float) -> int:
 def hopeless(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], most: int, risk: float
 ) -> bool:
-    """Return whether `most` episodes are unlikely to refute the guarantee, given that these are the first of them.
+    """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
-    That is so if a loss about one standard error larger would still be tolerated, and as many more failures would be
-    too few.
+    It is unlikely if the guarantee would still hold after adding about one standard error to both the loss and the
+    number of failures.
     """
     count, failed = len(outcomes), sum(not one.passed for one in outcomes)
     if (failed + sqrt(failed + 1.0)) / count * most >= most - most_passed(given, most, risk):
@@ -167,7 +186,7 @@ def hopeless(
 
 
 def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether fresh episodes show at `risk` that the guaranteed share of episodes passes."""
+    """Return whether fresh episodes show, with error probability `risk`, that the success rate is as guaranteed."""
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     return rate(passed, count, 1.0 - risk).low >= given.rate
 
@@ -175,12 +194,15 @@ def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> b
 def little_lost(
     given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float
 ) -> bool:
-    """Return whether fresh episodes show at `risk` that the loss is tolerated; the bound is that of `refuted`."""
+    """Return whether fresh episodes show, with error probability `risk`, that the loss is tolerated.
+
+    The bound of the loss is computed as in `refuted`.
+    """
     return mean_of(_losses(outcomes, nominal), 1.0 - risk, _differences(given)).high <= given.tolerance
 
 
 def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether episodes show at `risk` that the guarantee fails against the recorded rewards."""
+    """Return whether episodes fail the guarantee relative to the recorded rewards, with error probability `risk`."""
     if _too_few_pass(given, outcomes, risk / 2):
         return True
     totals = [one.total for one in outcomes]
@@ -188,13 +210,13 @@ def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) 
 
 
 def _too_few_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether outcomes show at `risk` that too few episodes pass (Clopper and Pearson)."""
+    """Return whether the upper Clopper-Pearson bound of the success rate, at `risk`, is below the guarantee."""
     passed = sum(one.passed for one in outcomes)
     return rate(passed, len(outcomes), 1.0 - risk).high < given.rate
 
 
 def _differences(given: Guarantee) -> Range | None:
-    """Return the declared range of a loss."""
+    """Return the range of possible losses, or None if the marker declares no total_range."""
     ends = given.declared
     return None if ends is None else Range(ends.low - ends.high, ends.high - ends.low)
 

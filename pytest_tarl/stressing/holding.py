@@ -1,9 +1,9 @@
-"""Show on fresh seeds how far the guarantee holds: the end of a boundary's interval that is nearer to nominal.
+"""Show on fresh seeds how far the guarantee holds: the near end of a boundary's interval.
 
-A search sees few episodes at a drift, and rare failures hide in them: a drift that fails 1 in 20 passes 8 episodes two
-times in three. So some values at which a search saw no failure lie too far from nominal. Here, two values are chosen
-from the episodes of the search, and tested on seeds that it did not use; the risk is divided among all tests. If the
-margin does not rise with the drift, the boundary lies beyond each value at which the guarantee holds.
+A search runs only a few episodes at each drift and can miss rare failures: a drift that fails 1 in 20 passes 8 episodes
+two times in three. Therefore the last value at which a search saw no failure is often too far from nominal. This module
+chooses two values from the search's episodes and tests them on fresh seeds. The risk is divided among all tests. If the
+margin never rises with the drift, the boundary lies beyond each value at which the guarantee holds.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ from pytest_tarl.stressing.findings import NEAR_RISK, Curve
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
-SHARES = (0.85, 0.15)  # of the risk: of the first and second value, and of the tests at each, see `holds`
+SHARES = (0.85, 0.15)  # shares of the risk: of the first and second value, and of the two tests at each value
 SECOND = 0.5  # the second value, as a share of the first
-BATCH = 8  # episodes after which a test that can no longer succeed ends
-PAIRED = (16, 32)  # numbers of episodes that bound the loss, unless the marker declares total_range
+BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed
+PAIRED = (16, 32)  # numbers of episodes to bound the loss with, unless the marker declares total_range
 
 
 def hold(curve: Curve, evaluator: Evaluator) -> None:
-    """Set `curve.held` to a value at which fresh seeds show that the guarantee holds, as far from nominal as possible.
+    """Set `curve.held` to the farthest chosen value at which fresh seeds show that the guarantee holds.
 
-    This is wrong with a probability of at most NEAR_RISK. Values for which the budget does not suffice are left out.
+    The probability of a wrong value is at most NEAR_RISK. Values whose test the budget does not cover are skipped.
+    Raise BudgetSpentError if the time limit ends a test.
     """
     values, paired = _values(curve, evaluator)
     for t, share in zip(values, SHARES, strict=True):
@@ -36,10 +37,10 @@ def hold(curve: Curve, evaluator: Evaluator) -> None:
 
 
 def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) -> bool:
-    """Return whether fresh seeds show at `risk` that the guarantee holds at a value of a ray.
+    """Return whether fresh seeds show, with error probability `risk`, that the guarantee holds at place t.
 
-    The first test allows no failed episode; if there is one, a second and longer test allows it. `paired` episodes
-    bound the loss, or all if the marker declares total_range.
+    The first test allows no failed episode. If one failed, a second, longer test allows one. `paired` episodes bound
+    the loss; if the marker declares total_range, all of them do.
     """
     given, point, nominal = evaluator.guarantee, ray.point(t), evaluator.space.nominal
     for allowed, share in enumerate(SHARES):
@@ -61,15 +62,18 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 
 def least(share: float, failed: int, risk: float) -> int:
-    """Return the least number of episodes that show a success rate of `share` although `failed` of them failed."""
-    # of failed + 1 groups of episodes, one would have no failure
+    """Return the minimum number of episodes that show a success rate of `share` if `failed` of them failed."""
+    # upper limit of the search: of `failed` + 1 groups of episodes, one has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]
 
 
 def _values(curve: Curve, evaluator: Evaluator) -> tuple[tuple[float, float], int]:
-    """Return the values to test and how many episodes bound the loss, chosen from the search's episodes only."""
+    """Return the two values of t to test, and the number of episodes to bound the loss with.
+
+    The values depend only on the search's episodes, so the fresh seeds stay independent. A value of 0 is not tested.
+    """
     if not curve.ray.continuous:
         return (1.0, 0.0), PAIRED[0]
     given = evaluator.guarantee

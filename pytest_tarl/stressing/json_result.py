@@ -1,4 +1,4 @@
-"""The result of a stress run for other tools: one versioned JSON document, see `stress.schema.json`."""
+"""The result of a stress test for other tools: a versioned JSON document, specified by `stress.schema.json`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.spaces import Choice, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Failure, Sobol, Stress
 from pytest_tarl.stressing.words import broken_promises, point_values
 
-# 1: first version, 2: confidence of the boundary, values shown to hold, 3: Sobol indices, statements, repairs, seconds,
-# 4: drifts that are expected to fail
+# Format 1: first version. 2: confidence of the boundary, values shown to hold. 3: Sobol indices, statements, repairs,
+# seconds. 4: drifts that are expected to fail.
 FORMAT_VERSION = 4
 ENDS = {"": "complete", "budget": "budget", "interrupted": "interrupted", "nominal": "nominal fails"}
 
@@ -31,7 +31,7 @@ def schema() -> dict[str, Any]:
 
 
 def document(stress: Stress) -> dict[str, Any]:
-    """Return the result as plain values."""
+    """Return the result as JSON-compatible values."""
     given = stress.guarantee
     return {
         "format": FORMAT_VERSION,

@@ -1,4 +1,7 @@
-"""Failing drifts of earlier runs, stored below `.tarl/stress`; they are replayed first and do not affect the search."""
+"""Failing drifts of earlier runs, stored below `.tarl/stress`; they are replayed first.
+
+The replay only reports whether they still fail. It does not affect the search.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +20,15 @@ from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome
 
 FORMAT_VERSION = 1  # 1: first version
-MOST = 5  # number of failing drifts to keep
-EPISODES = 4  # number of episodes to replay a drift
+MOST = 5  # maximum number of failing drifts to keep
+EPISODES = 4  # number of episodes per replayed drift
 
 
 def write(failures: Sequence[Failure], path: Path) -> None:
-    """Write the nearest failing drifts; without any, remove the file. Raise OSError if it cannot be written."""
+    """Write the first MOST failing drifts, or remove the file if there are none.
+
+    Raise OSError if the file cannot be written or removed.
+    """
     if not failures:
         path.unlink(missing_ok=True)
         return
@@ -31,7 +37,10 @@ def write(failures: Sequence[Failure], path: Path) -> None:
 
 
 def read(path: Path, space: Space) -> list[Point]:
-    """Return the kept drifts of the space, without the nominal one; none if the file is damaged or of another space."""
+    """Return the stored drifts of the space, except the nominal one.
+
+    Return an empty list if the file is missing or damaged. Drifts of another space are skipped.
+    """
     try:
         found = json.loads(path.read_text("utf-8"))
         points = found["failing"] if found["format"] == FORMAT_VERSION else []
@@ -43,7 +52,7 @@ def read(path: Path, space: Space) -> list[Point]:
 def replayed(
     points: Sequence[Point], rollout: Rollout, drift: str, seed: int, given: Guarantee
 ) -> Iterator[tuple[Point, bool]]:
-    """Yield each kept drift, and whether it still fails in a few episodes."""
+    """Yield each stored drift, and whether it still fails in EPISODES episodes."""
     seeds = episode_seeds(seed, f"stress {drift} search", EPISODES)
     for point in points:
         plans = (EpisodePlan(each, drift, point=point) for each in seeds)

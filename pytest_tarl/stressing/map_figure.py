@@ -1,4 +1,4 @@
-"""The map of margins as SVG."""
+"""Draw the map of predicted margins as SVG."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pytest_tarl.spaces import nominal
 from pytest_tarl.stressing.findings import Failure, MarginMap, Stress
 from pytest_tarl.stressing.svg_text import INK, svg_text
 
-SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130  # px: of the map, and the margins around it
-COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # backgrounds of dark marks
+SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130  # px: side of the map, and the margins on the left, above and below
+COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # light colours, below dark marks
 NAMES = {"holds": "holds", "unsure": "undecided", "fails": "fails"}
-SURE = 2.0  # standard deviations of the prediction from margin 0, below which a cell is drawn as undecided
+SURE = 2.0  # a margin closer to 0 than this many standard deviations counts as undecided
 
 
 def map_figure(stress: Stress) -> str:
-    """Return the map as SVG with a text alternative, or an empty text without a map."""
+    """Return the map as SVG with a text alternative, or an empty text if there is no map."""
     found = stress.margin_map
     if found is None:
         return ""
@@ -53,14 +53,14 @@ def map_words(stress: Stress) -> str:
 
 
 def answer(margin: float, spread: float) -> str:
-    """Return whether a cell holds, fails, or is undecided."""
+    """Return whether the guarantee holds in a cell, fails, or is undecided ("unsure")."""
     if abs(margin) < SURE * spread:
         return "unsure"
     return "holds" if margin > 0.0 else "fails"
 
 
 def _cells(found: MarginMap) -> Iterator[str]:
-    """Yield the cells, one rectangle per run of equal ones in a row."""
+    """Yield the cells as rectangles, one for each run of equal cells in a row, and the predicted boundary."""
     count = len(found.margins)
     side = SIZE / count
     for row, (margins, spreads) in enumerate(zip(found.margins, found.spreads, strict=True)):
@@ -78,7 +78,7 @@ def _cells(found: MarginMap) -> Iterator[str]:
 
 
 def _boundary(found: MarginMap) -> str:
-    """Return the edges between cells with predicted margins above and below 0, as a path."""
+    """Return an SVG path along the edges between cells with margins above and below 0."""
     count = len(found.margins)
     side = SIZE / count
     edges = []
@@ -94,7 +94,7 @@ def _boundary(found: MarginMap) -> str:
 
 
 def _marks(stress: Stress, found: MarginMap) -> Iterator[str]:
-    """Yield the nominal drift as a ring, and the confirmed failures in the plane of the map as crosses."""
+    """Yield a ring at the nominal drift, and a cross at each confirmed failure in the plane of the map."""
     x, y = _place(found, dict(stress.space.nominal))
     yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="#fff" stroke="{INK}" stroke-width="2"/>'
     for one in stress.failures:
@@ -115,7 +115,7 @@ def _place(found: MarginMap, point: dict[str, float]) -> tuple[float, float]:
 
 
 def _axes(found: MarginMap) -> Iterator[str]:
-    """Yield the frame, the ends and nominal values of both directions, and their names."""
+    """Yield the frame, the names of both directions, and their end and nominal values."""
     yield f'<rect x="{LEFT}" y="{TOP}" width="{SIZE}" height="{SIZE}" fill="none" stroke="{INK}"/>'
     for number, extent in enumerate(found.spans):
         for value in sorted({extent.low, nominal(extent), extent.high}):

@@ -1,4 +1,4 @@
-"""The map of a stress run: the predicted margin over the two most important directions."""
+"""Compute the map of a stress test: the predicted margin over the two most important directions."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.guarantee import LOWEST
 from pytest_tarl.stressing.prediction import Prediction
 
-CELLS = 25  # of the map, in each direction
+CELLS = 25  # number of cells in each direction
 
 
 def importance(curves: Sequence[Curve]) -> dict[str, float]:
-    """Return for each range the largest loss of margin that it causes alone, the most important first."""
+    """Return the largest loss of margin along each range, the most important range first."""
     found: dict[str, float] = {}
     for curve in curves:
         (name,) = curve.ray.names
@@ -26,12 +26,12 @@ def importance(curves: Sequence[Curve]) -> dict[str, float]:
 
 
 def lost(curve: Curve) -> float:
-    """Return the largest loss of margin along a ray."""
+    """Return the largest loss of margin along a ray; 1 uses up the guarantee."""
     return max((1.0 - max(one.margin, LOWEST) for one in curve.evidence.values()), default=0.0)
 
 
 def margin_map(curves: Sequence[Curve], model: Prediction, coordinates: Coordinates) -> MarginMap | None:
-    """Return the model's margins in the middle of CELLS × CELLS cells; None with fewer than two ranges."""
+    """Return the predicted margins of CELLS × CELLS cells, or None if there are fewer than two ranges."""
     spans = coordinates.spans
     names = [*importance(curves)][:2]
     if len(names) < 2:

@@ -1,7 +1,7 @@
-"""Compare margins before and after a change.
+"""Compare margins before and after a change of the code.
 
-A direction is more fragile if the guarantee was shown to fail at a value up to which it was shown to hold before. The
-two statements are wrong together with a probability of at most 1 - confidence.
+A direction is more fragile if the guarantee now fails at a value up to which it was shown to hold before. The
+probability that such a verdict is wrong is at most 1 - confidence.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Change = Literal["more fragile", "more robust", "no significant change", "not co
 
 @dataclass(frozen=True)
 class Row:
-    """One direction before and after a change; None on the side that lacks it."""
+    """One direction before and after a change; a side is None if the direction does not exist there."""
 
     title: str
     before: Margin | None
@@ -25,7 +25,7 @@ class Row:
 
     @property
     def change(self) -> Change:
-        """Return what changed."""
+        """Return the kind of change."""
         before, after = self.before, self.after
         if before is None or after is None:
             return "new" if before is None else "gone"
@@ -37,7 +37,7 @@ class Row:
 
     @property
     def name(self) -> str:
-        """Return the direction, with its end for a range."""
+        """Return the name of the direction; for a range, with the end to which it changes."""
         (side,) = {one.name: one for one in (self.before, self.after) if one is not None}.values()
         return side.name if "=" in side.name else f"{side.name} to {side.end:.3g}"
 
@@ -48,7 +48,7 @@ class Row:
 
 
 def compared(before: Sequence[Margins], after: Sequence[Margins]) -> list[Row]:
-    """Return a row for each direction of all tests, in the order of the files; gone ones are last."""
+    """Return a row for each direction of all tests, in the order of the files; removed directions come last."""
     old = {(one.title, side.name, side.end > side.nominal): side for one in before for side in one.sides}
     new = {(one.title, side.name, side.end > side.nominal): side for one in after for side in one.sides}
     keys = [*new, *(key for key in old if key not in new)]
@@ -56,7 +56,7 @@ def compared(before: Sequence[Margins], after: Sequence[Margins]) -> list[Row]:
 
 
 def words(side: Margin) -> str:
-    """Return where the boundary of a direction is."""
+    """Return in words where the boundary of a direction is."""
     if "=" in side.name:
         return (
             "fails"

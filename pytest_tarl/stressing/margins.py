@@ -1,4 +1,7 @@
-"""The margins of a test: how far each direction may change, in a small file below `.tarl/margins` that is committed."""
+"""The margins of a test, how far each direction may change, in a small file below `.tarl/margins`.
+
+The file is meant to be committed.
+"""
 
 from __future__ import annotations
 
@@ -12,31 +15,31 @@ from pytest_tarl.spaces import Choice, nominal, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Curve, Stress
 
 FORMAT_VERSION = 1  # 1: first version
-DIGITS = 6  # significant ones of a value
+DIGITS = 6  # significant digits of a value
 
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """One side of a range, or an option.
+    """The margin of one side of a range, or of an option.
 
-    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`, None where neither was shown. Values of
-    a range are numbers; the only values of an option are `nominal` 0 and `end` 1.
+    The guarantee was shown to hold up to `holds_to` and to fail at `fails_at`; either is None if it was not shown. The
+    values of a range are numbers. For an option, 0 is the nominal option and 1 is this option.
     """
 
-    name: str  # with the option: camera='down'
+    name: str  # for an option with its value: camera='down'
     nominal: float
     end: float
     holds_to: float | None
     fails_at: float | None
 
     def share(self, value: float) -> float:
-        """Return how far a value is from nominal, 1 at the end."""
+        """Return the position of a value between nominal (0) and the end (1)."""
         return (value - self.nominal) / (self.end - self.nominal)
 
 
 @dataclass(frozen=True, slots=True)
 class Margins:
-    """The margins of a test in a space; each interval holds with a probability of `confidence`."""
+    """The margins of a test in a space; `confidence` is that of each interval."""
 
     test: str
     drift: str
@@ -47,7 +50,7 @@ class Margins:
 
     @property
     def title(self) -> str:
-        """Return the test with its drift, as pytest shows it."""
+        """Return the test with its drift, in pytest's notation `test[drift]`."""
         return f"{self.test}[{self.drift}]"
 
 
@@ -59,7 +62,7 @@ def margins(stress: Stress) -> Margins:
 
 
 def text(found: Margins) -> str:
-    """Return the file's text; the same margins give the same bytes."""
+    """Return the content of the file; equal margins give equal bytes."""
     document = {
         "format": FORMAT_VERSION,
         "test": found.test,
@@ -81,7 +84,7 @@ def text(found: Margins) -> str:
 
 
 def read(content: bytes, where: str) -> Margins:
-    """Return the margins in a file's text. Raise FixtureError if it holds none; `where` names the file."""
+    """Parse the content of a margins file. Raise FixtureError if it is not one; `where` names the file."""
     try:
         document = json.loads(content)
         if document["format"] != FORMAT_VERSION:

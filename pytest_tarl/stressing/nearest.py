@@ -1,8 +1,9 @@
-"""Search for the failing drift nearest to nominal, in all directions together.
+"""Search for the failing drift nearest to nominal, in all directions at once.
 
-A model of the drifts tried so far predicts where it is; the prediction is tried, and the model learns from it. Without
-any failing drift, Hypothesis explores. CMA-ES then looks for failing drifts nearer than the best one. All of this runs
-on common seeds; `combinations` confirms the result on fresh ones.
+A model predicts the nearest failing drift from the drifts tried so far. The search tries the prediction, and the model
+learns from the outcome. While no drift fails, Hypothesis explores the space. Afterwards CMA-ES, an evolution strategy,
+looks for nearer failing drifts. All episodes use the common seeds of the search; the module `combinations` confirms the
+result on fresh seeds.
 """
 
 from __future__ import annotations
@@ -30,47 +31,53 @@ from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import spread
 
-NEARER = 0.98  # a nearer drift is searched up to this share of the best distance
-LARGEST = 2.0  # distance beyond which no failing drift is searched
-PREDICTED = 3  # number of predicted drifts to try before others
-GAIN = 0.01  # expected gain, in units of the best distance, below which a drift is not tried
-BOLD = (0.0, 1.0, 0.0, 0.5)  # standard deviations by which the model may be wrong in favour of a drift
-SURE = 0.5  # a tried drift fails if its excess over the tolerated loss is this share of what can be shown
-CLEAR = 4.0  # or if its margin is this many standard deviations below 0
-GENERATED = 24  # number of drifts from Hypothesis
-ROUNDS, EXPLORED = 8, 8  # rounds of drifts nearer than the best one, and drifts of a round
-AGAIN = 4  # the same rounds after the single directions
-VETTED = 4  # drifts that run SIZES[2] episodes before confirmation, at most
-SAME = 0.02  # drifts nearer to each other than this are the same for the search
-TRIES = 24  # consecutive drifts of CMA-ES without a nearer failure after which it ends
-SPREAD = 0.35  # first standard deviation of CMA-ES, in units of the best distance
-# For drifts to confirm first and later, and for those only expected to fail: assumed errors of the model, in standard
-# deviations, and excess over the guarantee, in units of what fresh episodes can show.
+NEARER = 0.98  # the next failing drift must be nearer than this share of the best distance
+LARGEST = 2.0  # maximum distance of the drifts that are searched
+PREDICTED = 3  # number of predicted drifts to try in a row
+GAIN = 0.01  # a drift is not tried if the expected gain, in units of the best distance, is below this
+BOLD = (0.0, 1.0, 0.0, 0.5)  # a prediction may be optimistic by this many standard deviations, in turn
+# a tried drift counts as failing if its excess is above -SURE times the depth that fresh episodes can show
+SURE = 0.5
+CLEAR = 4.0  # it also does if its margin is this many standard deviations below 0
+GENERATED = 24  # maximum number of drifts from Hypothesis
+ROUNDS, EXPLORED = 8, 8  # rounds of the first search, and drifts explored in each round
+AGAIN = 4  # rounds after the single directions were examined
+VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before confirmation
+SAME = 0.02  # drifts whose relative difference is below this count as the same
+TRIES = 24  # CMA-ES stops after this many drifts in a row without a nearer failure
+SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
+# Steps to choose drifts by: the errors of the model to allow for, in standard deviations, and the excess over the
+# guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation, NEAR for the second, and
+# EXPECTED for drifts that are reported without confirmation.
 FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
 NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
 EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
-STANDARD = 4.1  # standard errors beyond the tolerated loss that fresh episodes show four times in five
-POWER, IMPOSSIBLE = 0.6, 0.99  # the same for failing episodes, and the largest share of them
-SHALLOW, DEEP = 0.03, 1.2  # limits of the excess that they can show, in units of the tolerated loss
-PRIOR = 4  # weight in episodes of the common variance of losses at a drift
-TRIFLE = 0.15  # a component below this share of the distance is left out of a drift to confirm: noise may explain it
+STANDARD = 4.1  # fresh episodes show a loss this many standard errors beyond the tolerated one 4 times in 5
+POWER, IMPOSSIBLE = 0.6, 0.99  # the same for the share of failing episodes, and the upper limit of that share
+# limits of the excess loss that fresh episodes can show, in units of the tolerated loss
+SHALLOW, DEEP = 0.03, 1.2
+PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
+TRIFLE = 0.15  # components below this share of the distance may be noise and are dropped before confirmation
 
-Steps = Sequence[tuple[float, float]]  # errors of the model and excess, as above
+Steps = Sequence[tuple[float, float]]  # (errors of the model, excess) for each step, as above
 
 
 @dataclass
 class Nearest:
-    """The search; `tried` are the drifts that it tried, with several directions."""
+    """The search in several directions; `tried` are the drifts tried so far."""
 
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
-    risk: float = 0.05  # rates at which a drift is confirmed
+    risk: float = 0.05  # error probability of the confirmation, to know what it can show
     _spread: Iterator[Vector] | None = None
-    _fitted: tuple[int, Prediction] | None = None  # the episodes that it has seen, and the model
+    _fitted: tuple[int, Prediction] | None = None  # the number of episodes it was fitted to, and the model
 
     def approach(self) -> None:
-        """Follow the predictions, after Hypothesis if nothing fails yet. Raise BudgetSpentError; findings stay."""
+        """Try predicted drifts; if none fails so far, let Hypothesis explore first.
+
+        Raise BudgetSpentError; the drifts tried so far are kept.
+        """
         self._predict()
         if self.best is None:
             self._generate()
@@ -78,7 +85,10 @@ class Nearest:
         self._explore_and_predict(ROUNDS)
 
     def improve(self) -> None:
-        """Predict and explore again, evolve and shrink. Raise BudgetSpentError; findings stay."""
+        """Predict and explore again, then evolve and shrink the best drift.
+
+        Raise BudgetSpentError; the drifts tried so far are kept.
+        """
         self._predict()
         self._explore_and_predict(AGAIN)
         self._evolve()
@@ -87,7 +97,11 @@ class Nearest:
 
     @property
     def best(self) -> Point | None:
-        """Return the nearest drift, tried or on a ray, that fails according to the model of all; None without one."""
+        """Return the nearest known failing drift, from `tried` and the rays, or None.
+
+        The model of all episodes decides whether a drift fails, unless the drift's own episodes show it clearly. A
+        drift with an option that is not nominal is outside the model and counts only its own episodes.
+        """
         coordinates = self._nominal()
         own = [point for point in self._known() if coordinates.covers(point) and self._distance(point) > 0.0]
         other = [
@@ -107,10 +121,10 @@ class Nearest:
         return min(other, key=self._distance, default=None)
 
     def chain(self, steps: Steps) -> list[Point]:
-        """Return drifts as candidates for confirmation, the nearest first.
+        """Return candidates for confirmation, nearest first.
 
-        At the boundary even many episodes rarely show a failure, so the candidates lie beyond it, as far as the noise
-        and the errors of the model make necessary.
+        At the boundary, even many episodes rarely show a failure. The candidates therefore lie beyond the boundary, as
+        far as noise and errors of the model require.
         """
         best = self.best
         if best is None:
@@ -123,9 +137,10 @@ class Nearest:
         )
 
     def expected(self, steps: Steps) -> list[Point]:
-        """Return the nearest drift that fails by the model, for each step of excess and of errors of the model.
+        """Return for each step the nearest drift that fails according to the model.
 
-        Drifts that hardly differ are left out. Nothing is returned if no drift that was tried fails.
+        A step allows for errors of the model and demands an excess over the guarantee. Drifts that hardly differ are
+        skipped. The result is empty if no tried drift fails.
         """
         best, coordinates = self.best, self._nominal()
         if best is None or not coordinates.covers(best):
@@ -142,13 +157,13 @@ class Nearest:
         return near
 
     def map(self) -> MarginMap | None:
-        """Return the map of margins by the model of all drifts that were tried."""
+        """Return the map of margins that the model predicts, or None with fewer than two ranges."""
         return margin_map(self.curves, self._model(), self._nominal())
 
     def _farther(self, limit: float) -> list[Point]:
-        """Return up to three drifts in several directions that were seen to fail beyond a distance, the nearest first.
+        """Return up to three tried drifts that failed beyond a distance, in several directions, nearest first.
 
-        They are candidates if none of the nearer ones is confirmed, because the model or few episodes misled there.
+        They are tested if no nearer candidate is confirmed, because the model or a few lucky episodes were wrong there.
         """
         usual, coordinates = self.evaluator.space.nominal, self._nominal()
         found = [
@@ -164,7 +179,7 @@ class Nearest:
         return [found[place] for place in places if place < len(found)]
 
     def _clearly_fails(self, point: Point) -> bool:
-        """Return whether the episodes at a point show a failure, regardless of the model."""
+        """Return whether the episodes at a point alone show a failure clearly, without the model."""
         margin, spread = self.evaluator.measured(point)
         return margin + CLEAR * spread < 0.0
 
@@ -195,7 +210,7 @@ class Nearest:
 
     @cached_property
     def _share(self) -> float:
-        """Return the share of failing episodes that the last of NEAREST episodes show about four times in five."""
+        """Return the share of failing episodes that the largest fresh sample shows about 4 times in 5."""
         episodes = NEAREST[-1]
         most = most_passed(self.evaluator.guarantee, episodes, self.risk / 2 / len(NEAREST))
         if most < 0:
@@ -204,7 +219,7 @@ class Nearest:
         return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
 
     def _shown(self, noise: float) -> Shown:
-        """Return what the last of NEAREST episodes can show, if the loss of an episode has this standard deviation."""
+        """Return what the largest fresh sample can show; `noise` is the standard deviation of an episode's loss."""
         depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
         return Shown(depth, self._share)
 
@@ -216,7 +231,7 @@ class Nearest:
         return distance(self.evaluator.space, point)
 
     def _probe(self, point: Point) -> float:
-        """Run the first episodes of a drift, and more of one that fails; return its margin."""
+        """Run the first episodes of a drift, and more if they fail; return its margin."""
         found = self.evaluator.examine(point, SIZES[0])
         self.tried.append(point)
         if found.failing:
@@ -224,7 +239,7 @@ class Nearest:
         return found.margin
 
     def _predict(self) -> None:
-        """Try the nearest drifts that may fail by the model, more or less boldly, and learn from each."""
+        """Try the nearest drifts that the model predicts to fail, with varying optimism, and learn from each."""
         evaluator, coordinates = self.evaluator, self._nominal()
         draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} prediction {len(self.tried)}")
         if len(coordinates.spans) < 2:
@@ -241,7 +256,7 @@ class Nearest:
             self._probe(coordinates.point(vector))
 
     def vet(self) -> None:
-        """Run more episodes at the nearest drift that fails according to the model, until it no longer moves.
+        """Run more episodes at the nearest predicted failure, until the prediction no longer moves.
 
         Raise BudgetSpentError.
         """
@@ -267,7 +282,7 @@ class Nearest:
             self._predict()
 
     def _explore(self) -> None:
-        """Try drifts nearer than the best one in all directions, since another failing region may be nearer."""
+        """Try drifts nearer than the best one in all directions, to find other failing regions."""
         evaluator, coordinates = self.evaluator, self._nominal()
         if len(coordinates.spans) < 2:
             return
@@ -279,7 +294,7 @@ class Nearest:
             self._probe(coordinates.point(vector * limit))
 
     def _generate(self) -> None:
-        """Let Hypothesis look for a first failing drift."""
+        """Let Hypothesis search for a first failing drift."""
 
         def margin(point: Point) -> float | None:
             found = self._probe(point)
@@ -289,7 +304,7 @@ class Nearest:
         generate(evaluator.space, seeds.episode_seed(evaluator.seed, "hypothesis", 0), GENERATED, margin)
 
     def _evolve(self) -> None:
-        """Search for nearer failing drifts with CMA-ES, which starts again around each one that it finds."""
+        """Search for nearer failing drifts with CMA-ES; restart it at each failing drift that it finds."""
         draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} evolution")
         missed = 0
         while missed < TRIES:
@@ -319,19 +334,19 @@ class Nearest:
 
 
 def _typical(every: Sequence[Sequence[float]]) -> float:
-    """Return the mean variance of losses, over the drifts; a few very noisy ones count for little."""
+    """Return the mean variance of losses over the drifts, with a cap so that noisy drifts do not dominate."""
     found = [variance(losses) for losses in every if len(losses) > 1]
     return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6)
 
 
 def _spread(losses: Sequence[float], typical: float) -> float:
-    """Return the standard deviation of the mean of losses, whose variance is about the typical one."""
+    """Return the standard error of the mean loss; the variance is shrunk towards the typical one."""
     count = len(losses)
     squares = variance(losses) * (count - 1) if count > 1 else 0.0
     return sqrt((squares + PRIOR * typical) / (count - 1 + PRIOR) / count)
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
-    """Return a vector without its smallest components, if it still fails according to the model."""
+    """Return the vector without its smallest components, or unchanged if it would then no longer fail."""
     kept: Vector = np.where(np.abs(vector) < TRIFLE * float(np.linalg.norm(vector)), 0.0, vector)
     return kept if model.excess(kept[None, :], errors)[0] >= 0.0 else vector

@@ -1,7 +1,7 @@
 """Run linear algebra in one thread.
 
-Sums then keep their order, so a result does not depend on the number of processors. Small matrices are also
-faster: beside other processes, threads of BLAS spend most of their time waiting for each other.
+Sums then keep their order, so a result does not depend on the number of processors. Small matrices also become faster:
+when other processes run, the threads of BLAS mostly wait for each other.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Result = TypeVar("Result")
 
 
 def one_thread(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Return the function such that its linear algebra takes one thread; code outside keeps its own number."""
+    """Return a function that runs `function` with one BLAS thread; other code keeps its number of threads."""
 
     @wraps(function)
     def limited(*positional: Parameters.args, **named: Parameters.kwargs) -> Result:
@@ -30,7 +30,7 @@ def one_thread(function: Callable[Parameters, Result]) -> Callable[Parameters, R
 
 @cache
 def _libraries() -> ThreadpoolController:
-    """Return the libraries of linear algebra that are loaded at the first call, numpy's among them."""
+    """Return a controller of the BLAS libraries that are loaded at the first call, such as numpy's."""
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()

@@ -1,4 +1,4 @@
-"""The report page of a stress run: sentences, and a margin curve for each direction, in one file without scripts."""
+"""The report page of a stress test: one file without scripts, with sentences, figures and tables."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from pytest_tarl.stressing.words import (
     together,
 )
 
-WIDTH, HEIGHT, EDGE = 640, 200, 44  # size of a curve in px; EDGE is the space for the axes
-TOP, BOTTOM = 1.25, -1.25  # range of margins in the curve; others are clipped
+WIDTH, HEIGHT, EDGE = 640, 200, 44  # px: size of a figure; EDGE is the space for the axes
+TOP, BOTTOM = 1.25, -1.25  # range of margins shown; others are clipped
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem; color: #1c2333 }
 h1 { font-size: 1.4rem } h2 { font-size: 1.1rem; margin-top: 2rem } svg { width: 100%; height: auto }
@@ -96,7 +96,7 @@ def _sections(stress: Stress) -> Iterator[str]:
 
 
 def _figure(name: str, extent: Span, curves: list[Curve], measured: list[tuple[float, Evidence]]) -> str:
-    """Return the margin over the size of a direction, as SVG."""
+    """Return an SVG figure of the margin over the values of a direction."""
 
     def x(value: float) -> float:
         return EDGE + (WIDTH - 2 * EDGE) * (value - extent.low) / (extent.high - extent.low)
@@ -133,7 +133,7 @@ def _figure(name: str, extent: Span, curves: list[Curve], measured: list[tuple[f
 
 
 def _band(curve: Curve, x: Callable[[float], float]) -> str:
-    """Return the uncertainty of a boundary as a rectangle."""
+    """Return the interval of a boundary as a rectangle, or an empty text without a boundary."""
     boundary = curve.boundary
     if boundary is None:
         return ""
@@ -152,7 +152,7 @@ def _table(stress: Stress, name: str, measured: list[tuple[float, Evidence]]) ->
 
 
 def _repairs(stress: Stress) -> Iterator[str]:
-    """Yield the searches for repairs, with a table of the boundaries that an accepted one moves."""
+    """Yield the result of each search for a repair, with a table of the boundaries that the repair moves."""
     if stress.repairs is None:
         return
     yield "<h2>Repair</h2>"
@@ -171,7 +171,7 @@ def _repairs(stress: Stress) -> Iterator[str]:
 
 
 def _statements(stress: Stress) -> Iterator[str]:
-    """Yield the table of the statements that run only in failures."""
+    """Yield the table of the statements that ran only in failing episodes."""
     found = stress.statements
     if found is None:
         return

@@ -1,7 +1,7 @@
 """Predict the nearest failing drift from the drifts tried so far.
 
-A model of the loss and one of the rate of failing episodes estimate the probability that a drift fails. The drift that
-promises most is tried next, as in Bayesian optimisation.
+Two models, of the loss and of the share of failing episodes, estimate the probability that a drift fails. As in
+Bayesian optimisation, the search then tries the most promising drift.
 """
 
 from __future__ import annotations
@@ -19,24 +19,25 @@ from pytest_tarl.stressing.guarantee import LOWEST, Guarantee
 from pytest_tarl.stressing.one_thread import one_thread
 from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covariance, variance
 
-DRAWN = 400  # number of drifts that the model compares
-PART = 0.75  # probability that a direction takes part in one of them
+DRAWN = 400  # number of random drifts that the model compares
+PART = 0.75  # probability that a direction changes in a random drift
 ROUNDS, SPREAD = (
     5,
     0.15,
-)  # refinements around the best one, each twice finer, and the first standard deviation
-STRETCHED = (0.9, 1.1)  # drifts that were tried are also compared at these multiples
-RAREST = 0.007  # minimum share of failing episodes in the nominal world
-SCALES = (9.0, 36.0, 144.0)  # variances of the logit, in units of those of the loss; the evidence chooses
-IRRELEVANT = 0.3  # factor on a direction that matters little
-LOGIT = 4.0  # a difference of logits that counts as much as the whole tolerated loss
+)  # refinements around the best drift, each with half the step, and the initial standard deviation
+STRETCHED = (0.9, 1.1)  # tried drifts are also compared at these multiples of their vectors
+RAREST = 0.007  # lower limit of the share of failing episodes assumed at nominal
+# candidates for the prior variance of the logit, relative to the loss; evidence selects
+SCALES = (9.0, 36.0, 144.0)
+IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
+LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A drift tried, by coordinates: its mean loss, as a share of the tolerated one, the standard deviation of that.
+    """A tried drift: its vector, mean loss and number of failed episodes.
 
-    `failed` of `episodes` failed.
+    `loss` is in units of the tolerated loss, and `spread` is its standard error.
     """
 
     vector: Vector
@@ -48,7 +49,10 @@ class Sample:
 
 @dataclass(frozen=True)
 class Shown:
-    """What fresh episodes can show: a loss beyond the tolerated one by `depth` of it, or such a failing `share`."""
+    """What fresh episodes can show: the smallest excess loss or failing share that they detect reliably.
+
+    `depth` is the loss beyond the tolerated one, in units of the tolerated one.
+    """
 
     depth: float
     share: float
@@ -63,7 +67,7 @@ Field = TypeVar("Field", LossField, RateField)
 
 
 class Prediction:
-    """The model of the drifts with common options."""
+    """A model of the margin of all drifts with the same options."""
 
     @one_thread
     def __init__(
@@ -74,14 +78,15 @@ class Prediction:
         shown: Shown,
         typical: float,
     ) -> None:
-        """Fit the model; `typical` is the variance of an episode's loss, half of it from the nominal episode."""
+        """Fit the model; `typical` is the variance of a loss, half of which comes from the nominal episode."""
         self.coordinates, self.given, self.shown = coordinates, given, shown
         self._vectors = np.array([one.vector for one in samples]).reshape(
             len(samples), len(coordinates.spans)
         )
         losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
         counts = np.array([float(one.episodes) for one in samples])
-        common = typical / 2.0 / np.maximum(counts[:, None], counts)  # the nominal episodes serve all drifts
+        # all drifts share the nominal episodes, so their errors are correlated
+        common = typical / 2.0 / np.maximum(counts[:, None], counts)
         own = np.maximum(
             np.array([one.spread**2 for one in samples]) - typical / 2.0 / counts, typical / 8.0 / counts
         )
@@ -105,17 +110,17 @@ class Prediction:
             )
 
     def deeper(self, times: float) -> Prediction:
-        """Return the same model for failures whose excess over the guarantee is a multiple of what can be shown."""
+        """Return a copy that requires an excess over the guarantee `times` as large as fresh episodes can show."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other
 
     @one_thread
     def promising(self, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
-        """Return the vector with the largest expected gain over a failing drift at the distance `limit`, and the gain.
+        """Return the vector with the largest expected gain, and the gain.
 
-        The gain is the probability that the drift fails, times the distance by which it is nearer, in units of the
-        ranges (constrained expected improvement, Gelbart et al. 2014, whose objective is known here).
+        The gain is the probability that the drift fails, times the distance by which it is nearer than `limit`, in
+        units of the ranges. This is constrained expected improvement (Gelbart et al. 2014) with a known objective.
         """
         room = float(np.sqrt(max(limit**2 - self.coordinates.options, 0.0)))
 
@@ -128,9 +133,9 @@ class Prediction:
 
     @one_thread
     def shortest(self, errors: float, limit: float, draws: np.random.Generator) -> Vector | None:
-        """Return the shortest vector up to `limit` that fails even if the model is wrong by some standard deviations.
+        """Return the shortest vector up to `limit` that fails even if the model errs by `errors` standard deviations.
 
-        None if no vector was found.
+        Return None if no such vector was found. The search is random and may miss the shortest one.
         """
 
         def scores(vectors: Vector) -> Vector:
@@ -144,7 +149,7 @@ class Prediction:
 
     @one_thread
     def failing(self, vectors: Vector) -> Vector:
-        """Return the probability that fresh episodes show a failure at each vector."""
+        """Return for each vector the probability that fresh episodes show a failure; shape (drifts,)."""
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         holds = 1.0 - _normal((mean - 1.0 - self.shown.depth) / deviation)
         if self._rates is not None:
@@ -155,7 +160,10 @@ class Prediction:
 
     @one_thread
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
-        """Return by how much each vector exceeds what fresh episodes can show, in units of the tolerated loss."""
+        """Return by how much each vector exceeds what fresh episodes can show, in units of the tolerated loss.
+
+        The prediction is first lowered by `errors` standard deviations. The result has the shape (drifts,).
+        """
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         found: Vector = mean - errors * deviation - 1.0 - self.shown.depth
         if self._rates is not None:
@@ -165,7 +173,7 @@ class Prediction:
 
     @one_thread
     def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the means and the standard deviations of the margins at vectors."""
+        """Return the means and standard deviations of the margins at vectors, each of shape (drifts,)."""
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         margins: Vector = np.maximum(1.0 - mean, LOWEST)
         if self._rates is not None:
@@ -181,7 +189,10 @@ class Prediction:
         return self.moments(vectors)[0]
 
     def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
-        """Return the prior covariances with the drifts tried, and the prior variances, of one of the two fields."""
+        """Return prior covariances with the tried drifts, and prior variances.
+
+        `field` is 0 for the loss and 1 for the failing share.
+        """
         units = self._units[field]
         return covariance(vectors * units, self._vectors * units), variance(vectors * units)
 
@@ -193,7 +204,7 @@ class Prediction:
     def _largest(
         self, score: Callable[[Vector], Vector], room: float, draws: np.random.Generator
     ) -> tuple[Vector, float]:
-        """Return the vector of length up to `room` with the largest score, and the score."""
+        """Return the vector of length at most `room` with the largest score among random ones, and the score."""
         low, high = self.coordinates.low, self.coordinates.high
         shape = (DRAWN, len(low))
         drawn = np.where(draws.random(shape) < PART, low + (high - low) * draws.random(shape), 0.0)
@@ -215,7 +226,7 @@ class Prediction:
 
 
 def _within(vectors: Vector, room: float, draws: np.random.Generator) -> Vector:
-    """Return the vectors, shortened by chance where they are longer than `room`."""
+    """Return the vectors; those longer than `room` are shortened to a random length."""
     lengths = np.linalg.norm(vectors, axis=1)
     shares = np.where(
         lengths > room, room / np.maximum(lengths, 1e-9) * draws.random(len(vectors)) ** 0.25, 1.0
@@ -225,13 +236,16 @@ def _within(vectors: Vector, room: float, draws: np.random.Generator) -> Vector:
 
 
 def _normal(values: Vector) -> Vector:
-    """Return about the normal distribution function."""
+    """Return the standard normal distribution function, approximated by a logistic function."""
     found: Vector = 1.0 / (1.0 + np.exp(-np.clip(1.702 * values, -50.0, 50.0)))
     return found
 
 
 def _relevant(field: Callable[[Matrix], Field], vectors: Vector) -> tuple[Field, Vector]:
-    """Return a field, and by direction 1 or, where the evidence for it is larger, IRRELEVANT."""
+    """Return the fitted field and a scale factor for each direction.
+
+    The factor is IRRELEVANT instead of 1 where that increases the evidence.
+    """
     units = np.ones(vectors.shape[1])
     best = field(covariance(vectors, vectors))
     for place in range(len(units)):

@@ -1,4 +1,8 @@
-"""Straight lines through a space, from its nominal point to a farthest one."""
+"""Straight lines through a space, from its nominal point to a farthest one.
+
+A space declares directions: ranges of numbers and choices of options. A point has a number for each direction; for a
+choice it is the index of the option.
+"""
 
 from __future__ import annotations
 
@@ -9,36 +13,36 @@ from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 
-SWEEP = (0.25, 0.5, 0.75, 1.0)  # shares of a ray at which the coarse sweep runs episodes
+SWEEP = (0.25, 0.5, 0.75, 1.0)  # places t at which the coarse sweep runs episodes
 
 
 @dataclass(frozen=True)
 class Ray:
-    """The points (1 - t) · nominal + t · farthest, t from 0 to 1; `names` are the directions that change."""
+    """The points (1 - t) · nominal + t · farthest for t from 0 to 1; `names` are the directions that change."""
 
     space: Space
     names: tuple[str, ...]
     farthest: Point
-    extra: tuple[float, ...] = ()  # additional points of the sweep
+    extra: tuple[float, ...] = ()  # additional places t of the sweep
 
     @property
     def continuous(self) -> bool:
-        """Return whether every t gives a point of its own; a ray along an option has only its end."""
+        """Return whether every t gives a different point; a ray to an option only has its end."""
         return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Return the t of the coarse sweep, from the far end."""
+        """Return the places t of the coarse sweep, starting at the far end."""
         places = {*SWEEP, *self.extra} if self.continuous else {1.0}
         return tuple(sorted(places, reverse=True))
 
     @property
     def length(self) -> float:
-        """Return the distance of the farthest point."""
+        """Return the distance of the farthest point from nominal."""
         return distance(self.space, self.farthest)
 
     def point(self, t: float) -> Point:
-        """Return the point at t; options change at any t above 0."""
+        """Return the point at t; a choice has the farthest option for every t above 0."""
         start = self.space.nominal
         return {
             name: _between(extent, start[name], self.farthest[name], t)
@@ -46,12 +50,12 @@ class Ray:
         }
 
     def value(self, t: float) -> float:
-        """Return the number of the ray's only direction at t."""
+        """Return the number of the ray's first direction at t."""
         return self.point(t)[self.names[0]]
 
 
 def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
-    """Return the rays along each single direction: up and down for a range, and one per option of a choice."""
+    """Return the rays along each single direction: to both ends of a range, and to each option of a choice."""
     found = []
     for name, extent in space.extents.items():
         usual = nominal(extent)
@@ -65,7 +69,7 @@ def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
 
 
 def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
-    """Return the ray to the point that combines a point of each ray."""
+    """Return the ray to the point that has the values of all given places on rays."""
     space = parts[0][0].space
     farthest = dict(space.nominal)
     for ray, t in parts:
@@ -74,12 +78,15 @@ def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
 
 
 def distance(space: Space, point: Point) -> float:
-    """Return a point's Euclidean distance from the nominal one, in units of the declared ranges; an option is 1."""
+    """Return the Euclidean distance of a point from nominal, in units of the declared ranges.
+
+    A changed option counts as 1.
+    """
     return sqrt(sum(offset(extent, point[name]) ** 2 for name, extent in space.extents.items()))
 
 
 def offset(extent: Span | Choice, number: float) -> float:
-    """Return the distance of a number from the nominal one, in units of the range."""
+    """Return the distance of a number from nominal, in units of the range; a changed option counts as 1."""
     away = abs(number - nominal(extent))
     return float(away > 0) if isinstance(extent, Choice) else away / (extent.high - extent.low)
 

@@ -1,4 +1,4 @@
-"""The drifts that a repair at a boundary is searched for: from a confirmed failure to the ends of its directions."""
+"""Regions of drifts for the search of a repair: from a confirmed failure to the ends of its directions."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.rays import Ray
 from pytest_tarl.stressing.words import shown
 
-# shares of the way from the boundary to the ends of the ranges that a repair is searched for
+# shares of the way from the failure to the ends of the ranges, in the order of the attempts
 REACH = (1.0, 0.25)
 
 
 @dataclass(frozen=True)
 class Region:
-    """Drifts beyond a failure: an episode draws the ranges of `drift` and has `base` otherwise; `words` name it."""
+    """Drifts beyond a failure; `words` describe them.
+
+    An episode draws the directions of `drift` at random and takes all other values from `base`.
+    """
 
     base: Point
     drift: Drift
@@ -25,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, the widest first; all its directions reach equally far to their ends."""
+    """Yield the regions beyond a failure, widest first; all directions go the same share towards their ends."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []
@@ -44,7 +47,7 @@ def regions(space: Space, failed: Failure) -> Iterator[Region]:
 
 
 def end(extent: Span | Choice, number: float) -> float:
-    """Return the end of a range on the side of a number; an option itself."""
+    """Return the end of a range on the side of a number; for an option, return the number itself."""
     if isinstance(extent, Choice):
         return number
     return extent.high if number > nominal(extent) else extent.low
@@ -66,7 +69,7 @@ def outwards(space: Space, failed: Failure) -> Ray:
 
 
 def _fixed(space: Space, failed: Failure) -> object:
-    """Return the only value of a region without a range: a number, an option, or several of them."""
+    """Return the only value of a region without a range: one value, or a tuple of them."""
     values = []
     for name in failed.names:
         extent, number = space.extents[name], failed.point[name]

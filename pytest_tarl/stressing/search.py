@@ -1,4 +1,4 @@
-"""Stress one test in one space: all single directions, then their combinations."""
+"""Stress-test one test in one space: all single directions, then their combinations."""
 
 from __future__ import annotations
 
@@ -25,20 +25,23 @@ from pytest_tarl.stressing.statements import Source, statements
 
 @dataclass(frozen=True, slots=True)
 class Risks:
-    """The risks of the claims of a run: of each direction and of the nominal drift, and of all combinations."""
+    """The error probabilities of the claims of a run.
+
+    `each` is for the nominal drift and for each direction, `combinations` for all combinations together.
+    """
 
     each: float
     combinations: float
 
 
 def divided(alpha: float, directions: int) -> Risks:
-    """Return alpha divided among the claims; combinations get half, since the nearest failure is mostly one of them."""
+    """Divide alpha among the claims; combinations get half, since the nearest failure is mostly one of them."""
     return Risks(min(alpha / 2 / (directions + 1), FAR_RISK), alpha / 2)
 
 
 @dataclass(frozen=True)
 class Request:
-    """The test and space to stress, and the settings."""
+    """The test and the space to stress, and the settings."""
 
     rollout: Rollout
     fixture: Fixture
@@ -46,16 +49,15 @@ class Request:
     options: Options
     drift: str
     progress: Progress
-    source: Source | None = None  # to find the statements of failures; without it, none are recorded
+    source: Source | None = None  # statements to record in failing episodes; None records none
 
 
 def stress(request: Request, *, combined: bool = True) -> Stress:
-    """Find the boundary in each direction and in their combinations; Ctrl-C or the budget end the search early.
+    """Find the boundary in each direction, and failing combinations unless `combined` is false.
 
-    Without `combined`, only single directions are searched.
-
-    Each claim that the guarantee fails is confirmed on fresh seeds; all of them together are wrong with a probability
-    of at most alpha. Raise RecordingError if the test itself is broken.
+    Fresh seeds confirm each claim that the guarantee fails. The probability that any such claim is wrong is at most
+    alpha. Ctrl-C or a spent budget ends the search early, with the results so far. Raise RecordingError if the test
+    itself is broken.
     """
     space: Any = request.designation.drifts[request.drift].value
     evaluator = _evaluator(request, space)
@@ -90,7 +92,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
 
 
 def along(request: Request, ray: Ray) -> Curve:
-    """Return the evidence along one ray, with the budget of a whole run; Ctrl-C ends it."""
+    """Return the evidence along one ray, with the budget of a whole run. Raise KeyboardInterrupt on Ctrl-C."""
     space: Any = request.designation.drifts[request.drift].value
     curve = Curve(ray)
     evaluator = _evaluator(request, space)
@@ -101,9 +103,10 @@ def along(request: Request, ray: Ray) -> Curve:
 
 
 def explore(evaluator: Evaluator, together: Together, share: float, *, combined: bool = True) -> str:
-    """Fill the curves and the combinations of `together`, each curve at the risk `share`; return why it ended early.
+    """Fill the curves and combinations of `together`, and return why the search ended early, or an empty text.
 
-    With several directions, the nearest failing drift comes first, since it needs least; the budget has a share for it.
+    `share` is the error probability for each curve. With several directions, the search first looks for the nearest
+    failing drift, within a share of the budget, because this needs the fewest episodes.
     """
     curves = together.curves
     several = Combined(evaluator, together) if combined and len(evaluator.space.extents) > 1 else None
@@ -128,7 +131,10 @@ def explore(evaluator: Evaluator, together: Together, share: float, *, combined:
 
 
 def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
-    """Return the Sobol indices by the rest of the budget, after a search that `ended` so, and how the run ended."""
+    """Return Sobol indices from the rest of the budget, and why the run ended.
+
+    `ended` is why the search ended. There are no indices after an interrupted search or a failing nominal drift.
+    """
     if ended not in ("", "budget"):
         return None, ended
     try:
@@ -142,7 +148,10 @@ def variances(evaluator: Evaluator, ended: str) -> tuple[Sobol | None, str]:
 def _executed(
     request: Request, evaluator: Evaluator, together: Together, ended: str
 ) -> tuple[Statements | None, str]:
-    """Return the statements of failures, and how the run ended; Ctrl-C before leaves them out."""
+    """Return the statements that ran only in failures, and why the run ended.
+
+    There are none after an interrupted search.
+    """
     if ended == "interrupted" or request.source is None:
         return None, ended
     failures = sorted(
@@ -170,13 +179,16 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
 
 
 def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
-    """Return whether the guarantee fails in the nominal world, which then differs from the recorded one."""
+    """Return whether the guarantee fails at nominal, so that the nominal world is not the recorded one."""
     outcomes = evaluator.common(evaluator.space.nominal, COARSE)
     return unlike_recorded(evaluator.guarantee, outcomes, risk)
 
 
 def along_rays(curves: Sequence[Curve], evaluator: Evaluator, share: float) -> None:
-    """Find the boundary along each ray; each is confirmed at a risk of `share`. Raise BudgetSpentError."""
+    """Find and confirm the boundary along each ray, with error probability `share` each.
+
+    Raise BudgetSpentError.
+    """
     for curve in curves:
         sweep(curve, evaluator)
     for curve in curves:

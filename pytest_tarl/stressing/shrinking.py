@@ -1,4 +1,4 @@
-"""Shrink failing drifts towards nominal on common seeds, one direction at a time."""
+"""Shrink failing drifts towards nominal on the common seeds, one direction at a time."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from pytest_tarl.stressing.boundary import COARSE
 from pytest_tarl.stressing.evaluating import Evaluator
 from pytest_tarl.stressing.rays import distance
 
-SHRINKS = 4  # halvings of one direction
+SHRINKS = 4  # maximum number of attempts per direction
 
 
 def shrunk(point: Point, evaluator: Evaluator) -> Point:
-    """Return a failing point that halving any single direction does not bring nearer; nominal is tried first.
+    """Return a failing point with smaller changes, where single directions could be moved towards nominal.
 
-    Hypothesis would shrink to simple values instead of near ones. Raise BudgetSpentError.
+    For each direction, the nominal value is tried first, then ever smaller steps. Hypothesis would instead shrink to
+    simple values, which need not be near. Raise BudgetSpentError.
     """
     space, now = evaluator.space, dict(point)
     for name in sorted(now, key=lambda one: -distance(space, {**space.nominal, one: now[one]})):
@@ -32,7 +33,10 @@ def shrunk(point: Point, evaluator: Evaluator) -> Point:
 
 
 def weighted(space: Space, name: str, number: float, weight: float) -> float:
-    """Return the number at a share of the distance from nominal; an option is either reached or nominal."""
+    """Return the number at a share `weight` of the way from nominal to `number`.
+
+    An option changes at any weight above 0.
+    """
     usual = space.nominal[name]
     if isinstance(space.extents[name], Choice):
         return number if weight > 0.0 else usual

@@ -1,7 +1,7 @@
 """Sobol indices: how much of the margin's variance over the declared space each direction explains.
 
-The package SALib makes the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018). It is
-imported only here, since it brings pandas and matplotlib.
+The package SALib creates the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018). It is
+imported only when needed, because it imports pandas and matplotlib.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ ROWS = (
     128,
     64,
     32,
-)  # possible sizes of the base sample; powers of two, as its sequence is balanced then
-POOL = "sobol"  # name of the seeds
-RESAMPLES = 200  # of the bootstrap for the intervals
+)  # possible sizes of the base sample; a Sobol sequence is balanced at powers of two
+POOL = "sobol"  # name of the pool of seeds
+RESAMPLES = 200  # number of bootstrap resamples for the intervals
 
 
 def sobol(evaluator: Evaluator) -> Sobol | None:
-    """Return the indices by episodes that the search left over; None if too few are left, or SALib is not installed.
+    """Return the indices from the episodes that the search left over.
 
-    All points of a row of the sample have a common seed, and are paired with the nominal drift on it. Raise
-    BudgetSpentError if the time is up before.
+    Return None if too few episodes are left or SALib is not installed. All points of a row of the sample share a seed
+    and are paired with the nominal episode of that seed. Raise BudgetSpentError if the time limit is reached.
     """
     size = len(evaluator.space.extents)
     rows = affordable(size, evaluator.left)
@@ -40,7 +40,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
     before = evaluator.spent
     margins = _margins(evaluator, rows)
     names = [*evaluator.space.extents]
-    if float(np.ptp(margins)) == 0.0:  # nothing to divide among the directions
+    if float(np.ptp(margins)) == 0.0:  # no variance to explain
         shares = tuple(Share(name, 0.0, 0.0, 0.0, 0.0) for name in names)
         return Sobol(evaluator.spent - before, shares)
     from SALib.analyze import sobol as estimates
@@ -51,7 +51,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
         calc_second_order=False,
         num_resamples=RESAMPLES,
         conf_level=CONFIDENCE,
-        seed=_seed(evaluator) or 1,  # it takes 0 for none
+        seed=_seed(evaluator) or 1,  # SALib treats 0 as no seed
     )
     columns = [found[key].tolist() for key in ("S1", "S1_conf", "ST", "ST_conf")]
     shares = tuple(Share(name, *map(_short, four)) for name, *four in zip(names, *columns, strict=True))
@@ -59,7 +59,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
 
 
 def affordable(size: int, left: int) -> int:
-    """Return how many rows of a sample in `size` directions `left` episodes allow; 0 if too few."""
+    """Return the number of rows that `left` episodes allow for `size` directions, or 0 if they are too few."""
     return next((rows for rows in ROWS if rows * (size + 3) <= left), 0) if size > 1 else 0
 
 
@@ -82,7 +82,7 @@ def _margins(evaluator: Evaluator, rows: int) -> Any:
 
 
 def _point(space: Space, numbers: Any) -> Point:
-    """Return the point at numbers from 0 to 1."""
+    """Return the point for numbers from 0 to 1, one per direction."""
     return {
         name: _number(extent, float(number))
         for (name, extent), number in zip(space.extents.items(), numbers, strict=True)

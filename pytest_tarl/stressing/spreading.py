@@ -1,4 +1,4 @@
-"""Spread drifts evenly over the directions and distances around nominal, by a Halton sequence (Halton 1960)."""
+"""Spread drifts evenly around nominal, in direction and distance, by a Halton sequence (Halton 1960)."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ import numpy as np
 
 from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
-CLOSEST = 0.4  # distance of the nearest drifts, in units of the limit
-PART = 0.8  # share of the drifts in which a direction takes part
+CLOSEST = 0.4  # length of the shortest vectors; the longest have length 1
+PART = 0.8  # share of the vectors in which a given direction changes
 
 
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
-    """Yield vectors without end: evenly over all directions, as far as the ends of the ranges, in random signs.
+    """Yield vectors endlessly, evenly distributed over directions, signs and lengths from CLOSEST to 1.
 
-    Lengths are between CLOSEST and 1; a caller multiplies them by the largest distance of its search.
+    A direction whose nominal value is an end of its range has only one sign. The caller multiplies the vectors by the
+    maximum distance of its search.
     """
     size = len(coordinates.spans)
     bases, shift = _primes(2 * size + 1), draws.random(2 * size + 1)
@@ -33,7 +34,7 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
 
 
 def _inverse(number: int, base: int) -> float:
-    """Return the radical inverse: the digits of a number, mirrored at the decimal point."""
+    """Return the radical inverse: the digits of a number in this base, mirrored at the point."""
     found, unit = 0.0, 1.0 / base
     while number:
         number, digit = divmod(number, base)

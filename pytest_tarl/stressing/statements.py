@@ -1,6 +1,7 @@
-"""Which statements run in failures and in no other episode: episodes of the search are repeated, and record statements.
+"""Find the statements that run in failing episodes and in no other episode.
 
-The repetitions have the same drifts and seeds, so they are identical. They do not count towards the budget.
+Episodes of the search are repeated to record their statements. The repetitions have the same drifts and seeds, so they
+are identical. They do not count towards the budget.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from pytest_tarl.spaces import Point
 from pytest_tarl.stressing.evaluating import RAYS, Evaluator
 from pytest_tarl.stressing.findings import Curve, Executed, Failure, Statements
 
-FAILING, OTHERS = 16, 32  # largest numbers of episodes to repeat
-_DECLARING = (  # statements without an effect when a mission runs
+FAILING, OTHERS = 16, 32  # maximum numbers of failing and other episodes to repeat
+_DECLARING = (  # statements that only declare something, or do nothing
     ast.FunctionDef,
     ast.AsyncFunctionDef,
     ast.ClassDef,
@@ -33,9 +34,12 @@ _DECLARING = (  # statements without an effect when a mission runs
 
 @dataclass(frozen=True)
 class Source:
-    """The statements of the nodes' files, numbered over all files, and how to record which of them run."""
+    """The statements of the nodes' files, numbered across all files.
 
-    places: tuple[tuple[str, int, str], ...]  # file as shown to users, line, text
+    `rollout` returns a rollout that records the numbers of the statements at given positions.
+    """
+
+    places: tuple[tuple[str, int, str], ...]  # (file as shown to users, line, text), by statement number
     positions: Mapping[Path, Positions]
     rollout: Callable[[Mapping[Path, Positions]], Rollout]
 
@@ -43,7 +47,7 @@ class Source:
 def source(
     files: Sequence[Path], root: Path, rollout: Callable[[Mapping[Path, Positions]], Rollout]
 ) -> Source:
-    """Return the statements of files; one that cannot be read or parsed has none."""
+    """Return the statements of files; skip files that cannot be read or parsed."""
     places: list[tuple[str, int, str]] = []
     positions: dict[Path, Positions] = {}
     for path in files:
@@ -60,7 +64,7 @@ def source(
 
 
 def places_in(text: str) -> Iterator[Position]:
-    """Yield the position of each statement that does something, in the order of the lines."""
+    """Yield the position of each statement that does something, in source order. Raise SyntaxError."""
     lines = text.split("\n")
     nodes = (one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.stmt) and _does_something(one))
     found = {(one.lineno, one.col_offset) for one in nodes}
@@ -76,7 +80,7 @@ def _does_something(node: ast.stmt) -> bool:
 def statements(
     given: Source, evaluator: Evaluator, curves: Sequence[Curve], failures: Sequence[Failure]
 ) -> Statements | None:
-    """Return the statements that run only in failures; None without a failure. Raise KeyboardInterrupt."""
+    """Return the statements that run only in failures, or None if there is nothing to compare."""
     failing, others = chosen(evaluator, curves, failures)
     if not failing or not others or not given.places:
         return None
@@ -90,7 +94,7 @@ def only_in_failures(
     failing: Sequence[Collection[int]],
     others: Iterable[Collection[int]],
 ) -> tuple[Executed, ...]:
-    """Return the statements that some failing episode and no other ran, those in most failures first."""
+    """Return the statements that ran in a failing episode and in no other one, most frequent first."""
     elsewhere = {number for one in others for number in one}
     counts = Counter(number for one in failing for number in one if number not in elsewhere)
     order = sorted(counts, key=lambda number: (-counts[number], number))
@@ -100,9 +104,10 @@ def only_in_failures(
 def chosen(
     evaluator: Evaluator, curves: Sequence[Curve], failures: Sequence[Failure]
 ) -> tuple[list[EpisodePlan], list[EpisodePlan]]:
-    """Return failing episodes of confirmed failures in turn, and other episodes that resemble them.
+    """Return episodes of confirmed failures, and similar episodes that do not fail.
 
-    The others are, in turn, those at failing drifts that do not fail, nominal ones, and ones where the guarantee holds.
+    Both lists alternate between drifts. The others come from failing drifts, then from the nominal drift, and then from
+    drifts where the guarantee holds.
     """
     fails: list[list[EpisodePlan]] = []
     passes: list[list[EpisodePlan]] = []
@@ -131,6 +136,6 @@ def _in_turn(lists: Sequence[Sequence[EpisodePlan]]) -> Iterator[EpisodePlan]:
 
 
 def _run(rollout: Rollout, plans: Sequence[EpisodePlan]) -> list[set[int]]:
-    """Return the numbers of the statements that each episode runs."""
+    """Return for each episode the numbers of the statements that it runs."""
     recording = (replace(plan, record=True) for plan in plans)
     return [set(pending.result().trace.site.tolist()) for pending in in_order(rollout, recording)]

@@ -1,7 +1,7 @@
-"""Gaussian processes over drifts: the loss by regression, and the rate of failing episodes by classification.
+"""Gaussian processes over drifts: regression for the loss, classification for the share of failing episodes.
 
-Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2; the rate has a binomial likelihood. Both are 0 at nominal, up to
-a constant.
+They follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the share. Both
+functions are fixed at nominal: the loss at 0, the logit of the share at a constant.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from pytest_tarl.stressing.coordinates import Vector
 
 Matrix = NDArray[np.float64]
 
-LINEAR, PAIRS = 1.0, 4.0  # prior variances, per unit: of slopes, and of products of two directions
-SINGLE, SINGLE_LENGTH = 0.3, 0.3  # prior variance and length of a smooth function of each single direction
-LOCAL, LENGTH = 0.15, 0.3  # prior variance and length of local deviations
-STEPS = 50  # maximum number of steps of Newton's method
-CLOSE = 0.05  # smallest change of the logits for which it continues
-LEAP = 4.0  # largest change of a logit in one step
+LINEAR, PAIRS = 1.0, 4.0  # prior variances of the slopes, and of the products of two directions
+SINGLE, SINGLE_LENGTH = 0.3, 0.3  # prior variance and length scale of a smooth function of each direction
+LOCAL, LENGTH = 0.15, 0.3  # prior variance and length scale of local deviations
+STEPS = 50  # maximum number of Newton steps
+CLOSE = 0.05  # Newton's method stops when no logit changes by more than this
+LEAP = 4.0  # maximum change of a logit in one step
 JITTER = 1e-8
 
 
 def covariance(one: Vector, other: Vector) -> Matrix:
-    """Return the prior covariances of vectors of shape (drifts, ranges); 0 where one of them is nominal."""
+    """Return the prior covariances between vectors of shape (drifts, ranges); 0 if one of them is nominal."""
     plain, sizes = one @ other.T, np.abs(one) @ np.abs(other).T
     found: Matrix = LINEAR * (plain + sizes) + PAIRS * (plain**2 + sizes**2)
     for column, against in zip(one.T, other.T, strict=True):
@@ -34,7 +34,7 @@ def covariance(one: Vector, other: Vector) -> Matrix:
 
 
 def variance(vectors: Vector) -> Vector:
-    """Return the prior variances at vectors."""
+    """Return the prior variances at vectors of shape (drifts, ranges)."""
     squares = (vectors**2).sum(axis=1)
     single = (1.0 - np.exp(-(vectors**2) / SINGLE_LENGTH**2)).sum(axis=1)
     local = 1.0 - np.exp(-squares / LENGTH**2)
@@ -43,7 +43,7 @@ def variance(vectors: Vector) -> Vector:
 
 
 def _smooth(one: Vector, other: Vector, length: float) -> Matrix:
-    """Return squared-exponential covariances, given that the function is 0 at nominal."""
+    """Return squared-exponential covariances, conditioned on the value 0 at nominal."""
     own, others = (one**2).sum(axis=1), (other**2).sum(axis=1)
     squares = np.maximum(own[:, None] + others - 2 * one @ other.T, 0.0)
     found: Matrix = np.exp(-squares / (2 * length**2))
@@ -52,7 +52,10 @@ def _smooth(one: Vector, other: Vector, length: float) -> Matrix:
 
 
 class LossField:
-    """The mean loss at each drift, from means of shape (drifts,) and the covariances of their errors."""
+    """The mean loss at each drift: a Gaussian process fitted to mean losses of shape (drifts,).
+
+    `errors` are the covariances of the errors of the mean losses.
+    """
 
     def __init__(self, prior: Matrix, losses: Vector, errors: Matrix) -> None:
         whole = prior + errors + JITTER * np.eye(len(losses))
@@ -66,14 +69,17 @@ class LossField:
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
-        """Return the means and the standard deviations at vectors with these prior covariances and variances."""
+        """Return means and standard deviations at new vectors.
+
+        `cross` are their prior covariances with the tried drifts, `prior` their prior variances.
+        """
         explained = self._inverse @ cross.T
         left = prior - (explained**2).sum(axis=0)
         return cross @ self._weights, np.sqrt(np.maximum(left, 1e-6))
 
 
 class RateField:
-    """The logit of the failing share at each drift, from counts of failed episodes and of all."""
+    """The logit of the failing share at each drift: a Gaussian process fitted to counts of failed episodes."""
 
     def __init__(
         self,
@@ -84,7 +90,7 @@ class RateField:
         usual: float,
         start: RateField | None = None,
     ) -> None:
-        """Find the most probable logits by Newton's method, from those of `start` if there is a similar field."""
+        """Find the most probable logits by Newton's method, starting from those of the similar field `start`."""
         self._usual, self.scale = usual, scale
         matrix, identity = scale * prior, np.eye(len(failed))
         weights: Vector = np.zeros(len(failed))
@@ -94,7 +100,7 @@ class RateField:
             middle = identity + roots[:, None] * matrix * roots
             step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
             change = float(np.abs(matrix @ step).max())
-            # the first step from other logits is whole, since it also finds the weights that belong to them
+            # A first step from given logits is not shortened, since it also computes the weights that match them.
             whole = start is not None and number == 0
             weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
             logits = usual + matrix @ weights
@@ -111,19 +117,19 @@ class RateField:
 
     @cached_property
     def _reduce(self) -> Matrix:
-        """Return the matrix that turns covariances with the drifts tried into explained deviations."""
+        """Return the matrix that maps covariances with the tried drifts to the explained deviations."""
         found: Matrix = np.linalg.inv(self._lower) * self._roots
         return found
 
     def moments(self, cross: Matrix, prior: Vector) -> tuple[Vector, Vector]:
-        """Return the means and the standard deviations of the logits, as `LossField.moments` those of the losses."""
+        """Return means and standard deviations of the logits; parameters as in `LossField.moments`."""
         explained = self.scale * (self._reduce @ cross.T)
         left = self.scale * prior - (explained**2).sum(axis=0)
         return self._usual + self.scale * (cross @ self.weights), np.sqrt(np.maximum(left, 1e-4))
 
 
 def _newton(logits: Vector, usual: float, failed: Vector, episodes: Vector) -> tuple[Vector, Vector]:
-    """Return the square roots of the likelihood's curvatures, and the right side of Newton's equation."""
+    """Return the square roots of the likelihood's curvatures, and the right-hand side of Newton's equation."""
     shares = _share(logits)
     roots = np.sqrt(np.maximum(episodes * shares * (1.0 - shares), JITTER))
     return roots, roots**2 * (logits - usual) + failed - episodes * shares

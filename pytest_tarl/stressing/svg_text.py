@@ -1,14 +1,14 @@
-"""Text of the figures as SVG."""
+"""Text elements of the SVG figures."""
 
 from __future__ import annotations
 
 from html import escape
 
-INK = "#1c2333"  # text and lines; a contrast of at least 7 to every background of the figures
+INK = "#1c2333"  # colour of text and lines; its contrast to every background of the figures is at least 7
 
 
 def svg_text(x: float, y: float, text: str, anchor: str, *, bold: bool = False) -> str:
-    """Return a text element at a place, in px; `anchor` is start, middle or end."""
+    """Return a text element at (x, y) in px; `anchor` is start, middle or end."""
     weight = ";font-weight:600" if bold else ""
     return (
         f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" '

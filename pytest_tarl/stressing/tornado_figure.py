@@ -1,4 +1,4 @@
-"""The tornado chart as SVG: how much margin each direction alone loses."""
+"""Draw the tornado chart as SVG: how much margin each direction alone loses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ BAR, GAP, LABEL, WIDTH, END = 22, 12, 150, 640, 60  # px; END is the space for a
 
 
 def tornado(stress: Stress) -> str:
-    """Return a bar for each end of each direction, the most important direction on top, as SVG."""
+    """Return the chart with a bar for each end of each range, the most important range on top.
+
+    Return an empty text if there are fewer than two ranges.
+    """
     order = [*importance(stress.curves)]
     if len(order) < 2:
         return ""
@@ -42,7 +45,7 @@ def tornado(stress: Stress) -> str:
 
 
 def _bar(curve: Curve, middle: float, unit: float, y: float) -> list[str]:
-    """Return the bar of one end of a direction, and the value at which it ends."""
+    """Return the bar for one end of a range, labelled with the value of that end."""
     up = curve.ray.value(1.0) > curve.ray.value(0.0)
     length = max(lost(curve), 0.0) * unit
     colour = COLOURS["fails" if lost(curve) > 1.0 else "holds"]

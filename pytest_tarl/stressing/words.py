@@ -1,4 +1,4 @@
-"""The result of a stress run in sentences."""
+"""Describe the result of a stress test in sentences."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress
 from pytest_tarl.stressing.rays import Ray
 
-MOST_SHOWN = 5  # combinations, and statements
+MOST_SHOWN = 5  # maximum number of combinations, and of statements
 SURE = f"{100 * CONFIDENCE:.3g} %"
-ROUNDING = 1e-9  # tolerance for rounding errors of values on a ray
+ROUNDING = 1e-9  # tolerance for rounding errors of places on a ray
 
 ENDED = {
     "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",
@@ -21,7 +21,7 @@ ENDED = {
 
 
 def lines(stress: Stress) -> Iterator[str]:
-    """Yield the report of the terminal."""
+    """Yield the lines of the terminal report."""
     yield f"{stress.test}[{stress.drift}]: stress, {stress.episodes} episodes"
     yield f"  guarantee  {guarantee_words(stress)}"
     if stress.ended == "nominal":
@@ -39,7 +39,7 @@ def lines(stress: Stress) -> Iterator[str]:
 
 
 def ended_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences on how the run ended and whether it can be repeated."""
+    """Yield sentences about why the run ended early and whether it is reproducible."""
     if stress.ended in ENDED:
         yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
     if stress.seconds is not None:
@@ -52,7 +52,7 @@ def budget_words(stress: Stress) -> str:
 
 
 def guarantee_words(stress: Stress) -> str:
-    """Return the sentence on the guarantee."""
+    """Return a sentence that states the guarantee."""
     given = stress.guarantee
     return (
         f"At least {100 * given.rate:.4g} % of the episodes pass, and the mean reward is at most "
@@ -61,7 +61,7 @@ def guarantee_words(stress: Stress) -> str:
 
 
 def nominal_words() -> str:
-    """Return the advice for a guarantee that fails without any drift."""
+    """Return the advice for a guarantee that fails at the nominal values."""
     return (
         "The guarantee fails at the nominal values already, so the nominal world is not the recorded one: correct the "
         "nominal values, or record again with `pytest --tarl-record`."
@@ -80,7 +80,7 @@ def directions(stress: Stress) -> Iterator[tuple[str, list[str]]]:
 
 
 def together(stress: Stress) -> Iterator[str]:
-    """Yield sentences on combinations, the nearest first."""
+    """Yield sentences about failing combinations, nearest first."""
     found = sorted(stress.combinations, key=lambda one: (one.distance, one.names))
     for one in found[:MOST_SHOWN]:
         where = of_point(stress.space, one.point)
@@ -95,7 +95,7 @@ def together(stress: Stress) -> Iterator[str]:
 
 
 def _alone(stress: Stress, one: Failure) -> str:
-    """Return the addition that each direction of a failure alone holds, if the search found no failure there."""
+    """Return the remark that each direction alone holds, if the search found no failure along any of them."""
     for curve in stress.curves:
         (name,) = curve.ray.names
         extent = stress.space.extents[name]
@@ -108,7 +108,7 @@ def _alone(stress: Stress, one: Failure) -> str:
 
 
 def sobol_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences on the Sobol indices, the most important direction first."""
+    """Yield sentences about the Sobol indices, the most important direction first."""
     if stress.sobol is None:
         return
     shares = sorted(stress.sobol.shares, key=lambda one: -one.total)
@@ -126,7 +126,7 @@ def sobol_words(stress: Stress) -> Iterator[str]:
 
 
 def statement_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences on the statements that run only in failures."""
+    """Yield sentences about the statements that ran only in failures."""
     found = stress.statements
     if found is None:
         return
@@ -142,7 +142,7 @@ def statement_words(stress: Stress) -> Iterator[str]:
 
 
 def repair_lines(stress: Stress) -> Iterator[str]:
-    """Yield sentences on the searches for repairs."""
+    """Yield sentences about the searches for repairs."""
     for one in stress.repairs or ():
         yield f"{one.region}: {one.told}"
         for moved in one.moved:
@@ -160,7 +160,7 @@ def repair_lines(stress: Stress) -> Iterator[str]:
 
 
 def broken_promises(stress: Stress) -> list[str]:
-    """Return a sentence for each direction that fails inside the range of `must_hold`."""
+    """Return a sentence for each direction that fails inside its declared `must_hold` range."""
     found = []
     for curve in stress.curves:
         name = curve.ray.names[0]
@@ -198,7 +198,7 @@ def _range(name: str, extent: Span, curves: list[Curve]) -> list[str]:
 
 
 def _held(name: str, curves: list[Curve]) -> list[str]:
-    """Return the sentence on values at which the guarantee was shown to hold, on sides without a boundary."""
+    """Return a sentence about the values shown to hold, for the sides without a boundary."""
     limits = [
         f"{name} {_sign(curve.ray)} {_number(curve.ray, curve.held)}"
         for curve in curves
@@ -212,7 +212,7 @@ def _sign(ray: Ray) -> str:
 
 
 def _side(name: str, curve: Curve) -> str:
-    """Return the sentence on one ray along a range."""
+    """Return a sentence about one side of a range."""
     ray, boundary = curve.ray, curve.boundary
     sign = _sign(ray)
     if boundary is not None:
@@ -252,11 +252,11 @@ def _number(ray: Ray, t: float) -> str:
 
 
 def of_point(space: Space, point: Point) -> str:
-    """Return the values of a point that are not nominal."""
+    """Return the values of a point that differ from nominal, in words."""
     changed = [name for name, number in point.items() if number != space.nominal[name]]
     return " and ".join(f"{name}={shown(space.extents[name], point[name])}" for name in changed)
 
 
 def point_values(stress: Stress, point: Point) -> dict[str, Any]:
-    """Return the values of a point by direction: numbers, or options."""
+    """Return the value of each direction: a number of a range, or an option."""
     return {name: value_of(extent, point[name]) for name, extent in stress.space.extents.items()}
