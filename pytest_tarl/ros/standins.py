@@ -113,6 +113,10 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "rclpy.validate_node_name": "rclpy.validating",
     "rclpy.validate_parameter_name": "rclpy.validating",
     "rclpy.validate_topic_name": "rclpy.validating",
+    "rosidl_runtime_py": "rosidl_runtime",
+    "rosidl_runtime_py.convert": "rosidl_runtime.convert",
+    "rosidl_runtime_py.set_message": "rosidl_runtime.set_message",
+    "rosidl_runtime_py.utilities": "rosidl_runtime.utilities",
     "ros_numpy": "ros_numpy",
     "ros_numpy.geometry": "ros_numpy",
     "ros_numpy.image": "ros_numpy",
@@ -132,7 +136,7 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
 TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
-            "interactive_markers")  # fmt: skip
+            "interactive_markers", "rosidl_runtime_py")  # fmt: skip
 MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 STANDALONE = (
