@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -51,8 +51,6 @@ class Outline:
         default_factory=dict
     )  # calls made under locks, by function
     by_text: bool = False  # whether names may be looked up by computed strings
-    # name → values that any module of the program assigns to it; None outside a program
-    anywhere: Callable[[str], list[ast.expr]] | None = None
 
     def __post_init__(self) -> None:
         pending: list[ast.AST] = [self.tree]
@@ -90,11 +88,6 @@ class Outline:
         for target in targets:
             name = last_name(target)
             self.locks[name] = self.locks.get(shared, shared) or name
-
-    def values(self, name: str) -> list[ast.expr]:
-        """Return the values assigned to a name: in this module or, if it assigns none, in the whole program."""
-        own = self.assigned.get(name, [])
-        return own if own or self.anywhere is None else self.anywhere(name)
 
     def around(self, node: ast.AST) -> Iterator[ast.AST]:
         """Yield the enclosing nodes, innermost first."""
@@ -138,11 +131,11 @@ class Evidence:
     def outline(self, path: str) -> Outline:
         """Return the outline of a module."""
         if path not in self._outlines:
-            self._outlines[path] = Outline(self.machine.modules[path].tree, anywhere=self._assigned)
+            self._outlines[path] = Outline(self.machine.modules[path].tree)
         return self._outlines[path]
 
-    def _assigned(self, name: str) -> list[ast.expr]:
-        """Return the values that any module assigns to a name or to an attribute of this name."""
+    def assigned(self, name: str) -> list[ast.expr]:
+        """Return the values that the modules assign to a name or to an attribute of this name."""
         naming = [m.path for m in self.machine.modules.values() if m.contains(name)]
         return [value for path in naming for value in self.outline(path).assigned.get(name, [])]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -13,6 +13,7 @@ from tarl_lint.rules.races.held_locks import FUNCTIONS, in_loop, locks_around
 from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
+Assigned = Callable[[str], list[ast.expr]]  # name → the values that the program assigns to it
 How = Literal["replaces", "adds", "inside", "reads", "length"]  # effect of an access on the value of a name
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
 
@@ -42,8 +43,13 @@ class Access:
         return isinstance(self.node, ast.Name)
 
 
-def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Access]:
-    """Yield the accesses in a function to globals, and to attributes of its receiver (its name; "" for none)."""
+def accesses(
+    function: ast.AST, receiver: str, outline: Outline, elsewhere: Assigned | None = None
+) -> Iterator[Access]:
+    """Yield the accesses in a function to globals, and to attributes of its receiver (its name; "" for none).
+
+    `elsewhere` is used for names that the module itself does not assign.
+    """
     shared = _globals(outline) - _locals(function)
     for node in _own(function):
         if isinstance(node, ast.Attribute):
@@ -51,7 +57,7 @@ def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Acc
                 continue
         elif not (isinstance(node, ast.Name) and node.id in shared):
             continue
-        writes = _writes(node, outline)
+        writes = _writes(node, outline, elsewhere)
         if writes or not _asks_presence(node, outline):
             constant = writes and _stores_constant(node, outline)
             how = _changes(node, outline) if writes else _looks(node, outline)
@@ -72,7 +78,7 @@ def _containers(outline: Outline) -> set[str]:
         for node in outline.tree.body
         if isinstance(node, ast.Assign) and isinstance(node.value, (ast.List, ast.Dict, ast.Set, ast.Call))
         for target in node.targets
-        if isinstance(target, ast.Name) and not _foreign(target.id, outline)
+        if isinstance(target, ast.Name) and not _foreign(outline.assigned.get(target.id, []))
     }
 
 
@@ -99,14 +105,14 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
         pending += [c for c in children(node) if not isinstance(c, FUNCTIONS)]
 
 
-def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:
+def _writes(node: ast.Attribute | ast.Name, outline: Outline, elsewhere: Assigned | None) -> bool:
     """Return whether a name, or a part of its value, is assigned."""
     current: ast.expr = node
     for outer in outline.around(node):
         if isinstance(getattr(current, "ctx", None), (ast.Store, ast.Del)):
             return True
         if isinstance(outer, ast.Call):
-            return current is not node and _mutates(current, node, outline)
+            return current is not node and _mutates(current, node, outline, elsewhere)
         if not isinstance(outer, (ast.Attribute, ast.Subscript)) or outer.value is not current:
             return False
         current = outer
@@ -126,17 +132,21 @@ def _looks(node: ast.expr, outline: Outline) -> How:
     return "length" if asks else "reads"
 
 
-def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline) -> bool:
+def _mutates(
+    method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline, elsewhere: Assigned | None
+) -> bool:
     """Return whether a method call changes a container; other objects may do their own locking."""
     if not isinstance(method, ast.Attribute) or method.attr not in MUTATORS:
         return False
     name = node.attr if isinstance(node, ast.Attribute) else node.id
-    return method.value is not node or not _foreign(name, outline)
+    own = outline.assigned.get(name, [])
+    assigned = own if own or elsewhere is None else elsewhere(name)
+    return method.value is not node or not _foreign(assigned)
 
 
-def _foreign(name: str, outline: Outline) -> bool:
-    """Return whether every value assigned to a name, apart from None, is an argument or an instance of a class."""
-    values = [v for v in outline.values(name) if not (isinstance(v, ast.Constant) and v.value is None)]
+def _foreign(assigned: Sequence[ast.expr]) -> bool:
+    """Return whether every value that a name gets, apart from None, is an argument or an instance of a class."""
+    values = [v for v in assigned if not (isinstance(v, ast.Constant) and v.value is None)]
     return bool(values) and all(_handed(value) for value in values)
 
 

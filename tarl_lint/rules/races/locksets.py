@@ -147,7 +147,7 @@ class Locking:
         known = self._accesses.get(key)
         if known is None:
             outline = self.evidence.outline(key[0])
-            found = accesses(frame.function.node, _receiver_name(frame), outline)
+            found = accesses(frame.function.node, _receiver_name(frame), outline, self.evidence.assigned)
             known = self._accesses[key] = list(found)
         return known
 
