@@ -23,6 +23,7 @@ JUDGING = (
     "drift_judging_6",
     "drift_judging_7",
     "drift_judging_8",
+    "drift_judging_9",
     "drift_structure",
 )
 TASKS = sorted(
@@ -161,6 +162,17 @@ KINDS = {  # of the tasks of each set
         "unrepairable",
     ],
     "drift_judging_8": ["helper", "permanent", "range", "sparse reward"],
+    "drift_judging_9": [
+        "narrow window",
+        "one constant",
+        "one constant",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+        "structure",
+        "two constants",
+    ],
 }
 
 
@@ -200,7 +212,15 @@ def test_worlds_of_the_fourth_set_are_deterministic() -> None:
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
 @pytest.mark.parametrize(
-    "folder", ["drift_judging_3", "drift_judging_4", "drift_judging_6", "drift_judging_7", "drift_judging_8"]
+    "folder",
+    [
+        "drift_judging_3",
+        "drift_judging_4",
+        "drift_judging_6",
+        "drift_judging_7",
+        "drift_judging_8",
+        "drift_judging_9",
+    ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
     tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == folder]
