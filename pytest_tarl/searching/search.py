@@ -170,6 +170,11 @@ class Trials:
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
 
+    def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
+        """Return the outcomes of the episodes of these seeds on which a candidate has run."""
+        known = (self._known.get((candidate, pair.seed)) for pair in pairs)
+        return [outcome for outcome in known if outcome is not None]
+
     def moved(self, candidate: Candidate, pairs: Iterable[Pair]) -> bool:
         """Return whether a candidate changed the reward or the length of any episode that it ran.
 
