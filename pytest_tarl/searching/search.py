@@ -59,6 +59,7 @@ class Goal:
     - `online`: the mean total reward of all episodes in the drifted world, including those that lost nothing.
     - `passing`: a failed mission is never near, because ending early can earn more than carrying on.
     - `harder`: for each seed, how much less than the mean its mission earns in the designed world, where known.
+    - `tolerated`: for each seed, how much less still its mission may earn, because few missions lose.
     - `controls`: episodes in the drifted world that lost nothing.
     """
 
@@ -68,6 +69,7 @@ class Goal:
     online: float
     passing: bool = False
     harder: Mapping[int, float] = field(default_factory=dict)
+    tolerated: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
     ranged: bool = False  # missions vary in size, so a mission may fail because of its size
     steps: float | None = None  # mean length of a designed mission, if known
@@ -82,7 +84,7 @@ class Goal:
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
         """Return whether an episode earns about as much as the same seed in the designed world."""
-        return outcome.total >= self.near - self.harder.get(seed, 0.0) and not self.lost(outcome)
+        return outcome.total >= self.near - self._less(seed) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
         """Return whether an episode failed its mission although missions succeed in the designed world."""
@@ -90,7 +92,11 @@ class Goal:
 
     def enough_on(self, seeds: Sequence[int]) -> float:
         """Return the mean total reward that confirms a candidate on these seeds."""
-        return self.enough - fmean(self.harder.get(seed, 0.0) for seed in seeds)
+        return self.enough - fmean(map(self._less, seeds))
+
+    def _less(self, seed: int) -> float:
+        """Return how much less than the mean a seed's mission may earn."""
+        return self.harder.get(seed, 0.0) + self.tolerated.get(seed, 0.0)
 
 
 class BudgetSpentError(Exception):
