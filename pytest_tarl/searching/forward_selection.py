@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.polishing import ALMOST, KNOWN, Factors, polished
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
 from pytest_tarl.searching.units import NEAR, Unit
 
@@ -53,6 +54,7 @@ class Settled:
 
     tried: set[Candidate] = field(default_factory=set)
     held: set[Candidate] = field(default_factory=set)
+    polished: set[frozenset[Unit]] = field(default_factory=set)  # combinations whose factors were adjusted
 
     def holds(self, candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
         """Confirm a candidate on further seeds; return False if it was tried before."""
@@ -190,13 +192,48 @@ class ForwardSelection:
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
         """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before."""
-        fewer = self._least(joint).candidate(self.mutate)
+        least = self._least(joint)
+        fewer = least.candidate(self.mutate)
         if fewer in self.settled.held:
             self.settled.tried.add(candidate)
             return
         for one in dict.fromkeys((fewer, candidate)):
             if self.settled.holds(one, self.trials, self.goal, 0):
                 yield one
+                return
+        yield from self._polished(least)
+
+    def _polished(self, joint: Joint) -> Iterator[Candidate]:
+        """Adjust the factors of a combination that passed its missions but earned a little too little."""
+        units = frozenset(unit for unit, _ in joint.parts)
+        candidate, pairs = joint.candidate(self.mutate), self.goal.pairs
+        ran = self.trials.ran(candidate, pairs)
+        gained = self.trials.gain(candidate, pairs) >= ALMOST * self.goal.wanted
+        enough = len(ran) >= KNOWN and not any(map(self.goal.lost, ran))
+        if units in self.settled.polished or len(units) < 2 or not (gained and enough):
+            return
+        self.settled.polished.add(units)
+
+        def moved(factors: Factors) -> Joint:
+            return Joint(
+                tuple((unit, by) for (unit, _), by in zip(joint.parts, factors, strict=True)), joint.guard
+            )
+
+        def earned(factors: Factors, seed: int) -> float | None:
+            try:
+                outcome = self.trials(moved(factors).candidate(self.mutate), seed)
+            except RepairError:
+                return None
+            return None if self.goal.lost(outcome) else outcome.total
+
+        begin = tuple(factor for _, factor in joint.parts)
+        seeds = [pair.seed for pair in pairs]
+        better = moved(polished(begin, earned, seeds, self.goal.wanted))
+        if better == joint:
+            return
+        for one in dict.fromkeys((self._least(better), better)):
+            if self.settled.holds(one.candidate(self.mutate), self.trials, self.goal, 0):
+                yield one.candidate(self.mutate)
                 return
 
     def _with_another(self, base: Joint) -> Iterator[Joint]:

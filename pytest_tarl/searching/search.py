@@ -60,6 +60,7 @@ class Goal:
     - `online`: the mean total reward of all drifted episodes, including those without loss.
     - `passing`: whether a failed mission never counts as near, because ending early can earn more than carrying on.
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
+    - `tolerated`: seed → the further loss allowed on this seed, because few missions lose.
     - `controls`: drifted episodes without loss.
     """
 
@@ -69,6 +70,7 @@ class Goal:
     online: float
     passing: bool = False
     harder: Mapping[int, float] = field(default_factory=dict)
+    tolerated: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
     ranged: bool = False  # the drift's size varies by episode, so a mission may fail because of its size
     steps: float | None = None  # mean length of a designed mission, if known
@@ -83,7 +85,7 @@ class Goal:
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
         """Return whether an episode earns about as much as the same seed in the designed world."""
-        return outcome.total >= self.near - self.harder.get(seed, 0.0) and not self.lost(outcome)
+        return outcome.total >= self.near - self._less(seed) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
         """Return whether an episode failed its mission although missions succeed in the designed world."""
@@ -91,7 +93,11 @@ class Goal:
 
     def enough_on(self, seeds: Sequence[int]) -> float:
         """Return the mean total reward that confirms a candidate on these seeds."""
-        return self.enough - fmean(self.harder.get(seed, 0.0) for seed in seeds)
+        return self.enough - fmean(map(self._less, seeds))
+
+    def _less(self, seed: int) -> float:
+        """Return how much less than the mean a seed's mission may earn."""
+        return self.harder.get(seed, 0.0) + self.tolerated.get(seed, 0.0)
 
 
 class BudgetSpentError(Exception):
@@ -174,6 +180,11 @@ class Trials:
         """Return a candidate's mean gain over the unmutated runs, on all seeds on which it ran (at least one)."""
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
+
+    def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
+        """Return the outcomes of the episodes of these seeds on which a candidate has run."""
+        known = (self._known.get((candidate, pair.seed)) for pair in pairs)
+        return [outcome for outcome in known if outcome is not None]
 
     def moved(self, candidate: Candidate, pairs: Iterable[Pair]) -> bool:
         """Return whether a candidate changed the reward or the length of any episode that it ran.

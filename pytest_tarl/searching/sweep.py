@@ -26,6 +26,7 @@ from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, wr
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
+from pytest_tarl.searching.smaller import EARLY, EPISODES, WORSE, smaller
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
 from tarl_lint.model import Operand
 
@@ -103,6 +104,7 @@ class Sweep:
         self._compared = (
             False  # whether rival constants were already compared by the course of their missions
         )
+        self._reduced = False  # whether smaller changes of other constants were tried
         self._replaced: set[Unit] = set()  # units for which gentler ones were already tried
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
@@ -247,6 +249,7 @@ class Sweep:
             yield from self._instead(candidate, unit, pair)
         if holds:
             yield from self._truer(candidate, unit, factor, pair)
+            yield from self._smaller(candidate, unit, factor, pair)
             yield candidate
         if holds or (near and self.trials.loses(candidate)):
             self._refused.add((unit, guard))
@@ -306,26 +309,56 @@ class Sweep:
 
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a rival constant first if its missions are much closer to the designed ones, hence to the cause."""
-        seeds = [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
+        seeds = self._compared_on(pair)
         if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
             return
         self._compared = True
         begun = self.trials.spent
         for other, step in rivals(unit, factor, self.units, self._gains, found.guard):
-            mutations = other.mutations(self.mutate, step)
-            candidate = Candidate(mutations, found.guard)
-            if not mutations or candidate in self._tried or self.trials.spent - begun >= RIVALS:
+            if self.trials.spent - begun >= RIVALS:
+                return
+            candidate = self._holding(other, step, found.guard, pair)
+            if candidate is None:
                 continue
-            self._tried.add(candidate)
-            near = self._near(candidate, pair)
-            if near is None:
-                continue
-            holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
-            self._learn(other, candidate, step)
-            if holds and self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
+            if self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
                 yield candidate
                 self._refused.add((other, found.guard))
                 return
+
+    def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """Yield a much smaller change of another constant first, unless missions go less as designed with it."""
+        if self._reduced or self.proposed or self.trials.spent > EARLY * self.trials.budget:
+            return
+        parts = smaller(unit, factor, self.units, self._gains, found.guard)
+        self._reduced = bool(parts)
+        begun, seeds = self.trials.spent, self._compared_on(pair)
+        for other, step in parts:
+            if self.trials.spent - begun >= EPISODES:
+                return
+            candidate = self._holding(other, step, found.guard, pair)
+            if candidate is None:
+                continue
+            if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
+                yield candidate
+                self._refused.add((other, found.guard))
+                return
+
+    def _compared_on(self, pair: int) -> list[int]:
+        """Return the seeds on which to compare the course of missions."""
+        return [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
+
+    def _holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a factor; return the candidate if it is new and holds on every seed."""
+        candidate = Candidate(unit.mutations(self.mutate, factor), guard)
+        if not candidate.mutations or candidate in self._tried:
+            return None
+        self._tried.add(candidate)
+        near = self._near(candidate, pair)
+        if near is None:
+            return None
+        holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
+        self._learn(unit, candidate, factor)
+        return candidate if holds else None
 
     def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
         """Return the deviation of a candidate's missions from the designed ones, 0 if it is unknown."""

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.repairing.enriching import CONTROLS, ENOUGH, LOOKED_AT, enriched
+from pytest_tarl.repairing.enriching import CONTROLS, ENOUGH, LOOKED_AT, SHARE, enriched
 from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -94,9 +94,37 @@ def test_a_hard_mission_is_compared_with_its_own_designed_reward() -> None:
     seed, easy = goal.pairs[0].seed, goal.controls[0].seed
     assert not road.order.goal.reached(Outcome(HARD, passed=True), seed)
     assert goal.reached(Outcome(HARD, passed=True), seed)
-    assert not goal.reached(Outcome(HARD - 0.6, passed=True), seed)
+    assert not goal.reached(Outcome(HARD - 0.6 - goal.tolerated[seed], passed=True), seed)
     assert not goal.reached(Outcome(HARD, passed=True), easy)
     assert goal.enough_on([seed]) < goal.enough_on([easy]) == goal.enough
+
+
+@pytest.mark.parametrize("share", [0.05, 0.12, 0.3])
+def test_a_repair_may_earn_less_on_missions_that_seldom_lose(share: float) -> None:
+    road: Any = Road(share)
+    goal, margin = enriched(road, Trials(never, 300)), road.order.reference.margin
+    losing = len(road.order.goal.pairs) / 40
+    for pair in goal.pairs:
+        less = margin + goal.tolerated[pair.seed]
+        assert margin < less
+        assert losing * less == pytest.approx(SHARE * margin)
+        least = goal.near - goal.harder[pair.seed] - goal.tolerated[pair.seed]
+        assert goal.reached(Outcome(least + 0.01, passed=True), pair.seed)
+        assert not goal.reached(Outcome(least - 0.01, passed=True), pair.seed)
+        assert not goal.reached(Outcome(least + 0.01, passed=False), pair.seed)
+    for control in goal.controls:
+        assert not goal.reached(Outcome(DESIGNED - 1.1 * margin, passed=True), control.seed)
+
+
+def test_a_repair_must_restore_half_of_what_a_mission_lost() -> None:
+    road: Any = Road(0.05)
+    road.order.goal = replace(
+        road.order.goal, pairs=tuple(replace(one, total=HARD - 2.0) for one in road.order.goal.pairs)
+    )
+    goal = enriched(road, Trials(never, 300))
+    seed = road.order.goal.pairs[0].seed
+    assert goal.reached(Outcome(HARD - 0.99, passed=True), seed)
+    assert not goal.reached(Outcome(HARD - 1.01, passed=True), seed)
 
 
 def test_nothing_runs_if_most_missions_lose_or_none_does() -> None:
@@ -115,4 +143,4 @@ def test_the_search_for_failing_missions_stays_within_any_budget(
     trials = Trials(never, budget)
     goal = enriched(road, trials)
     assert trials.spent == len(road.ran) <= min(budget, ENOUGH + LOOKED_AT)
-    assert replace(goal, harder={}, controls=(), pairs=()) == replace(road.order.goal, pairs=())
+    assert replace(goal, harder={}, tolerated={}, controls=(), pairs=()) == replace(road.order.goal, pairs=())

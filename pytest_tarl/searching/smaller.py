@@ -1,0 +1,55 @@
+"""Decide which constants to change a little before one that has to change a lot.
+
+For example, the moisture probe of a dryer reads too low in the frost, so that the grain leaves too moist. A limit of
+the hot air that is twice as high restores the reward, and so does a target that is a sixth lower. A miscalibrated
+constant is more often wrong by a sixth than by a factor of two, and a change that is much larger than necessary is
+likely to do harm in a world that the test does not contain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, log
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.gains import Gains, Part
+from pytest_tarl.searching.plainness import named
+from pytest_tarl.searching.units import Unit
+
+STEPS = (0.82, 1.22)  # both are tried on each constant
+LESS = 0.5  # a change is small if its logarithm is at most this share of the other's
+EPISODES = 12  # episodes after which no further constant is tried
+EARLY = 0.5  # share of the budget; a repair found later is not compared
+WORSE = 0.02  # deviation from the designed missions by which a smaller change may exceed a larger one
+
+
+def size(unit: Unit, factor: float) -> float:
+    """Return the size of a change: |log(new value / old value)|, infinite for a changed sign or an old value of 0."""
+    value = unit.operands[0].value
+    by: float | None = factor
+    if unit.chart is not None and value is not None:
+        by = unit.chart.factor(float(value), factor)
+    return abs(log(by)) if by is not None and by > 0.0 and value != 0 else inf
+
+
+def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
+    """Return other named constants with small steps, the best gain so far first, then those not tried yet.
+
+    Constants that never changed a mission are left out, and steps of more than `LESS` of the size of the change found.
+    """
+    most, tried = LESS * size(found, factor), gains.under(guard)
+    others = [
+        unit
+        for unit in named(units)
+        if unit.operands != found.operands
+        and unit.chart is None
+        and not isinstance(unit.operands[0].value, bool)
+        and (unit not in tried or gains.moves(unit))
+    ]
+    others.sort(key=lambda unit: (unit not in tried, -max(tried.get(unit, {1.0: 0.0}).values())))
+    return [
+        (unit, step)
+        for unit in others
+        for step in STEPS
+        if size(unit, step) <= most and step not in tried.get(unit, {})
+    ]

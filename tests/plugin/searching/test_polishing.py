@@ -1,0 +1,79 @@
+"""A combination that earns nearly enough is adjusted before the search goes elsewhere."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.polishing import EPISODES, Factors, polished
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.units import Unit
+from tests.plugin.searching.test_forward_selection import operand
+
+BEST = (0.6, 1.5)
+
+
+def earned(factors: Factors, seed: int) -> float | None:
+    away = sum(abs(math.log(one / best)) for one, best in zip(factors, BEST, strict=True))
+    return None if away > 1.0 else 10.0 - 4.0 * away + 0.01 * seed
+
+
+def mean(factors: Factors) -> float:
+    return sum(earned(factors, seed) or 0.0 for seed in range(3)) / 3
+
+
+@pytest.mark.parametrize("begin", [(0.75, 1.5), (0.6, 1.2), (0.5, 1.9)])
+def test_factors_climb_to_the_best_nearby(begin: Factors) -> None:
+    found = polished(begin, earned, range(8), 17.0)
+    assert mean(found) > mean(begin)
+    assert all(one == pytest.approx(best, rel=0.08) for one, best in zip(found, BEST, strict=True))
+
+
+def test_the_best_factors_and_those_that_fail_are_kept() -> None:
+    assert polished(BEST, earned, range(8), 17.0) == BEST
+    assert polished((6.0, 1.5), earned, range(8), 17.0) == (6.0, 1.5)
+
+
+def test_adjusting_ends_after_a_number_of_episodes() -> None:
+    ran: list[Factors] = []
+
+    def endless(factors: Factors, seed: int) -> float:
+        ran.append(factors)
+        return math.prod(factors)
+
+    polished((1.0, 1.0, 1.0), endless, range(8), 1.0)
+    assert EPISODES <= len(ran) < EPISODES + 3
+
+
+GRIP, ANGLE, IDLE = (Unit((operand(line, "1.0", 1.0),)) for line in (3, 4, 5))
+
+
+def selection(budget: int = 300) -> ForwardSelection:
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        by = {Unit((one.operand,)): float(one.value) for one in candidate.mutations}
+        total = earned((by.get(GRIP, 1.0), by.get(ANGLE, 1.0)), 0)
+        return Outcome(-7.0, False) if total is None else Outcome(total, total > 8.0)
+
+    pairs = tuple(Pair(seed, -7.0) for seed in range(8))
+    goal = Goal(pairs, near=8.5, enough=9.4, online=-7.0, passing=True)
+    return ForwardSelection((GRIP, ANGLE, IDLE), mutations, Trials(run, budget), goal, {}, 0.1)
+
+
+def test_a_pair_that_earns_a_little_too_little_is_adjusted_until_it_holds() -> None:
+    joint = Joint(((GRIP, 0.75), (ANGLE, 1.5), (IDLE, 0.9)), ALWAYS)
+    search = selection()
+    (found,) = list(search.gain(joint))
+    assert {one.operand for one in found.mutations} == {GRIP.operands[0], ANGLE.operands[0]}
+    assert found.mutations[0].value == pytest.approx(0.6, rel=0.08)
+    assert not list(search.gain(Joint(((GRIP, 0.8), (ANGLE, 1.5)), ALWAYS)))  # each combination only once
+
+
+def test_a_pair_whose_missions_fail_is_not_adjusted() -> None:
+    search = selection()
+    assert not list(search.gain(Joint(((GRIP, 0.4), (ANGLE, 1.5)), ALWAYS)))
+    assert search.trials.spent == 1
