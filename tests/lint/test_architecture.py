@@ -154,3 +154,10 @@ NESTED = """
 @pytest.mark.parametrize("snippet", [TWO_CALLBACKS, NESTED])
 def test_reports_that_were_false_on_public_code_are_gone(snippet, tmp_path, capsys):
     assert reported(capsys, str(workspace(tmp_path, snippet))) == []
+
+
+@pytest.mark.parametrize("condition", ['if="$(env REAL)"', 'unless="$(env REAL)"', ""])
+def test_a_node_that_is_started_under_a_condition_is_no_second_author(condition, tmp_path, capsys):
+    text = known_rules()["TARL305"].INVALID[0].replace("<node ", f"<node {condition} ", 1)
+    found = reported(capsys, str(workspace(tmp_path, text)))
+    assert [one["code"] for one in found] == ([] if condition else ["TARL305"])
