@@ -21,6 +21,7 @@ from tarl_lint.workspace.launch_values import (
     OnRobot,
     Package,
 )
+from tarl_lint.workspace.parameter_yaml import of_node
 from tarl_lint.workspace.setup_files import Setup, setup
 from tarl_lint.workspace.substitutions import SymbolicError, scalar
 
@@ -194,3 +195,14 @@ def test_a_value_has_the_type_that_its_param_element_declares(text, kind, value)
 def test_a_value_of_another_type_is_refused(text, kind):
     with pytest.raises(SymbolicError, match=f"is not of type {kind}"):
         scalar(text, kind)
+
+
+@pytest.mark.parametrize(
+    ("sections", "found"),
+    [
+        ({"arm": {"ros__parameters": {"a": 1}}}, {"a": 1}),
+        ({"arm": {"ros__parameters": {"a": 1}}, "leg": {"ros__parameters": {"b": 2}}}, {}),
+    ],
+)
+def test_a_node_without_a_name_has_the_parameters_of_the_only_section(sections, found):
+    assert of_node(sections, "/robot/") == found
