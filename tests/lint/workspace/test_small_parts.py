@@ -206,3 +206,14 @@ def test_a_value_of_another_type_is_refused(text, kind):
 )
 def test_a_node_without_a_name_has_the_parameters_of_the_only_section(sections, found):
     assert of_node(sections, "/robot/") == found
+
+
+@pytest.mark.parametrize(
+    ("kind", "found"), [("GLOB", ["b.py"]), ("GLOB_RECURSE", ["a.py", "b.py"]), ("STRINGS", ["${FOUND}"])]
+)
+def test_a_variable_has_the_files_of_its_pattern(kind, found, tmp_path):
+    (tmp_path / "deep").mkdir()
+    for name in ("b.py", "deep/a.py"):
+        (tmp_path / name).touch()
+    *_, installed = commands(f"file({kind} FOUND *.py)\ninstall(PROGRAMS ${{FOUND}})", tmp_path, "p")
+    assert sorted(Path(word).name for word in installed.words[1:]) == found
