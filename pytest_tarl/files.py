@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import re
+import stat
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
@@ -43,6 +44,8 @@ def check_writable(path: Path) -> None:
     """Raise OSError if a file cannot be written. Remove everything that the check itself creates."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is not a regular file", str(path))
     made = [folder for folder in path.parents if not folder.exists()]  # the innermost first
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -58,6 +61,25 @@ def check_writable(path: Path) -> None:
 def slug(text: str) -> str:
     """Return a text as a valid part of a file name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the content of a regular file. Raise OSError for anything else, such as a named pipe or a device.
+
+    Reading these could block or never end.
+    """
+    # without O_NONBLOCK, open() waits for a writer of a pipe; Windows has neither
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        kind = os.fstat(handle).st_mode
+        if stat.S_ISDIR(kind):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(kind):
+            raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+        with os.fdopen(handle, "rb", closefd=False) as file:
+            return file.read()
+    finally:
+        os.close(handle)
 
 
 def write_atomically(path: Path, content: bytes) -> None:

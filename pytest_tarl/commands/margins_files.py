@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 from pytest_tarl.errors import FixtureError
+from pytest_tarl.files import read_regular
 from pytest_tarl.stressing.margins import Margins, read
 
 FOLDER = ".tarl/margins"
@@ -38,7 +39,7 @@ def margins_in(place: str) -> list[Margins]:
 
 def _file(path: Path) -> Margins:
     try:
-        return read(path.read_bytes(), str(path))
+        return read(read_regular(path), str(path))
     except OSError as problem:
         raise FixtureError(f"{path}: cannot be read ({problem.strerror or problem}).") from None
 

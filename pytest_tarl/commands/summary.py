@@ -13,6 +13,7 @@ from typing import Any
 from pytest_tarl.commands import margins_diff
 from pytest_tarl.commands.margins_files import margins_in
 from pytest_tarl.errors import FixtureError
+from pytest_tarl.files import read_regular
 from pytest_tarl.stressing.margin_changes import compared
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
@@ -61,7 +62,7 @@ def _comparisons(documents: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def _read(path: Path) -> Mapping[str, Any]:
     try:
-        document = json.loads(path.read_text("utf-8"))
+        document = json.loads(read_regular(path).decode("utf-8"))
         _row(document)
         tuple(_picture(document))
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:

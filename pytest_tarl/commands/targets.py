@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.files import read_regular
 from pytest_tarl.patching.changes import FilePatch, identical
 from pytest_tarl.patching.placing import located
 from pytest_tarl.patching.reading import Patch
@@ -56,6 +57,6 @@ def shown(path: Path) -> str:
 
 def _content(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_regular(path)
     except OSError as problem:
         raise RepairError(f"{path} cannot be read ({problem.strerror}).") from problem

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pytest_tarl.files import read_regular
 from tarl_lint.editing import Result
 from tarl_lint.model import Step
 
@@ -58,7 +59,7 @@ def read(root: Path) -> Recorded:
 def _document(path: Path, root: Path) -> tuple[list[tuple[str, Figures]], list[str], Path] | None:
     """Return the figures of one comparison, the files that its repair edits, and the patch."""
     try:
-        document = json.loads(path.read_text("utf-8"))
+        document = json.loads(read_regular(path).decode("utf-8"))
         figures = list(_figures(document))
         repair = document.get("repair") or {}
         patch = root / str(repair.get("patch"))

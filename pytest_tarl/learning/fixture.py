@@ -25,7 +25,7 @@ from zipfile import ZipFile
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
-from pytest_tarl.files import advice_on, check_writable, write_atomically
+from pytest_tarl.files import advice_on, check_writable, read_regular, write_atomically
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.learning.archive import DamagedError, TooLargeError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
@@ -125,7 +125,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 def load(path: Path) -> Fixture:
     """Read a recording. Raise FixtureError if it is missing, unreadable, damaged or of another format."""
     try:
-        content = path.read_bytes()
+        content = read_regular(path)
     except FileNotFoundError:
         raise FixtureError(f"{path}: no such recording.", RECORD_AGAIN) from None
     except IsADirectoryError:

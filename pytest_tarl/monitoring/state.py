@@ -24,7 +24,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pytest_tarl.errors import MonitorError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import read_regular, write_atomically
 from pytest_tarl.learning.archive import read_arrays
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.monitoring.mission import Progress
@@ -143,7 +143,7 @@ def _restored(
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
     try:
-        columns = read_arrays(path.read_bytes())
+        columns = read_arrays(read_regular(path))
         header: dict[str, Any] = json.loads(columns.pop(HEADER).tobytes().decode())
         digest = header.pop("digest")
         whole = digest == _digest(header, columns)

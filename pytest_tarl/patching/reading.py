@@ -10,6 +10,7 @@ from itertools import pairwise
 from pathlib import Path, PurePosixPath
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.files import read_regular
 from pytest_tarl.patching.changes import FilePatch, Hunk
 from pytest_tarl.patching.patch import BASE, SEAL, TITLE, seal, split_lines, unquoted
 
@@ -62,7 +63,7 @@ class Patch:
 def read(path: Path) -> Patch:
     """Read a patch. Raises RepairError if it is missing, not written by TARL, truncated or edited."""
     try:
-        content = unquoted(path.read_bytes())
+        content = unquoted(read_regular(path))
     except OSError as problem:
         raise RepairError(
             f"{path} cannot be read ({problem.strerror}): TARL writes patches to .tarl/patches."

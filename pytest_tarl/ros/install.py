@@ -12,6 +12,7 @@ from types import CodeType, FrameType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.environment import set_variables, variables_restored
+from pytest_tarl.ros.exiting import exits_of_nodes
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.keyboard import terminals
 from pytest_tarl.ros.messages.definitions import Kind
@@ -218,7 +219,13 @@ def standins_installed(
     sys.meta_path.insert(0, finder)
     sys.meta_path.append(uninstalled)
     try:
-        with virtual_host_time(scheduler), threads_as_tasks(), terminals(processes), variables_restored():
+        with (
+            virtual_host_time(scheduler),
+            threads_as_tasks(),
+            terminals(processes),
+            variables_restored(),
+            exits_of_nodes(),
+        ):
             yield
     finally:
         sys.meta_path.remove(finder)

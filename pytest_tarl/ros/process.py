@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.bus import Bus
+from pytest_tarl.ros.exiting import ProcessExit
 from pytest_tarl.ros.launched import NOTHING
 from pytest_tarl.ros.node_advice import advice
 from pytest_tarl.ros.parameter_server import ParameterServer
@@ -114,8 +115,11 @@ class Process:
         if isinstance(error, Spinning):
             self.scheduler.failure = self.spins(blame.of_traceback(error.__traceback__))
         elif isinstance(error, SystemExit):
-            if task is self.main and error.code not in (None, 0) and not self.ending:
+            whole = task is self.main or isinstance(error, ProcessExit)
+            if whole and error.code not in (None, 0) and not self.ending:
                 self._fail(self._ended_in(error))
+            elif whole and task is not self.main and not self._closing:
+                self.scheduler.later(self.end)
         elif isinstance(error, TarlError | KeyboardInterrupt) or _of_pytest(error):
             self._fail(error)  # the user's interrupt, or an error outside of the node
         else:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import read_regular, write_atomically
 from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
@@ -42,7 +42,7 @@ def read(path: Path, space: Space) -> list[Point]:
     Return an empty list if the file is missing or damaged. Drifts of another space are skipped.
     """
     try:
-        found = json.loads(path.read_text("utf-8"))
+        found = json.loads(read_regular(path).decode("utf-8"))
         points = found["failing"] if found["format"] == FORMAT_VERSION else []
         return [point for point in points if _inside(space, point)][:MOST]
     except (OSError, ValueError, KeyError, TypeError, RecursionError, MemoryError):

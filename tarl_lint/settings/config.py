@@ -154,6 +154,10 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
     if options.no_baseline:
         return None
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
+    if (
+        isinstance(named, str) and path.exists() and not path.is_file()
+    ):  # a pipe in a foreign tree would block
+        raise ConfigError(f"The baseline {shown(path)} of the settings is not a regular file: name another.")
     return path if named is not None or options.write_baseline or path.is_file() else None
 
 

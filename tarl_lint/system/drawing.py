@@ -75,7 +75,7 @@ def layers(drawn: Drawing) -> list[list[str]]:
         after = [depth[other] for one, other in forward if one == name]
         if name not in entered and after:
             depth[name] = min(after) - 1
-    columns: list[list[str]] = [[] for _ in range(max(depth.values(), default=-1) + 1)]
+    columns: list[list[str]] = [[] for _ in range(max((at + 1 for at in depth.values()), default=0))]
     for name in every:
         columns[depth[name]].append(name)
     return _untangled(columns, forward)

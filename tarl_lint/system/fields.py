@@ -76,12 +76,10 @@ def _parameter(function: Function, kind: str) -> dict[str, str]:
 
 def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
     """Return the local variables that hold a new message, each assigned once."""
-    assigned: dict[str, list[ast.expr | None]] = {}
+    assigned: dict[str, list[ast.expr]] = {}
     for node in ast.walk(function):
         if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
             assigned.setdefault(node.targets[0].id, []).append(node.value)
-        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            assigned.setdefault(node.id, [])
     stores: dict[str, int] = {}
     for node in ast.walk(function):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):

@@ -53,7 +53,8 @@ def test_rules_report_their_invalid_snippets_and_nothing_in_valid_ones(code, nam
         ("/cmd_vel", "/robot/cmd_vel", True), ("/cmd_vel", "/cmd_vle", True), ("/cmd_vel", "/cmd_vell", True),
         ("/obstacle", "/obstacles", True), ("/cmd_vel", "/cmd_vel", False), ("/left_1", "/left_2", False),
         ("/odom", "/oдom", False), ("/left", "/lift", False), ("/a/scan", "/b/scan", False),
-        ("/a/b/scan", "/a/scan", True),
+        ("/a/b/scan", "/a/scan", True), ("/imu_a", "/imu_b", False), ("/a_imu", "/b_imu", True),
+        ("/odoma", "/odoxa", True), ("/arm_xy", "/arm_xz", True), ("/scan_x", "/scanx_", False),
         ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", False),
         ("/c/image_rect/compressed", "/c/image_calib/compressed", False),
     ],
@@ -153,3 +154,10 @@ NESTED = """
 @pytest.mark.parametrize("snippet", [TWO_CALLBACKS, NESTED])
 def test_code_that_earlier_versions_reported_wrongly_has_no_findings(snippet, tmp_path, capsys):
     assert reported(capsys, str(workspace(tmp_path, snippet))) == []
+
+
+@pytest.mark.parametrize("condition", ['if="$(env REAL)"', 'unless="$(env REAL)"', ""])
+def test_a_node_that_is_started_under_a_condition_is_no_second_author(condition, tmp_path, capsys):
+    text = known_rules()["TARL305"].INVALID[0].replace("<node ", f"<node {condition} ", 1)
+    found = reported(capsys, str(workspace(tmp_path, text)))
+    assert [one["code"] for one in found] == ([] if condition else ["TARL305"])

@@ -1,3 +1,4 @@
+import os
 from pathlib import Path
 
 import pytest
@@ -230,3 +231,18 @@ def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
         ConfigError, match=r"'bus\.listen' .* like 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
     ):
         facts((Wrapper("bus.listen", "rospy.Subscribr"),))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
+def test_settings_cannot_name_a_baseline_that_blocks_its_reader(in_directory, kind):
+    in_directory({"pyproject.toml": "[tool.tarl-lint]\nbaseline = 'accepted'\n"})
+    assert resolve(Options()).baseline == Path.cwd() / "accepted"
+    if kind == "pipe":
+        os.mkfifo("accepted")
+    elif kind == "device":
+        Path("accepted").symlink_to("/dev/zero")
+    else:
+        Path("accepted").mkdir()
+    with pytest.raises(ConfigError, match="accepted of the settings is not a regular file: name another"):
+        resolve(Options())

@@ -8,6 +8,7 @@ import pytest
 
 from tarl_lint.model import SiteId, Span
 from tarl_lint.report.sarif import document
+from tarl_lint.report.upload_limits import Cut
 from tarl_lint.run.runner import Result
 from tests.lint.reports import everything, text_of
 
@@ -142,6 +143,15 @@ def test_unanalysed_files_are_notifications(example):
     (invocation,) = run_of(everything(example))["invocations"]
     assert invocation["executionSuccessful"] is True
     assert "3 C++ nodes" in invocation["toolExecutionNotifications"][0]["message"]["text"]
+
+
+@pytest.mark.parametrize(("most", "found"), [(2, 0), (3, 1), (4, 2), (6, 4), (9, 4)])
+def test_a_cut_report_keeps_the_errors_and_counts_them_among_its_results(example, most, found):
+    whole = everything(example)
+    (run,) = document(replace(whole, errors=whole.errors * 2), Cut(most, 0))["runs"]
+    codes = [one["ruleId"] for one in run["results"]]
+    assert codes.count("TARL001") == 2
+    assert len(codes) == 2 + found
 
 
 def test_file_names_are_encoded_as_uris(example, schema):

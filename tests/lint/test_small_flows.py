@@ -366,6 +366,13 @@ def test_a_compound_statement_spans_its_header_up_to_the_colon():
     assert (span.end_line, text.code(span)) == (3, "def f(a, b=(1,\n            2)) -> int :")
 
 
+def test_columns_of_the_first_line_count_characters():
+    source = 'x = "é" + a; y = 2\n'
+    text = Text(SimpleNamespace(tree=ast.parse(source), text=source, path="a.py", name="a"))
+    found = [text.span(written) for written in text.by_start.values()]
+    assert sorted((one.column, text.code(one)) for one in found) == [(1, 'x = "é" + a'), (14, "y = 2")]
+
+
 def test_equal_statements_of_a_function_are_numbered():
     text = Text(SimpleNamespace(tree=ast.parse(HEADERS), text=HEADERS, path="a.py", name="a"))
     first, second = text.statement((7, 4)), text.statement((8, 4))

@@ -401,6 +401,26 @@ def test_each_loop_iteration_and_each_call_allocates_its_own_object(ctx, frame):
     assert recency.allocate(ctx, "sequence", frame, "slot") is not obj
 
 
+def test_an_older_library_object_is_kept_only_while_something_else_points_to_it(ctx, frame):
+    obj, holder = recency.allocate(ctx, "lib", frame, "slot"), made(ctx, "instance", "holder")
+    ctx.store.put((obj, "x"), ONE)
+    ctx.store.put((obj, "next"), pointer(obj))
+    ctx.store.put((holder, "part"), pointer(obj))
+    ctx.store.put((holder, "part"), TWO)
+    assert recency.allocate(ctx, "lib", frame, "slot") is obj
+    assert ("lib", (obj.key, "older")) not in ctx.objects
+    assert ctx.store.get((obj, "x")) in (None, ABSENT)
+
+    ctx.store.put((obj, "x"), TWO)
+    ctx.store.put((holder, "part"), pointer(obj))
+    assert recency.allocate(ctx, "lib", frame, "slot") is obj
+    older = ctx.objects["lib", (obj.key, "older")]
+    assert older.many
+    assert ctx.store.get((holder, "part")).pts == {older}
+    assert ctx.store.get((older, "x")) == TWO
+    assert ctx.store.get((obj, "x")) in (None, ABSENT)
+
+
 def test_fields_are_copied_with_parts_and_joined(ctx):
     one, two = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     ctx.store.put((one, "x"), ONE)

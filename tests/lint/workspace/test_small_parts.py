@@ -21,7 +21,9 @@ from tarl_lint.workspace.launch_values import (
     OnRobot,
     Package,
 )
+from tarl_lint.workspace.parameter_yaml import of_node
 from tarl_lint.workspace.setup_files import Setup, setup
+from tarl_lint.workspace.substitutions import SymbolicError, scalar
 
 
 @pytest.mark.parametrize(
@@ -163,3 +165,55 @@ def test_a_program_is_python_by_its_name_or_its_first_line(tmp_path: Path, name,
     assert is_python(tmp_path / name) is python
     assert not has_shebang(tmp_path)
     assert not has_shebang(tmp_path / "missing")
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        (" 1 ", "str", " 1 "),
+        ("1", "string", "1"),
+        (" 7 ", "int", 7),
+        ("7", "double", 7.0),
+        ("7", "float", 7.0),
+        (" True ", "bool", True),
+        ("1", "bool", True),
+        ("FALSE", "boolean", False),
+        ("0", "bool", False),
+        ("1", "auto", 1),
+        ("1.5", "auto", 1.5),
+        ("true", "auto", True),
+        ("false", "auto", False),
+        (" word ", "auto", " word "),
+    ],
+)
+def test_a_value_has_the_type_that_its_param_element_declares(text, kind, value):
+    found = scalar(text, kind)
+    assert (found, type(found)) == (value, type(value))
+
+
+@pytest.mark.parametrize(("text", "kind"), [("1.5", "int"), ("x", "double"), ("yes", "bool"), ("", "int")])
+def test_a_value_of_another_type_is_refused(text, kind):
+    with pytest.raises(SymbolicError, match=f"is not of type {kind}"):
+        scalar(text, kind)
+
+
+@pytest.mark.parametrize(
+    ("sections", "found"),
+    [
+        ({"arm": {"ros__parameters": {"a": 1}}}, {"a": 1}),
+        ({"arm": {"ros__parameters": {"a": 1}}, "leg": {"ros__parameters": {"b": 2}}}, {}),
+    ],
+)
+def test_a_node_without_a_name_has_the_parameters_of_the_only_section(sections, found):
+    assert of_node(sections, "/robot/") == found
+
+
+@pytest.mark.parametrize(
+    ("kind", "found"), [("GLOB", ["b.py"]), ("GLOB_RECURSE", ["a.py", "b.py"]), ("STRINGS", ["${FOUND}"])]
+)
+def test_a_variable_has_the_files_of_its_pattern(kind, found, tmp_path):
+    (tmp_path / "deep").mkdir()
+    for name in ("b.py", "deep/a.py"):
+        (tmp_path / name).touch()
+    *_, installed = commands(f"file({kind} FOUND *.py)\ninstall(PROGRAMS ${{FOUND}})", tmp_path, "p")
+    assert sorted(Path(word).name for word in installed.words[1:]) == found

@@ -1,0 +1,66 @@
+"""`os._exit` in a node ends the node; it must not end pytest, which would report success without a verdict."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from tests.plugin.tank import RECORD, changed
+
+FLOW = "            flow = GAIN * missing"
+HEARD = "    level = msg.data"
+
+
+def ending(tank: pytest.Pytester, place: str, status: int) -> None:
+    """Let the node end itself, in its main loop or in a callback."""
+    if place == "loop":
+        changed(
+            tank,
+            "keeper",
+            FLOW,
+            f"{FLOW}\n            if level > 0.3:\n                leave({status}, flow)",
+        )
+    else:
+        changed(tank, "keeper", HEARD, f"{HEARD}\n    if level > 0.3:\n        leave({status}, level)")
+    changed(
+        tank,
+        "keeper",
+        "def main",
+        "def leave(status, value):\n    import os\n    os._exit(status)\n\n\ndef main",
+    )
+
+
+@pytest.mark.parametrize("place", ["loop", "callback"])
+def test_an_exit_with_a_status_fails_the_test_with_a_sentence(tank: pytest.Pytester, place: str) -> None:
+    ending(tank, place, 7)
+    real = os._exit
+    told = tank.runpytest_subprocess("test_tank.py")
+    told.assert_outcomes(failed=1, passed=1)
+    told.stdout.fnmatch_lines(["Node '/keeper' exited with status 7 (keeper.py, line *, in leave).*"])
+    assert os._exit is real
+
+
+@pytest.mark.parametrize("place", ["loop", "callback"])
+def test_after_an_exit_without_error_the_node_is_gone_and_the_test_judges(
+    tank: pytest.Pytester, place: str
+) -> None:
+    ending(tank, place, 0)
+    told = tank.runpytest_subprocess("test_tank.py")
+    told.assert_outcomes(failed=1, passed=1)
+    told.stdout.fnmatch_lines(["*tank not full*"])
+
+
+def test_a_recording_says_that_its_episodes_failed(tank: pytest.Pytester) -> None:
+    ending(tank, "loop", 0)
+    told = tank.runpytest_subprocess(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["5 of the first 5 episodes failed*tank not full*"])
+
+
+def test_a_forked_child_of_a_node_still_ends_at_once(tank: pytest.Pytester) -> None:
+    forks = "                import os\n                child = os.fork()\n                if not child:\n"
+    forks += "                    os._exit(5)\n"
+    forks += "                assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 5"
+    changed(tank, "keeper", FLOW, f"{FLOW}\n            if level > 0.9:\n{forks}")
+    tank.runpytest_subprocess("test_tank.py").assert_outcomes(passed=2)
