@@ -37,16 +37,24 @@ def oddness(mutations: Iterable[Mutation]) -> Oddness:
 
 
 def plainer(
-    odd: Oddness, gains: Mapping[Unit, Mapping[float, float]], units: Sequence[Unit], promising: float
+    odd: Oddness,
+    gains: Mapping[Unit, Mapping[float, float]],
+    units: Sequence[Unit],
+    promising: float,
+    beside: Unit | None = None,
 ) -> list[Unit]:
     """Return the units whose change reads plainer than that of the candidate found, best gain first.
 
-    Units that gain at least `promising` come first. Untried units follow, plainest first. If the candidate scales a
-    variable or is an offset, all untried units follow. If it changes a literal, only `UNTRIED` named constants follow.
+    Units that gain at least `promising` come first. Untried units follow, plainest first. Of equally plain ones, those
+    in the statement of `beside` come first: in a product, a named constant has the effect of the literal next to it. If
+    the candidate scales a variable or is an offset, all untried units follow. If it changes a literal, only `UNTRIED`
+    named constants follow.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
-    others = sorted((unit for unit in read if unit not in gains), key=kind)
+    site = beside.operands[0].site if beside is not None else None
+    untried = [unit for unit in read if unit not in gains]
+    others = sorted(untried, key=lambda unit: (kind(unit), unit.operands[0].site != site))
     if odd < Oddness.VARIABLE:
         others = others[:UNTRIED]
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *others]

@@ -270,7 +270,7 @@ class Sweep:
         before = set(self._refused if odd is Oddness.OFFSET else ())
         others = [one for one in self.units if one != unit]
         gains = self._gains.under(guard)
-        for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):
+        for other in plainer(odd, gains, others, PROMISING * self.goal.wanted, unit):
             held = guard
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)

@@ -202,6 +202,13 @@ def test_more_readable_changes_come_first_and_those_with_a_gain_before_untried_o
     assert plainer(Oddness.OFFSET, {}, mixed, 0.0) == [*others, literal]
 
 
+def test_a_named_constant_in_the_same_statement_is_tried_before_the_others() -> None:
+    others = [Unit((constant(n, f"N{n}"),)) for n in range(20, 24)]
+    beside = Unit((replace(LITERAL, site=others[3].operands[0].site),))
+    assert plainer(Oddness.INNER, {}, others, 5.0, beside) == [others[3], others[0]]
+    assert plainer(Oddness.OFFSET, {}, [*others, beside], 5.0, beside) == [others[3], *others[:3], beside]
+
+
 GOAL = Goal(tuple(Pair(seed, 0.0, 10) for seed in range(3)), 9.0, 9.0, 0.0, steps=10.0)
 
 
