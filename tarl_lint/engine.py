@@ -95,8 +95,8 @@ def trace(
 ) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the interpreter that found them. A thorough interpreter answers further queries.
 
-    With `parameters`, topic names may contain parameters. They refer to them by their index in this list, to which
-    the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
+    With `parameters`, topic names may contain parameters. A name refers to a parameter by its index in this list, to
+    which the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:

@@ -128,7 +128,7 @@ class Tracer:
         return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
-        """Return the constants that are chosen by conditions among the nodes, and the nodes that produce them."""
+        """Return the constants that conditions among the nodes choose, and the nodes that produce these constants."""
         graph = self.graph
         found: set[int] = set()
         for node in filter((graph.gates.keys() | self._alongside.keys()).__contains__, nodes):

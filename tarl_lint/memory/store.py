@@ -34,7 +34,7 @@ class Inside:
     grown: int  # value of `Graph.grown` at that time
 
 
-def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways to gather
+def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - the signature of `gather`
     """Return the value unchanged."""
     return value
 

@@ -45,7 +45,7 @@ APPENDED = "<appended>"  # field of a list: its length before the first subscrib
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
-)  # functions that keep the separate elements of their argument
+)  # functions whose result has the elements of the argument, tracked separately if those of the argument are
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
@@ -247,7 +247,7 @@ def _read_keys(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _in_turn(ctx: Interpreter, elements: Sequence[Value], it: Invocation) -> Value:
-    """Return a new sequence with separate elements."""
+    """Return a new sequence whose elements are tracked separately."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     for number, value in enumerate(elements):
         ctx.store.put((obj, item_field(number)), value)
@@ -319,7 +319,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Return whether reads of a library object return other data than writes to it stored."""
+    """Return whether reading from a library object returns other data than what was written to it."""
     return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
 
 

@@ -73,7 +73,7 @@ def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
 
 
 def rows_of(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-    """Return a sequence of tuples with separate elements."""
+    """Return a sequence of tuples that are tracked separately."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, row in enumerate(rows):
         pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))

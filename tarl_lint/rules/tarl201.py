@@ -5,7 +5,7 @@ this happens only with a MultiThreadedExecutor and callback groups that allow it
 If one thread accesses an attribute or global under a lock and another thread changes or reads it without the lock, the
 other thread may see a partial change, or a change may be lost.
 
-Only state that some code guards with a lock is reported, and only if the access can go wrong:
+An access is reported only if other code guards the same state with a lock, and only if the access can go wrong:
 
 - one thread changes a container while another reads it,
 - a value is incremented or changed in place,

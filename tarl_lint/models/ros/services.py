@@ -124,7 +124,7 @@ def arrived(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
 
 
 def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the result of a transform look-up, a source with the setting `tf2`."""
+    """Return the result of a transform look-up, which is a source if the setting `tf2` is on."""
     if not ctx.config.tf2:
         return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)

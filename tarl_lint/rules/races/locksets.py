@@ -92,7 +92,7 @@ class Locking:
                 if state is None:
                     continue
                 if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
-                    continue  # whether the call may run before the threads start
+                    continue  # the main program may run it before the threads start
                 use = self._use(access, frame, thread, callers)
                 found.setdefault(state, {})[use] = None
         return {state: list(uses) for state, uses in found.items()}
@@ -198,7 +198,7 @@ class Harm:
                     self._read.setdefault(_by(use), set()).add(state)
 
     def between(self, state: State, use: Use, guarded: Use) -> bool:
-        """Return whether `use`, which holds no lock, can go wrong while another thread does `guarded`."""
+        """Return whether `use`, which holds no lock, can go wrong while another thread performs `guarded`."""
         if use.how == "length":
             return False
         if use.writes:
