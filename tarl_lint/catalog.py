@@ -9,7 +9,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """The effect of one function. Numbers are positions of arguments, names their keywords."""
+    """The effect of one function. A number is the position of an argument, a name its keyword."""
 
     kind: str
     api: str
@@ -272,7 +272,9 @@ MAY_BE_NONE: Final = frozenset(
 )  # library functions that return None if they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
 
-STATES: Final = "smach"  # a state with such a base receives the data shared by all states when it runs
+STATES: Final = (
+    "smach"  # a class with such a base is a state, which receives the data shared by all states when it runs
+)
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")

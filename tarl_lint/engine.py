@@ -49,8 +49,8 @@ def examine(
 
     The last element holds the classes outside the files at which flows ended.
 
-    Failures are raised unless `isolated`. The rest is analysed as if the failed code did nothing. With `readings`,
-    what was read of each file is stored there.
+    With `isolated`, the rest is analysed as if the failed code did nothing; otherwise, failures are raised. With
+    `readings`, what was read of each file is stored there.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()

@@ -335,7 +335,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last, also after functions that are called in the call's arguments."""
+    """Return a path with its publish call last, even if arguments of this call are calls of functions on the path."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

@@ -99,7 +99,7 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
-    """Return the index in a list of what each iteration of an unrolled loop appends; None if it is not known."""
+    """Return the list index of the element that this iteration of an unrolled loop appends; None if it is not known."""
     if len(values) != 1 or frame.statement not in frame.steps:
         return None
     known = sizes.unpacked(ctx, base)

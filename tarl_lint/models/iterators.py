@@ -131,7 +131,7 @@ def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object is there is not its data."""
+    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object exists is not data."""
     if not it.arguments[0]:
         return UNKNOWN
     value = it.arguments[0][0]

@@ -187,8 +187,8 @@ def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
 
 
 def _message(use: Use, other: Use) -> str:
-    lock, does = min(other.guards), "writes" if other.writes else "reads"
-    there = f"{other.spots[0].function} holds in another thread when it {does} it"
+    lock, doing = min(other.guards), "writing" if other.writes else "reading"
+    there = f"{other.spots[0].function} holds in another thread when {doing} {use.name}"
     return f"{use.name} is {_done(use)} without {lock}, which {there}"
 
 
