@@ -61,7 +61,8 @@ class _Exits:
     handlers: tuple[tuple[frozenset[str], int], ...] = ()
 
     def of(self, name: str) -> int:
-        """Return the target of an exception: the handler that names it, else one that handles all, else the first."""
+        """Return where an exception continues: at a handler that names it, else at one for all, else at the first
+        handler."""
         if not self.handlers:
             return self.on_raise
         named = [entry for names, entry in self.handlers if name and name in names]

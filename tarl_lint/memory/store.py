@@ -106,7 +106,8 @@ class Store:
         return value
 
     def former(self, key: Key) -> Value | None:
-        """Return the current value of a key that another path stores to, to join it with the value from that path.
+        """Return the current value of a key to which another path stores; the caller joins it with the value from that
+        path.
 
         If this run makes the object only on other paths, every run makes its own. Own stores to its keys then do not
         make the root run again, as long as only joins read them.

@@ -23,7 +23,8 @@ does not report
 - code that runs before the threads start,
 - callbacks of which only one is registered, in opposite branches of an `if`.
 
-If a function is called with the lock in one place and without it in another, the message names the call without it.
+If a function is called with the lock in one place and without it in another, the message names the call without the
+lock.
 """
 
 from __future__ import annotations
