@@ -106,8 +106,7 @@ class Store:
         return value
 
     def former(self, key: Key) -> Value | None:
-        """Return the current value of a key to which another path stores; the caller joins it with the value from that
-        path.
+        """Return the current value of a key to which another path stores, for the join with the value of that path.
 
         If this run makes the object only on other paths, every run makes its own. Own stores to its keys then do not
         make the root run again, as long as only joins read them.

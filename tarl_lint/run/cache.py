@@ -23,7 +23,7 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.settings.config import Config
 
 try:
-    from _blake2 import blake2b  # hashlib would import OpenSSL, which is slower than linting a small file
+    from _blake2 import blake2b  # hashlib imports OpenSSL, which takes longer than linting a small file
 except ImportError:
     from hashlib import blake2b
 
