@@ -33,5 +33,5 @@ def _with_room(work: Callable[[], Result]) -> Result:
     return work()
 
 
-if sys.version_info >= (3, 11):  # in older versions, each frame is an object of its own
+if sys.version_info >= (3, 11):  # in older versions of Python, each frame is an object of its own
     _with_room.__code__ = _with_room.__code__.replace(co_stacksize=HALF_A_CHUNK)
