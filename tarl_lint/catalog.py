@@ -111,7 +111,7 @@ OTHER_KINDS: Final = (
 
 FILLS_RESPONSE: Final = frozenset(
     ["rclpy.create_service"]
-)  # a handler registered by these gets a response object to fill in
+)  # functions whose handlers get a response object to fill in
 
 # Callbacks of action servers: "goal" gets the goal, the others a goal handle; the return value of "execute" is the
 # result.
