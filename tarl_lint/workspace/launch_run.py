@@ -53,7 +53,7 @@ class Quoted:
     kind: str = ""
 
 
-Opener = Callable[[Path, Context, list[Problem]], Any]  # actions of a launch file
+Opener = Callable[[Path, Context, list[Problem]], Any]  # returns the actions of a launch file
 
 
 @dataclass

@@ -93,7 +93,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     if not isinstance(server, Server):
         return UNKNOWN
     if it.name in server.sends.methods:
-        given = bool(it.arguments[0] or it.arguments[1])  # there is no result to send
+        given = bool(it.arguments[0] or it.arguments[1])  # without arguments, there is no result to send
         return publications.send(ctx, it, server.sends) if given else UNKNOWN
     if it.name in catalog.GOAL_READERS:
         if server.handle:
