@@ -53,8 +53,8 @@ def missing(
 ) -> tuple[tuple[Accepted, ...], tuple[Accepted, ...]]:
     """Return the accepted findings that were not found, as (vanished, kept), each with the number of missing findings.
 
-    `judged` tells whether this run analysed everything that an entry needs. It did not if a file of the entry was not
-    analysed or is unreadable; such entries are kept.
+    `judged` returns whether this run analysed everything that an entry needs. An entry is kept if one of its files was
+    not analysed or is unreadable.
     """
     counts = ((entry, entry.count - found.get(entry.fingerprint.digest(), 0)) for entry in baseline.entries)
     lacking = [replace(entry, count=count) for entry, count in counts if count > 0]

@@ -9,7 +9,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """The effect of one function. Numbers are positions of arguments, names their keywords."""
+    """The effect of one function. A number is the position of an argument, a name its keyword."""
 
     kind: str
     api: str
@@ -109,7 +109,9 @@ OTHER_KINDS: Final = (
     "tf2.",
 )
 
-FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # their handlers receive a response to fill
+FILLS_RESPONSE: Final = frozenset(
+    ["rclpy.create_service"]
+)  # functions whose handlers get a response object to fill in
 
 # Callbacks of action servers: "goal" gets the goal, the others a goal handle; the return value of "execute" is the
 # result.
@@ -239,7 +241,7 @@ DEVICE_READERS: Final = frozenset(
 )  # fmt: skip
 MEASURES: Final = frozenset(
     ["shape", "size", "ndim", "dtype", "nbytes"]
-)  # attributes of an array that do not change when its elements are stored to
+)  # attributes of an array that stay the same when elements of the array are replaced
 KEEPERS: Final = frozenset(
     [
         "functools.wraps",
@@ -270,7 +272,9 @@ MAY_BE_NONE: Final = frozenset(
 )  # library functions that return None if they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
 
-STATES: Final = "smach"  # a state with such a base receives the data shared by all states when it runs
+STATES: Final = (
+    "smach"  # a class with such a base is a state, which receives the data shared by all states when it runs
+)
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
@@ -299,9 +303,11 @@ RESERVING: Final = frozenset(
     + [f"numpy.{name}" for name in SHAPED]
 )  # functions that make an array without data, often for a library to fill
 
-CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock: its time is not data of the object
+CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock, whose time is not data of the object
 
-LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])  # of messages
+LEVELS: Final = frozenset(
+    ["debug", "info", "warn", "warning", "error", "fatal", "critical"]
+)  # logging methods, named after levels
 LOGGING: Final = LEVELS | {"get_logger", "exception", "log"}
 
 

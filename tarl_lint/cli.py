@@ -46,7 +46,7 @@ def _open_streams() -> None:
     """Open the null device for standard streams that the parent process closed (None in Python)."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - to the end
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - stays open until the process ends
 
 
 def _guarded(arguments: Sequence[str] | None) -> int:

@@ -49,8 +49,8 @@ def examine(
 
     The last element holds the classes outside the files at which flows ended.
 
-    Failures are raised unless `isolated`. The rest is analysed as if the failed code did nothing. With `readings`,
-    what was read of each file is stored there.
+    With `isolated`, the rest is analysed as if the failed code did nothing; otherwise, failures are raised. With
+    `readings`, what was read of each file is stored there.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()
@@ -95,8 +95,8 @@ def trace(
 ) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the interpreter that found them. A thorough interpreter answers further queries.
 
-    With `parameters`, topic names may contain parameters. They refer to them by their index in this list, to which
-    the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
+    With `parameters`, topic names may contain parameters. A name refers to a parameter by its index in this list, to
+    which the analysis appends. `fixed` are the values of parameters; DEFAULT stands for the default in the code.
     """
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:

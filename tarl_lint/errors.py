@@ -23,5 +23,5 @@ class OutputError(LintError):
     """A requested output file cannot be written."""
 
 
-class AnalysisBug(LintError):  # noqa: N818 - it names whose mistake it is: ours
+class AnalysisBug(LintError):  # noqa: N818 - the name says that the mistake is in tarl-lint
     """The analysis itself crashed."""

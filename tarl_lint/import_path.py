@@ -2,7 +2,7 @@
 
 Python puts the working directory (`python -m`), the directory of a script and the entries of `PYTHONPATH` before its
 own library, and editable installations append source trees; a file `types.py` in any of them could be imported.
-Only `sys` and `os`, which Python has already loaded, are imported here (`from __future__` imports a file too).
+Only `sys` and `os`, which Python has already loaded, are imported here; even `from __future__` would import a file.
 """
 
 import os

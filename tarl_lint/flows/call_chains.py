@@ -1,4 +1,4 @@
-"""Calls between a condition and the values that a called function stores under it."""
+"""Calls that lead from a condition to the function that computes the chosen value."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Entrance = tuple[int, Frame, Frame, int]  # (condition, frame of the value, fram
 
 
 def made_alongside(graph: Graph) -> dict[int, list[int]]:
-    """Return node → the nodes whose values it takes without their conditions, in the order of their copies."""
+    """Return node → the nodes whose values, but not conditions, it uses, in the order of their copies."""
     found: dict[int, list[int]] = {}
     for node, formers in enumerate(graph.data):
         if not graph.stands_for.keys().isdisjoint(formers):
@@ -21,7 +21,7 @@ def made_alongside(graph: Graph) -> dict[int, list[int]]:
 
 
 def entrances(graph: Graph, nodes: set[int], alongside: Mapping[int, Sequence[int]]) -> Iterator[Entrance]:
-    """Yield the conditions among the nodes that choose a value; another function may compute this value.
+    """Yield every condition among the nodes that chooses a value; another function may compute this value.
 
     `calls` returns the calls between the frames of condition and value. `alongside` is the result of
     `made_alongside`.

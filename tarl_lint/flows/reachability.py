@@ -128,7 +128,7 @@ class Tracer:
         return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
-        """Return the constants that are chosen by conditions among the nodes, and the nodes that produce them."""
+        """Return the constants that conditions among the nodes choose, and the nodes that produce these constants."""
         graph = self.graph
         found: set[int] = set()
         for node in filter((graph.gates.keys() | self._alongside.keys()).__contains__, nodes):
@@ -335,7 +335,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last, also after functions that are called in the call's arguments."""
+    """Return a path with its publish call last, even if arguments of this call are calls of functions on the path."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

@@ -31,12 +31,12 @@ class Written:
 
     @property
     def defines(self) -> bool:
-        """Return whether it is a function or class; statements that enclose a definition do not enclose its calls."""
+        """Return whether this is a function or class; statements that enclose a definition do not enclose its calls."""
         return isinstance(self.node, (*FUNCTIONS, ast.ClassDef))
 
     @property
     def shown(self) -> bool:
-        """Return whether it is a loop or the `__main__` guard, which are shown as context of the steps inside."""
+        """Return whether this is a loop or the `__main__` guard, which are shown as context of the steps inside."""
         return isinstance(self.node, LOOPS) or (
             isinstance(self.node, ast.If) and _guards_main(self.node.test)
         )

@@ -17,7 +17,7 @@ from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
 MAX_EXACT_TURNS = 8  # the same limit in a run for one launched node
-SHORT = 3  # plain statements in a loop that is unrolled over up to MAX_KNOWN elements
+SHORT = 3  # a loop of at most this many plain statements is unrolled over up to MAX_KNOWN elements
 MAX_PASSES = 12  # passes over a loop's body; only a safety limit, since the value domain is finite
 
 
@@ -78,7 +78,7 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         if ctx.work.executed > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
-            break  # the passes of nested loops multiply
+            break  # nested loops multiply the passes, so stop before the state is stable
         head = again
     frame.heads[(s.id, *frame.turn)] = head
     return _loop_end(ctx, s, done, table["break"], frame)

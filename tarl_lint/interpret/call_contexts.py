@@ -50,10 +50,7 @@ def invoke(
     call: ir.Call,
     owner: Obj | None = None,
 ) -> Value:
-    """Call a function.
-
-    If the call passes no data into a module that neither subscribes nor publishes, its budget is limited.
-    """
+    """Call a function. Limit the budget if its module neither subscribes nor publishes and the call passes no data."""
     before, start = ctx.work.call_limit, ctx.work.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
@@ -126,7 +123,7 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
 
 
 def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
-    """Return, for a call that is not executed, its results known so far with the data of its arguments."""
+    """Return the results known so far of a call that is not executed, with the data of its arguments."""
     known = BOTTOM
     for frame in ctx.stack:
         if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:

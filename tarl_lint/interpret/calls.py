@@ -127,7 +127,7 @@ def _call_member(
 
 
 def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the library objects stored in an attribute, which are called like functions."""
+    """Return the library objects stored in an attribute; calling the attribute calls these objects."""
     stored = ctx.store.get((obj, name))
     pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
     return Value(stored.deps if stored is not None else NONE, pts)

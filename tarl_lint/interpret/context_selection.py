@@ -1,4 +1,4 @@
-"""Select the context of a call: one of its own, or a shared one if the function has too many."""
+"""Select the context of a call: one of its own, or a shared one if the function has too many contexts."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ def _inherits(info: ClassInfo) -> tuple[list[Obj], list[str]]:
 
 
 def frame_number(ctx: Interpreter, key: object) -> int:
-    """Return a number for a frame that is the same in every run."""
+    """Return a number for a frame; the number is the same in every run."""
     return ctx.frame_numbers.setdefault(key, -2 - len(ctx.frame_numbers))
 
 

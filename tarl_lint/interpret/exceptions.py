@@ -9,7 +9,7 @@ from tarl_lint.memory.values import BOTTOM, Nodes, join
 from tarl_lint.models.ros import publications
 
 
-def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
+def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG001 - shared signature
     """Pass an exception to the innermost handler in the function, or else out of the function."""
     attempt = next((t for t in reversed(frame.tries) if t.handled), None)
     if attempt is not None:

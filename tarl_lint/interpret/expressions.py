@@ -42,7 +42,7 @@ def evaluate(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value:
     return value
 
 
-def _constant(ctx: Interpreter, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG001 - one signature for all
+def _constant(ctx: Interpreter, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG001 - shared signature
     known: Value | None = expr.known
     if known is None:
         known = expr.known = const(expr.value)
@@ -274,7 +274,7 @@ def closure(ctx: Interpreter, function: ir.Function, frame: Frame, slot: object)
 
 def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame: Frame) -> Value:
     """Return a parameter's default value, attributed to the `def` statement."""
-    assert parameter.default is not None  # noqa: S101 - asked before
+    assert parameter.default is not None  # noqa: S101 - the callers check this
     value = evaluate(ctx, parameter.default, frame)
     node = ctx.node(frame, ("default", closure.key, parameter.name), "assign")
     literals.mark(ctx, node, parameter.default, value, frame)

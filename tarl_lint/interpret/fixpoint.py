@@ -163,7 +163,7 @@ class Linker(Interpreter):
     def _module_root(self, program: ir.Program) -> None:
         root = Root(("module", program.path), "module", program.name, once=True, program=program.path)
 
-        def run(root: Root) -> None:  # noqa: ARG001 - one signature for all
+        def run(root: Root) -> None:  # noqa: ARG001 - shared signature
             key = ("module", program.path)
             frame = self.frames.get(key)
             if frame is None:

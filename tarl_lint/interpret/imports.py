@@ -12,7 +12,7 @@ from tarl_lint.read.source import Module
 
 def imported(ctx: Interpreter, module: str, member: str | None, importer: object) -> Value:
     """Return the value that an import binds: an analysed module, a name of such a module, or a library name."""
-    assert isinstance(importer, Module)  # noqa: S101 - what execute passes
+    assert isinstance(importer, Module)  # noqa: S101 - the callers pass modules
     found = _module(ctx, module, importer)
     if member is None:
         return found if found is not None else expressions.external(ctx, module)
@@ -38,7 +38,7 @@ def _module(ctx: Interpreter, name: str, importer: Module) -> Value | None:
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the value of an unset field; for a package, its submodules."""
+    """Return the value of an unset field; a field of a package may be a submodule."""
     value = objects.default(ctx, obj, name)
     if value is BOTTOM and obj.kind == "module":
         inner = ctx.module_objects.get(f"{obj.name}.{name}")

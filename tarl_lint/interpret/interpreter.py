@@ -273,7 +273,7 @@ class Interpreter:
         return True
 
     def hopes(self) -> bool:
-        """Return whether a later root may still store unknown values."""
+        """Return whether a later root may still store values that are unknown now."""
         return self.patient
 
     def release(self) -> None:

@@ -37,7 +37,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def assign_fallback(self, ctx: Ctx, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Add data to the variable that holds an object which is unknown."""
+        """Add data to the variable that holds an unknown object."""
         ...
 
     def bind_target(
@@ -98,7 +98,7 @@ class Operations(Protocol[Ctx]):
         ...
 
     def default(self, ctx: Ctx, obj: Obj, name: str) -> Value:
-        """Return the value of an unset field; for a package, its submodules."""
+        """Return the value of an unset field; a field of a package may be a submodule."""
         ...
 
     def entries(self, ctx: Ctx, obj: Obj, value: Value) -> None:

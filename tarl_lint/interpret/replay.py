@@ -19,7 +19,7 @@ from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, Key, Value, join_all
 
-READS = 40  # as many compared facts cost as much as a statement
+READS = 40  # compared facts that cost as much as one statement
 
 Mode = tuple[object, ...]
 

@@ -30,7 +30,7 @@ class NullnessFacts:
     )  # call that returns such a copy → nodes that decide whether the copy is set
 
     def of_key(self, key: Key | None) -> tuple[bool, bool, int]:
-        """Return the facts about a variable or field; without a key, whether the None of any may come from data."""
+        """Return the facts about a variable or field; without a key, whether any value may be None because of data."""
         if key is None:
             return False, bool(self.optional), 0
         return key in self.vacant, key in self.optional, len(self.came.get(key, ()))

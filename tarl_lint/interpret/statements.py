@@ -157,7 +157,7 @@ def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Val
 
 
 def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:
-    """Add data to the variable that holds an object which is unknown."""
+    """Add data to the variable that holds an unknown object."""
     if ctx.nothing_yet(expressions.evaluate(ctx, expr, frame)):
         return
     while isinstance(expr, (ir.Item, ir.Attribute)):
@@ -240,7 +240,7 @@ def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
 
 
 def _answer(s: ir.Return) -> ir.Call:
-    """Return a call that stands for ROS sending a handler's result."""
+    """Return a call that represents how ROS sends the result of a handler."""
     return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
 
 

@@ -23,7 +23,7 @@ def add_root(ctx: Interpreter, root: Root, run: Callable[[Root], None], *, news:
     ctx.roots[root.key] = (root, run)
 
 
-def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
+def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - shared signature
     """Exchange stored values with other roots, at a wait."""
     store, heeds = ctx.store, ctx.store.root.heeds
     reads = store.reads

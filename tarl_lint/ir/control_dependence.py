@@ -61,7 +61,7 @@ class _Exits:
     handlers: tuple[tuple[frozenset[str], int], ...] = ()
 
     def of(self, name: str) -> int:
-        """Return the target of an exception: the handler that names it, else one that handles all, else the first."""
+        """Return the handler of an exception: one that names it, else one for all exceptions, else the first."""
         if not self.handlers:
             return self.on_raise
         named = [entry for names, entry in self.handlers if name and name in names]

@@ -71,7 +71,7 @@ class Expressions:
         """Lower several."""
         return [self.expr(n, scope) for n in nodes]
 
-    def _constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - one signature for all
+    def _constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - shared signature
         return ir.Const(node.value, position(node))
 
     def _name(self, node: ast.Name, scope: Scope) -> ir.Name:

@@ -32,7 +32,7 @@ def lower_body(function: ir.Function, package: str) -> Sequence[ir.Stmt]:
     """Return a function's body, lowered on first use."""
     if function.body is None:
         scope = function.scope
-        assert isinstance(scope, Scope)  # noqa: S101 - what lower_expr puts there
+        assert isinstance(scope, Scope)  # noqa: S101 - lower_expr stores it
         lowering = Lowering(function.module)
         lowering.package = package
         node = function.node
@@ -253,7 +253,7 @@ if hasattr(ast, "TryStar"):
 
 
 def _annotated(node: ast.ClassDef) -> Iterator[str]:
-    """Yield the names that a class body annotates, without names that stay in the class."""
+    """Yield the names that a class body annotates, except class variables."""
     for part in node.body:
         if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
             kind = ast.unparse(part.annotation)

@@ -27,7 +27,7 @@ class Scope:
     counter: int = 0  # slots and statement numbers handed out
     # comprehension targets, while the comprehension is lowered
     renamed: dict[str, str] = field(default_factory=dict)
-    around: dict[str, str] = field(default_factory=dict)  # the parent's names at this definition
+    around: dict[str, str] = field(default_factory=dict)  # `renamed` of the parent at this definition
     plain: bool = False  # whether no expression in the file binds a name or yields
     prints: bool = False  # for a module: whether `print` is Python's built-in function
 

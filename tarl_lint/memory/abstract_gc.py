@@ -72,7 +72,7 @@ def _reached(
 
 
 def together(objects: Iterable[Obj]) -> Set[Obj]:
-    """Return the outermost objects that contain the given ones, with the objects in their definition."""
+    """Return the outermost objects that contain the given ones, and the objects to which their definitions refer."""
     found: set[Obj] = set()
     pending = [*objects]
     while pending:

@@ -73,7 +73,7 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
         if obj.kind == "class":
             return bind_class(ctx, stored, obj)
         if obj.whole.kind == "message" and not written_here(ctx, obj, name):
-            return join(stored, pointer(obj.sub(name)))  # every message has its own value of these
+            return join(stored, pointer(obj.sub(name)))  # every message has its own value of this field
         return stored
     return ctx.ops.default(ctx, obj, name)
 

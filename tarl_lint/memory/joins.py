@@ -17,7 +17,7 @@ from tarl_lint.memory.values import (
     join,
 )
 
-JOINS = 40  # as many joined values cost as much as a statement
+JOINS = 40  # joined values that cost as much as one statement
 
 
 def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:

@@ -1,4 +1,4 @@
-"""The stores of all roots: what each root leaves for the others, and which roots have read it."""
+"""The stores of all roots: the values that each root leaves for the others, and the roots that have read them."""
 
 from __future__ import annotations
 

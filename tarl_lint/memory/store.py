@@ -34,7 +34,7 @@ class Inside:
     grown: int  # value of `Graph.grown` at that time
 
 
-def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways to gather
+def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - the signature of `gather`
     """Return the value unchanged."""
     return value
 
@@ -106,7 +106,7 @@ class Store:
         return value
 
     def former(self, key: Key) -> Value | None:
-        """Return the current value of a key that another path stores to, to join it with the value from that path.
+        """Return the current value of a key to which another path stores, for the join with the value of that path.
 
         If this run makes the object only on other paths, every run makes its own. Own stores to its keys then do not
         make the root run again, as long as only joins read them.

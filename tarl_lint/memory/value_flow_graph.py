@@ -22,7 +22,7 @@ MANY = 16  # separate nodes in a field with weak updates; more are merged
 MANY_CARRIERS = 64  # the same limit for pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
-CARRIED = 5  # as many carriers, or items passed on by them, cost as much as a graph operation
+CARRIED = 5  # carriers, or items passed on by carriers, that cost as much as one graph operation
 MAX_CARRIED = 500  # content × carriers; beyond that, content arrives without carriers
 
 

@@ -15,17 +15,19 @@ Consts = frozenset[object] | None  # None: unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
-# constants of a value that is certainly an object: it is no constant, not even None
+# constants of a value that is certainly an object: no constant is possible, not even None
 NO_CONSTANTS: frozenset[object] = frozenset()
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # numbers of objects, in order of creation
 NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
-MAX_TEXTS = 24  # string constants of a value; the limit is high for the sake of tables of topic names
+MAX_TEXTS = 24  # string constants of a value; enough for a table of topic names
 MAX_DEPTH = 6  # nesting depth of embedded objects
-MAX_ELEMENTS = 2  # nesting of separate elements; more would give exponentially many objects
-MAX_CELLS = 16  # separate nested elements of a library object, such as a matrix
+MAX_ELEMENTS = (
+    2  # depth to which nested elements are tracked separately; more would create exponentially many objects
+)
+MAX_CELLS = 16  # nested elements tracked separately in a library object, such as a matrix
 DATA: Final = "<data>"  # in `Obj.changes`: the object received its first data
 MESSAGES = frozenset(["message", "goal"])  # kinds of objects that are data themselves
 

@@ -24,7 +24,7 @@ MAX_INSIDE: Final = (
     # depth to which nested mappings and sequences, such as the constraints of a solver, are searched for callables
     3
 )
-KEPT_APART: Final = 500  # callables of one call; calls made by libraries have a range of slots of their own
+KEPT_APART: Final = 500  # slots for the callables of one call, apart from the slots of calls in the code
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:

@@ -45,7 +45,7 @@ APPENDED = "<appended>"  # field of a list: its length before the first subscrib
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
-)  # functions that keep the separate elements of their argument
+)  # functions whose result tracks elements separately if the argument does
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
@@ -99,7 +99,7 @@ def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> No
 
 
 def _next_place(ctx: Interpreter, base: Value, values: list[Value], frame: Frame) -> int | None:
-    """Return the index in a list of what each iteration of an unrolled loop appends; None if it is not known."""
+    """Return the list index of the element that this iteration of an unrolled loop appends; None if it is not known."""
     if len(values) != 1 or frame.statement not in frame.steps:
         return None
     known = sizes.unpacked(ctx, base)
@@ -247,7 +247,7 @@ def _read_keys(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _in_turn(ctx: Interpreter, elements: Sequence[Value], it: Invocation) -> Value:
-    """Return a new sequence with separate elements."""
+    """Return a new sequence whose elements are tracked separately."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     for number, value in enumerate(elements):
         ctx.store.put((obj, item_field(number)), value)
@@ -319,7 +319,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Return whether reads of a library object return other data than writes to it stored."""
+    """Return whether reading from a library object returns other data than what was written to it."""
     return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
 
 

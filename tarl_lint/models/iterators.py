@@ -73,7 +73,7 @@ def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
 
 
 def rows_of(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-    """Return a sequence of tuples with separate elements."""
+    """Return a sequence of tuples that are tracked separately."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, row in enumerate(rows):
         pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))
@@ -131,7 +131,7 @@ def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object is there is not its data."""
+    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; whether an object exists is not data."""
     if not it.arguments[0]:
         return UNKNOWN
     value = it.arguments[0][0]

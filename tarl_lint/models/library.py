@@ -143,7 +143,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         or (ctx.config.named and name[:1].isupper())
     ):
         for obj in made.objects:
-            # its class, for settings on its methods, arrays to be filled, and objects that return what was written
+            # the class name is needed for settings on methods, for arrays that are filled, and for ports and files
             obj.name = qualified
     return made
 

@@ -27,12 +27,12 @@ def weak_reference(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
-def same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+def same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
     """Return the first argument unchanged."""
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
 
-def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
     """Return the class of analysed objects; a type is not data."""
     classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
     found = frozenset(c for c in classes if isinstance(c, Obj))
@@ -58,7 +58,7 @@ def is_instance(ctx: Interpreter, it: Invocation) -> Value:
     return const(found.pop()) if len(found) == 1 else UNKNOWN
 
 
-def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
     """Return the result of a query about a type; a type is not data."""
     return UNKNOWN
 
@@ -93,7 +93,9 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
                 return heap.bind(ctx, value, this, base)
         return BOTTOM
     if obj.name in containers.PROCESSES and name in containers.STREAMS:
-        return pointer(obj)  # data that enters a process through one stream may leave it through another
+        return pointer(
+            obj
+        )  # all streams stand for the process itself: what is written to one may be read from another
     if obj.kind == "ext" and name == "argv" and obj.name == "sys" and ctx.command_line:
         return command_line.arguments(ctx)
     if obj.kind == "lib" and name == MACHINE_FIELD:

@@ -18,7 +18,7 @@ OURS = frozenset(["instance", "class", "closure", "module"])
 
 
 def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an attribute whose name is known, or at least how the name begins."""
+    """Return an attribute of which at least the beginning of the name is known."""
     plain = it.arguments[0]
     names = plain[1].texts() if len(plain) > 1 else ()
     if not names and len(it.call.arguments) > 1:

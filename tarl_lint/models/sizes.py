@@ -20,7 +20,7 @@ from tarl_lint.memory.values import (
     pointer,
 )
 
-MAX_KNOWN = 16  # separate elements of a computed sequence
+MAX_KNOWN = 16  # elements tracked separately in a computed sequence
 COMBINING = frozenset(["+", "*", "|", "-", "&"])
 
 
@@ -51,7 +51,7 @@ def repeated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: F
 
 
 def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
-    """Return `a + b`, with separate elements if those of both are known."""
+    """Return `a + b`; its elements are tracked separately if those of both are known."""
     known = [unpacked(ctx, v) for v in values]
     element = join_all(heap.elements(ctx, v) for v in values)
     longer = length(ctx, values[0]) | length(ctx, values[1])
@@ -69,7 +69,7 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
 def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
     """Return the container after `a += b` or `a |= b`.
 
-    One node of the statement passes on all elements, and one the length; all containers share them.
+    One node of the statement passes on all elements, and another one the length; all containers share these two nodes.
     """
     first, second = values
     tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")

@@ -128,7 +128,7 @@ def as_number(ctx: Interpreter, it: Invocation) -> Value:
         return UNKNOWN
 
 
-def same_text(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+def same_text(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared signature
     """Return a name passed to a resolving function unchanged."""
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 

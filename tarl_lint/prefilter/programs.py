@@ -1,8 +1,8 @@
 """Split a group of modules into programs, which run in separate processes.
 
 A program is a file that is run, with its imports. Since programs run in separate processes, no value reaches one from
-another through a module that both import. They are analysed separately, also after an edit. Only if a flow may begin
-or end in a common module are they analysed together, so that the flow is reported once, with the statements of all
+another through a module that both import. They are analysed separately, also after an edit. They are analysed together
+only if a flow may begin or end in a common module, so that the flow is reported once, with the statements of all
 programs.
 """
 

@@ -15,12 +15,19 @@ from collections.abc import Iterator
 from typing import Final
 
 PACKAGE: Final = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml")
-PLACES: Final = ("", "resource", "urdf", "description", "plugins", "config")  # in a package
+PLACES: Final = (
+    "",
+    "resource",
+    "urdf",
+    "description",
+    "plugins",
+    "config",
+)  # folders of a package that may hold descriptions
 SETTINGS: Final = ("setup.py", "setup.cfg", "pyproject.toml")
 NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
-)  # files that refer to plugin descriptions, whose own names vary
+)  # files that name the plugin descriptions, which may have any name
 LARGEST: Final = 500_000  # limit on a description, bytes
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")

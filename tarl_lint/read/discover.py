@@ -37,7 +37,7 @@ _ENOUGH = 200_000  # bytes to read of a file that is only counted
 class SourceFile(NamedTuple):
     """A file to analyse: its place, its displayed path, its dotted name, whether it is `__init__.py`.
 
-    `started` are the entry points in the file that its package declares.
+    `started` are the entry points in the file that the file's package declares.
     """
 
     path: Path

@@ -9,7 +9,7 @@ from typing import Final, Generic, Protocol, TypeVar
 
 LIBRARIES: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
-)  # the catalog describes these
+)  # the catalog describes these packages
 
 KNOWN: Final = (
     sys.stdlib_module_names | LIBRARIES | {"smach", "typing_extensions"}

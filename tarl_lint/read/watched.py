@@ -1,8 +1,8 @@
 """Modules that record what an analysis reads of them: bodies of functions, and answers about the text.
 
-A run that has read neither a function's body nor the whole text does not depend on that body. Reads are recorded
-where they happen, so that code which reads in a new way is also recorded. Looking up statements for a report is not
-recorded, since a report only shows what the analysis has read.
+A run that has read neither a function's body nor the whole text does not depend on that body. Reads are recorded where
+they happen, so the reads of new code are recorded, too. Looking up statements for a report is not recorded, since a
+report only shows what the analysis has read.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Body(list[ast.stmt]):
 
 @dataclass(frozen=True)
 class Reading:
-    """What an analysis did not read of one file, and its questions about the text with their answers.
+    """The parts of one file that an analysis did not read, and its questions about the text, with the answers.
 
     `unread` are the functions whose bodies were not read. `whole` says that the whole text was read.
     """

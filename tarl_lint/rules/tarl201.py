@@ -5,7 +5,7 @@ this happens only with a MultiThreadedExecutor and callback groups that allow it
 If one thread accesses an attribute or global under a lock and another thread changes or reads it without the lock, the
 other thread may see a partial change, or a change may be lost.
 
-Only state that some code guards with a lock is reported, and only if the access can go wrong:
+An access is reported only if other code guards the same state with a lock, and only if the access can go wrong:
 
 - one thread changes a container while another reads it,
 - a value is incremented or changed in place,
@@ -23,7 +23,8 @@ does not report
 - code that runs before the threads start,
 - callbacks of which only one is registered, in opposite branches of an `if`.
 
-If a function is called with the lock in one place and without it in another, the message names the call without it.
+If a function is called with the lock in one place and without it in another, the message names the call without the
+lock.
 """
 
 from __future__ import annotations
@@ -187,8 +188,8 @@ def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
 
 
 def _message(use: Use, other: Use) -> str:
-    lock, does = min(other.guards), "writes" if other.writes else "reads"
-    there = f"{other.spots[0].function} holds in another thread when it {does} it"
+    lock, doing = min(other.guards), "writing" if other.writes else "reading"
+    there = f"{other.spots[0].function} holds in another thread when {doing} {use.name}"
     return f"{use.name} is {_done(use)} without {lock}, which {there}"
 
 

@@ -165,7 +165,7 @@ ASKED_FOR: Final = re.compile(
 )  # topics of decisions, not of measurements
 
 
-def ruled_out(side: Side) -> bool:  # noqa: ARG001 - one signature for all
+def ruled_out(side: Side) -> bool:  # noqa: ARG001 - shared signature
     """Return True: a command that follows a sensor is a flow, and the group has none."""
     return True
 

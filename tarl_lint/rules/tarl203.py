@@ -115,7 +115,7 @@ def _handed_on(tree: ast.Module) -> Iterator[str]:
 
 
 def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-    """Yield the functions with parameters among statements, at any depth."""
+    """Yield the functions that have parameters, among statements at any depth."""
     for statement in body:
         if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef)) and statement.args.args:
             yield statement

@@ -6,8 +6,8 @@ reason, a Pioneer robot collided with expensive equipment (https://github.com/am
 time of the last message, and stop the robot when the message is too old.
 
 The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored. It also
-reports nothing if the program contains words such as `timeout`, `last_` and `counter`, because they suggest that it
-detects old messages in another way.
+reports nothing if the program contains words such as `timeout`, `last_` and `counter`, because such words suggest that
+the program detects old messages in another way.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """TARL308: a remapping matches no name that the node uses.
 
-The remapping has no effect, so the two ends that it was meant to connect stay separate. In the Kobuki, the
-multiplexer published on `cmd_vel_mux/output` and the launch file renamed `cmd_vel_mux/mux_cmd_vel`: the robot ignored
-all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
+The remapping has no effect, so the two ends that it was meant to connect stay separate. In the Kobuki, the multiplexer
+published on `cmd_vel_mux/output` and the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
+robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
 
 A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant
 topic names, and contains no string that ends in the remapped name. A remapping of a group is reported only if it

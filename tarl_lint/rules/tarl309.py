@@ -4,7 +4,7 @@ The callback raises AttributeError at its first message. rospy logs the error an
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
 The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. It
-examines only variables that always hold a message, which a callback receives or the function creates.
+examines only variables that always hold a message: one that a callback receives, or one that the function creates.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each use of an absent field; a program is reported once, even if several nodes run it."""
+    """Yield a hazard for each use of an absent field, only once if several nodes run the same program."""
     from difflib import get_close_matches  # slow to import; reports import every rule
 
     for interface in {

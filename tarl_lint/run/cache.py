@@ -23,7 +23,7 @@ from tarl_lint.read.watched import Reading
 from tarl_lint.settings.config import Config
 
 try:
-    from _blake2 import blake2b  # hashlib would import OpenSSL, which is slower than linting a small file
+    from _blake2 import blake2b  # hashlib imports OpenSSL, which takes longer than linting a small file
 except ImportError:
     from hashlib import blake2b
 
@@ -89,11 +89,11 @@ class Cache:
             parts = packed(report.findings), packed(report.errors), packed(report.cut), list(report.ended)
             self.put_entry(key, list(parts))
 
-    def adapted(self, scripts: Sequence[Script]) -> Report | None:  # noqa: ARG002 - for others
+    def adapted(self, scripts: Sequence[Script]) -> Report | None:  # noqa: ARG002 - used by the cache of the editor
         """Return a report for earlier texts of the files that still holds; None if there is none."""
         return None
 
-    def edited(self, digests: Mapping[str, str]) -> frozenset[str]:  # noqa: ARG002 - for others
+    def edited(self, digests: Mapping[str, str]) -> frozenset[str]:  # noqa: ARG002 - used by the cache of the editor
         """Return the files whose digests differ from the last run; empty if there was no last run."""
         return frozenset()
 

@@ -1,9 +1,9 @@
 """Worker processes. They cannot import linted files, and Ctrl-C ends them silently.
 
-Workers are forked if possible: a copy of this process has its modules and `sys.path`, so it need not import anything.
-A spawned worker has the working directory on its import path before any code of tarl-lint runs. On Windows, which
-cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the calling
-program has more, no workers are used.
+Workers are forked if possible: a fork already has the modules and the `sys.path` of this process, so it need not import
+anything. A spawned worker has the working directory on its import path before any code of tarl-lint runs. On Windows,
+which cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the
+calling program has more, no workers are used.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
 
 @dataclass(frozen=True)
 class Wrapper:
-    """A function that does the same as the ROS function `like`. The other fields are the places of its arguments.
+    """A function that does the same as the ROS function `like`. The other fields say where its arguments are.
 
     A number is a position, a string a keyword; None means the same place as in `like`.
     """

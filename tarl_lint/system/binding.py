@@ -89,7 +89,7 @@ def _plain(value: object) -> bool:
 
 
 def undetermined(interface: Interface) -> bool:
-    """Return whether an end has no known name, or several, so that the values of all parameters may help."""
+    """Return whether an end has no known name, or several; the values of all parameters may then determine its name."""
     ends = [one.names for one in interface.endpoints]
     for one in interface.flows:
         if one.flow is not None:

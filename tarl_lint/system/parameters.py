@@ -50,9 +50,9 @@ def reads_named_parameters(modules: Sequence[Module]) -> bool:
 def deciding(modules: Sequence[Module]) -> tuple[str, ...]:
     """Return the parameters that are used in conditions, directly or through variables, sorted by name in the code.
 
-    Variables are followed by name, through plain copies and as arguments of the program's functions. Parameters that
-    a loop iterates over or that index a table also count, since a launch may give them lists of names. ARGUMENTS
-    stands for the command line, which may also provide names.
+    Variables are followed by name, through plain copies and as arguments of the program's functions. A parameter also
+    counts if a loop iterates over it or if it is the key of a table look-up, because a launch file may set it to a list
+    of names. ARGUMENTS stands for the command line, which may also provide names.
     """
     found = {ARGUMENTS for module in modules if COMMAND_LINE.search(module.text)}
     nodes = [node for module in modules for node in ast.walk(module.tree)]

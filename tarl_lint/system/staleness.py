@@ -32,8 +32,8 @@ _SLEEPS: Final = re.compile(
 def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
     """Return the flows into commands that a timer or loop publishes again and again from the last message.
 
-    The message arrives in one function and is published in another one, which clears nothing that the callback
-    stored. No word in the program suggests that it checks the age of the message.
+    One function receives the message; another one publishes it and clears nothing that the first one stored. No word in
+    the program suggests that it checks the age of the message.
     """
     texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
     if any(_TIMES.search(text) for text in texts.values()):

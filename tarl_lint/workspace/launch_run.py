@@ -53,7 +53,7 @@ class Quoted:
     kind: str = ""
 
 
-Opener = Callable[[Path, Context, list[Problem]], Any]  # actions of a launch file
+Opener = Callable[[Path, Context, list[Problem]], Any]  # returns the actions of a launch file
 
 
 @dataclass
@@ -83,7 +83,7 @@ class Runner:
                 self._problem(context, action.line, f"`{action.text}` is not followed")
 
     def _holds(self, action: Action, context: Context) -> tuple[bool, str]:
-        """Return whether an action is kept; if its condition is known only on the robot, also that condition."""
+        """Return whether an action is kept. If its condition is known only on the robot, also return the condition."""
         condition = action.values.get("condition")
         if condition is None:
             return True, ""

@@ -187,7 +187,7 @@ class Here(Substitution):
 
     whole: bool = False
 
-    def text(self, context: Context, depth: int) -> str:  # noqa: ARG002 - one signature for all
+    def text(self, context: Context, depth: int) -> str:  # noqa: ARG002 - shared signature
         """Return the path of the launch file, or of its folder."""
         return str(context.file if self.whole else context.file.parent)
 

@@ -93,7 +93,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     if not isinstance(server, Server):
         return UNKNOWN
     if it.name in server.sends.methods:
-        given = bool(it.arguments[0] or it.arguments[1])  # there is no result to send
+        given = bool(it.arguments[0] or it.arguments[1])  # without arguments, there is no result to send
         return publications.send(ctx, it, server.sends) if given else UNKNOWN
     if it.name in catalog.GOAL_READERS:
         if server.handle:
@@ -124,7 +124,7 @@ def arrived(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
 
 
 def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the result of a transform look-up, a source with the setting `tf2`."""
+    """Return the result of a transform look-up, which is a source if the setting `tf2` is on."""
     if not ctx.config.tf2:
         return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)

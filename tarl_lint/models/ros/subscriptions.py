@@ -56,7 +56,7 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
 
 def call_position(frame: Frame) -> ir.Pos:
     """Return the position of the call that entered a frame."""
-    assert frame.call is not None  # noqa: S101 - asked before
+    assert frame.call is not None  # noqa: S101 - the callers check this
     return frame.call_pos or frame.call.pos
 
 
@@ -133,7 +133,7 @@ def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
 
 
 def described(ctx: Interpreter, target: Obj) -> Frame | None:
-    """Return a frame that represents a callback's function, independent of callers."""
+    """Return a frame that represents a callback's function, independent of its callers."""
     while target.kind in ("bound", "partial", "instance"):
         if target.kind == "bound" and isinstance(target.info, tuple):
             target = target.info[0]

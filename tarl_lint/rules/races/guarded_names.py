@@ -1,4 +1,4 @@
-"""Find names of state that is used both with and without a lock, by syntax alone. Only these can be a hazard."""
+"""Find names of state that is used both with and without a lock, by syntax alone. Only such state can be a hazard."""
 
 from __future__ import annotations
 

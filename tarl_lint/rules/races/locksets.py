@@ -19,7 +19,7 @@ from tarl_lint.trees import last_name
 
 MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")
 RUNS_COROUTINES: Final = frozenset(["run", "run_until_complete"])
-State = tuple[object, str]  # an object with one of its attributes, or a module with one of its globals
+State = tuple[object, str]  # (object, name of its attribute), or (module, name of its global)
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Locking:
                 if state is None:
                     continue
                 if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
-                    continue  # whether the call may run before the threads start
+                    continue  # the main program may make this access before the threads start
                 use = self._use(access, frame, thread, callers)
                 found.setdefault(state, {})[use] = None
         return {state: list(uses) for state, uses in found.items()}
@@ -198,7 +198,7 @@ class Harm:
                     self._read.setdefault(_by(use), set()).add(state)
 
     def between(self, state: State, use: Use, guarded: Use) -> bool:
-        """Return whether `use`, which holds no lock, can go wrong while another thread does `guarded`."""
+        """Return whether `use`, which holds no lock, can go wrong while another thread performs `guarded`."""
         if use.how == "length":
             return False
         if use.writes:

@@ -1,6 +1,6 @@
 """Find the thread of a function.
 
-Each rospy callback has its own; rclpy callbacks share one unless executor and groups allow more.
+Each rospy callback has a thread of its own; rclpy callbacks share one thread unless executor and groups allow more.
 """
 
 from __future__ import annotations
