@@ -152,6 +152,8 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
             ctx.graph.copies.add(node)  # an element of `*values` is passed on unchanged
         elif expr is not None:
             literals.mark(ctx, node, expr, value, caller)
+        elif value.pts:
+            ctx.graph.copies.add(node)  # a receiver is passed on unchanged
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}

@@ -321,3 +321,48 @@ def test_a_set_point_and_a_waiting_time_that_no_message_reaches_are_operands(tmp
     assert found["return 1.5"] == [("1.5", 1.5)]
     assert "unused = 7.0" not in found
     assert "v = msg.data + 1.0" not in found
+
+
+TABLES = """
+    import rospy
+    DEFAULTS = {"fast": 0.9, "slow": 0.125}
+    class Feeder:
+        def __init__(self, params):
+            self.p = params
+            self.out = rospy.Publisher("b", F, queue_size=1)
+            rospy.Subscriber("a", F, self.on)
+            self.last = 0.0
+        def on(self, msg):
+            self.last = msg.data
+        def drive(self):
+            p = self.p
+            v = self.last * p["slow"]
+            return v
+        def step(self):
+            self.out.publish(self.drive())
+    def main():
+        rospy.init_node("feeder")
+        params = {made}
+        feeder = Feeder(params)
+        while not rospy.is_shutdown():
+            feeder.step()
+    main()
+"""
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "DEFAULTS",
+        "dict(DEFAULTS)",
+        "DEFAULTS.copy()",
+        "{**DEFAULTS}",
+        "dict(DEFAULTS, fast=0.8)",
+        "{**DEFAULTS, **rospy.get_param('~', {})}",
+        "dict(DEFAULTS, **rospy.get_param('~', {}))",
+    ],
+)
+def test_a_table_of_constants_is_found_through_methods_that_call_each_other(tmp_path, made):
+    analysis = analysed(tmp_path, node=TABLES.replace("{made}", made))
+    found = analysis.operands(site(analysis, "v = self.last * p['slow']"))
+    assert [(operand.code, operand.value) for operand in found] == [('p["slow"]', 0.125)]
