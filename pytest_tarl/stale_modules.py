@@ -52,7 +52,7 @@ def of_tests(file: Path) -> bool:
 
 
 class _Imports:
-    """The dotted names imported anywhere in a module. They reveal imported constants, which refer to no module.
+    """The dotted names imported anywhere in a module, since an imported constant has no reference to its module.
 
     Imports inside functions count, because a function called at module level may return such a constant.
     """
