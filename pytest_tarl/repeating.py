@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What to instrument in the nodes: the positions of sites (statements to record) by file, and the sites that publish."""
+    """The sites (statements to record) of the nodes: their positions by file, and the numbers of those that publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()

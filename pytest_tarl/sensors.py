@@ -174,7 +174,7 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of a numeric sensor's narrowest bin; for a single edge, one unit of its last decimal place."""
+        """Return the width of the narrowest bin; for a single edge, one unit of its last decimal place."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 

@@ -43,8 +43,8 @@ class Link:
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
-        self._answers: list[dict[str, Any]] = []  # answers of services that were not passed on yet
-        self._handled = 0  # number of messages
+        self._answers: list[dict[str, Any]] = []  # service answers that were not passed on yet
+        self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
         """Wait up to `seconds` for an event and handle it. Before an answer, also handle the messages sent before it.

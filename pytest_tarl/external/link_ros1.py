@@ -44,7 +44,7 @@ class LinkROS1:
         self._known: dict[str, Any] = {}
         self._events: deque[dict[str, Any]] = deque()
         self._arrival = threading.Event()
-        self._sent = False  # whether a command was sent after the last call
+        self._sent = False  # whether a command was sent since the last service call
 
     def spin(self, seconds: float) -> None:
         """Pass on messages that have arrived or arrive within `seconds`."""

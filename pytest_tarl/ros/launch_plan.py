@@ -59,7 +59,7 @@ class Launched:
         )  # fmt: skip
 
     def resolve(self, name: str) -> str:
-        """Return the launched name of a topic, service or parameter in the node's code."""
+        """Return the full name of a topic, service or parameter after the launch file's namespace and remappings."""
         return remapped(name, self.node.namespace, self.name.rpartition("/")[2], self.node.remaps)
 
 

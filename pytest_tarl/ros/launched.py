@@ -44,9 +44,10 @@ WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return a script's parameters from the named launch file; without a name, from the only launch file with any.
+    """Return a script's parameters from the file `launch`; without it, from all launch files that start the script.
 
-    If several files start the script with different parameters, use only the files in the script's package.
+    If these files give different parameters, use only the files in the script's package; if those differ as well,
+    return the parameters on which they agree, and a note.
 
     Raise SettingsError if the named file does not exist or does not start the script.
     """

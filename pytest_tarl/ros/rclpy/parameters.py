@@ -190,7 +190,7 @@ class NodeParameters:
         return parameter.get_parameter_value()
 
     def set_parameters(self, parameter_list: list[Parameter]) -> list[Any]:
-        """Set parameters one by one; each result tells whether it was accepted."""
+        """Set parameters one by one; each result says whether the parameter was accepted."""
         self._require_declared(parameter_list)
         return [self._set([parameter]) for parameter in parameter_list]
 
