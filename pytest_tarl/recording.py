@@ -138,7 +138,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; return a note if the result differs, with its spread if there is a simulator."""
+    """Run the first episode again; return a note if the result differs. With a simulator, it states both rewards."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []

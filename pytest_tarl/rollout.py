@@ -17,7 +17,7 @@ KEPT = 6  # started episodes per worker to keep while others are requested
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One planned run of a test. `overlay` maps files to replacement texts; `record` says to instrument the nodes.
+    """One planned run of a test. `overlay` maps files to replacement texts; if `record`, nodes are instrumented.
 
     With a `bag`, its recorded mission replaces the test's world. If `drift` is a space, `point` is a point
     of it; without `point`, the seed determines a random one.

@@ -32,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held a worker's interpreter lock, so the worker was ended. No retry: it would hang again."""
+    """A node held a worker's interpreter lock, so the worker was ended. A retry of the episode would hang again."""
 
 
 @dataclass(frozen=True)

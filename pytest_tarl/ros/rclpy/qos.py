@@ -175,5 +175,5 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Any:
-        """Return the profile of a name, in any case. Raise KeyError."""
+        """Return the profile of a name in upper or lower case. Raise KeyError."""
         return cls[name.upper()].value

@@ -192,7 +192,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """The least jump of the clock that is reported."""
+    """The smallest clock jump that is reported."""
 
     def __init__(
         self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
