@@ -206,7 +206,7 @@ class Edit:
 class Attempt:
     """A promising candidate and its outcome; `reason` is empty for the accepted one.
 
-    `mean` is its mean reward in `episodes` episodes. `fresh` says that these episodes were not used to choose it.
+    `mean` is its mean reward in `episodes` episodes. `fresh` is true if they were not used to choose it.
     """
 
     what: str
@@ -218,7 +218,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but was not accepted; `gain` is its reward per episode over the unchanged code, fresh seeds.
+    """A change that helps but was not accepted. `gain` is the reward per episode that it gains, on fresh seeds.
 
     `low` and `designed_low` are lower bounds; `patch` is a path below the root.
     """

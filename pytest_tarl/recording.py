@@ -301,7 +301,7 @@ def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording, or None; and the reason if it exists but cannot be read."""
+    """Return the previous recording (None without one) and, if it exists but cannot be read, the reason."""
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:

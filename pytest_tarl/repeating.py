@@ -386,7 +386,7 @@ def _timed_out(error: BaseException | None) -> bool:
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed under an xfail mark; it counts as failed."""
+    """Return whether a mission failed under an xfail mark; such a mission counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 

@@ -141,7 +141,7 @@ class TarlSession:
         """Return whether `--tarl-drift` selects an item.
 
         When recording, it selects every item whose marker declares the drift. When comparing, it selects the items of
-        that scenario, and items that declare it but lack the fixture `tarl_drift`, to report that.
+        that scenario, and items that declare it but lack the fixture `tarl_drift`; their reports say so.
         """
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":

@@ -74,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may contain an import. Inline caches in bytecode may look like one."""
+        """The module's code objects that may contain an import: inline caches in the bytecode can look like one."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 

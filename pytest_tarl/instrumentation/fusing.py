@@ -73,7 +73,7 @@ class _Gathering:
         statements[:] = [*result, *self._closed(run)]  # type: ignore[list-item]  # a Run is replaced at once
 
     def _grows(self, run: _Open, statement: ast.stmt, bound: set[str]) -> bool:
-        """Add the statement to the run if it belongs to it; return whether it does."""
+        """Extend the open run by the statement if it fits; return whether it does."""
         reads = _arithmetic(statement)
         if reads is None or not reads <= (bound | run.made) - self._unsure:
             return False

@@ -54,7 +54,7 @@ def brief(stated: Guarantee) -> Iterator[str]:
 
 
 def worlds(comparison: Comparison) -> Iterator[tuple[str, Guarantee]]:
-    """Yield the name of each world that has bounds, as reports show it, with these bounds."""
+    """Yield the displayed name and the bounds of each world that has bounds."""
     for world, name in WORLDS.items():
         if world in comparison.stated:
             yield name, comparison.stated[world]
