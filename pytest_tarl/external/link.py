@@ -12,7 +12,9 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-IDLE = 3  # attempts without a message after which no message is left; an attempt may handle another event
+IDLE = (
+    3  # no message is left after this many attempts without one; an attempt may handle another event instead
+)
 
 Say = Callable[[dict[str, Any]], None]
 

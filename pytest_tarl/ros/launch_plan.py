@@ -236,7 +236,7 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
     problems += [f"{one.file.parent.name}/{one.file.name}: {one.reason}" for one in hidden(launch, workspace)]
     if problems:
         more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
-        yield f"not known of {launch.file.name}: {'; '.join(problems[:SHOWN])}{more}."
+        yield f"parts of {launch.file.name} could not be evaluated: {'; '.join(problems[:SHOWN])}{more}."
 
 
 on_forget(_plan.cache_clear)

@@ -26,9 +26,9 @@ from tarl_lint.workspace.ros_names import joined
 class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
-    `node` is the absolute name of a node that is started under the name of the launch file, else empty. `valueless`
-    holds names of parameters without a usable value: it is known only at launch, or it is null in YAML, which ROS 1
-    cannot store.
+    `node` is the absolute name of a node that `tarl.launch` starts, empty for one that `tarl.start` starts. `valueless`
+    holds names of parameters without a usable value: either the value is known only at launch, or it is null in YAML,
+    which ROS 1 cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)

@@ -30,7 +30,7 @@ class Spinning(BaseException):
 
 
 class Watchdog:
-    """Watches the thread that arms it. Arming, disarming and progress cost a few assignments."""
+    """Watches the thread that arms it. `arm`, `disarm` and `beat` cost only a few assignments."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

@@ -70,7 +70,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class QoSProfile:
-    """A profile; requires `depth` or a history without depth."""
+    """A profile; requires `depth`, or a `history` that needs no depth, such as KEEP_ALL."""
 
     def __init__(self, **given: Any) -> None:
         if "history" not in given and "depth" not in given:
