@@ -30,7 +30,7 @@ _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 
 @dataclass(frozen=True)
 class Launched:
-    """A node of a launch file. `path` is its Python program; without one, `foreign` is the reason.
+    """A node of a launch file. `path` is its Python program; if it has none, `foreign` is the reason.
 
     `problem` is the reason why it cannot be started; empty if it can.
     """

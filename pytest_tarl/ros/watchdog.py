@@ -1,4 +1,4 @@
-"""Stop a node that never waits. It measures CPU time, so it does not stop nodes because the machine is busy."""
+"""Stop a node that never waits. It measures CPU time, so it stops no node just because the machine is busy."""
 
 from __future__ import annotations
 
