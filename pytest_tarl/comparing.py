@@ -136,7 +136,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds the episodes' seeds."""
+    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds their seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -269,7 +269,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Reorder a table from one row per cell of `rows` to one row per cell of `cells`; the rows of missing cells are NaN."""
+    """Reorder a table, whose rows are the cells `rows`, to the cells `cells`; rows of missing cells are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
