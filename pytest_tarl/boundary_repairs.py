@@ -1,4 +1,4 @@
-"""Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far it moved.
+"""Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far this boundary moved.
 
 A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
 direction of the failure takes values from this point to the end of its range; other directions stay nominal. If no
@@ -36,12 +36,10 @@ from pytest_tarl.stressing.search import Request, along, stress
 from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
-DIRECTIONS, COMBINATIONS = (
-    2,
-    1,
-)  # most failures to repair, nearest first: in one direction, in several directions
+DIRECTIONS = 2  # maximum number of failures to repair that vary one direction; the nearest are chosen
+COMBINATIONS = 1  # the same for failures that vary several directions at once
 DRAWS = 60  # fresh draws from the whole space
-CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses
+CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses reward or successes
 
 
 @dataclass(frozen=True)
@@ -101,14 +99,14 @@ class Fixed:
         """Return the reason to withhold the repair; empty if there is none."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
-            return f"the boundary of {' and '.join(fragile)} came nearer"
+            return f"the boundary of {' and '.join(fragile)} moved nearer to the nominal point"
         pairs = [*zip(self.before, self.after, strict=True)]
         lost = [one.total - other.total for one, other in pairs]
         if mean_of(lost, CONFIDENCE).low > 0.0:
             return f"it loses {sum(lost) / len(lost):.3g} per episode over the declared space"
         failed = [float(one.passed) - float(other.passed) for one, other in pairs]
         if mean_of(failed, CONFIDENCE, Range(-1.0, 1.0)).low > 0.0:
-            return f"{sum(failed):.0f} more of {len(failed)} draws from the declared space fail"
+            return f"of {len(failed)} draws from the declared space, {sum(failed):.0f} more fail than before the repair"
         return ""
 
     @property

@@ -128,7 +128,7 @@ def _formulas(designation: Designation, offline: Sample, online: Sample) -> tupl
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Return the tables, with designed values taken from cells that differ only in the sensors `without`."""
+    """Return the tables; each designed value comes from recorded cells that differ only in the sensors `without`."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -136,7 +136,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return each range of a drift with the number that each episode drew from it; `drawn_by` holds the seeds."""
+    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds their seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -269,7 +269,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Return the table with one row per cell of `cells`, taken by cell from `rows`; NaN for cells not in `rows`."""
+    """Reorder a table, whose rows are the cells `rows`, to the cells `cells`; rows of missing cells are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
@@ -277,7 +277,7 @@ def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Float
 
 
 def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Return the paper's region: cells where the utilities of a list differ by half the largest difference or more."""
+    """Return the paper's region: cells where a list's utilities differ by at least half of its largest difference."""
     rows: set[int] = set()
     for before, after in tables:
         rows.update(paper_region(before, after).tolist())

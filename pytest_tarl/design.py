@@ -21,7 +21,7 @@ from pytest_tarl.spaces import Fault, Point, Space
 AS_WRITTEN = "none"  # the drift name that records the world as its author wrote it
 _HEADER = "header.npy"
 _PREFIX = 10  # bytes of a version 1 .npy file before its header
-_LARGEST = 100_000_000  # bytes of a header; 10,000 statements take 3 MB: more is damage
+_LARGEST = 100_000_000  # maximum bytes of a header; 10,000 statements take 3 MB, so a larger one is damaged
 
 
 def fixture_path(root: Path, test: str) -> Path:
@@ -95,7 +95,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift that the scenario replaces, since only dictionaries can be merged; else ""."""
+    """Return the design's drift if the scenario replaces it, which happens unless both are dictionaries; else ""."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

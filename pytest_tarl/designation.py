@@ -33,14 +33,14 @@ class Designation:
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = None  # record until min_success is decided at this confidence level
+    confidence: float | None = None  # record until it is decided at this level whether min_success holds
     total_range: tuple[float, float] | None = None  # bounds on every episode's total reward
     tolerance: float | None = None
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
         None  # computes the rewards that a log lacks
     )
     monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # computes the reward in a bag's mission; or a class with that function
+        None  # computes the reward of a mission in a bag; or a class with such a method
     )
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(

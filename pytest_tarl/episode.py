@@ -59,7 +59,9 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
-        self._faults = NO_FAULTS if replay is not None else faults  # recorded messages contain them
+        self._faults = (
+            NO_FAULTS if replay is not None else faults
+        )  # a recorded mission must not get faults on top of its own
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -101,7 +103,7 @@ class Tarl:
 
     @property
     def bus(self) -> Bus:
-        """The topics from the side of the simulated world: `publish` to the nodes, and read their `latest` messages."""
+        """Access of the simulated world to topics: `publish` to the nodes, and read the `latest` message of a node."""
         return self.ros.bus
 
     @property
@@ -128,8 +130,8 @@ class Tarl:
 
         `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
         `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all
-        nodes of the episode. Further parameters come from the launch file `launch`; by default, from the launch file
-        of the workspace that starts the script; with `launch=False`, from none.
+        nodes of the episode. Further parameters come from the launch file `launch`. Without `launch`, TARL
+        searches the workspace for launch files that start the script; with `launch=False`, it reads no launch file.
         """
         self.drives_ros = True
         self._starter.start(script, name, argv, parameters or {}, entry, launch)
@@ -195,7 +197,7 @@ class Tarl:
 
         if self.drives_ros or self._replay is not None or self.simulator is not None:
             raise SettingsError(
-                "tarl.external belongs before tarl.start, once in a test, and not into a replay."
+                "call tarl.external once in a test, before tarl.start, and not in the replay of a bag."
             )
         arguments = setup(
             command,
@@ -243,7 +245,7 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Report a message that the test delivered to the node itself, so that sensors and signals read it.
+        """Report a message that the test passed to the node without using the bus, so that sensors and signals read it.
 
         Raise SettingsError if the topic is not a string.
         """
@@ -255,7 +257,7 @@ class Tarl:
         self._situation.hear(topic, message)
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of one running node, by the name of its file or node, or of all nodes.
+        """Type text on the terminal of all running nodes, or of one, given by the name of its file or its node name.
 
         Raise SettingsError if no such node runs.
         """

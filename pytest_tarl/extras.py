@@ -22,7 +22,7 @@ def missing_packages() -> list[str]:
 
 
 def missing_extra(what: str) -> str | None:
-    """Return a sentence that names the packages `what` lacks here, or None if everything is installed."""
+    """Return a sentence that names the missing packages that `what` needs; None if all are installed."""
     return _sentence(what, missing_packages(), "pytest") or no_lock(what)
 
 
@@ -32,7 +32,7 @@ def missing_server(what: str) -> str | None:
 
 
 def missing_fleet(what: str) -> str | None:
-    """Return a sentence that names the packages of the extra `fleet` that `what` lacks, or None if all are there."""
+    """Return a hint that `what` needs the extras `pytest` and `fleet`, or None if both are installed."""
     return missing_extra(what) or _sentence(
         what, [name for name in FLEET if find_spec(name) is None], "fleet"
     )

@@ -7,7 +7,7 @@ from pytest_tarl.ros.standins import STANDINS
 
 
 def package_hint(error: BaseException | None) -> str | None:
-    """Return advice where pytest imports a package around a test, and its `__init__.py` imports ROS."""
+    """Return advice if a test was not collected because its package's `__init__.py` imports ROS; else None."""
     if import_hint(error) is None:
         return None
     return (

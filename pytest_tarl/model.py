@@ -98,7 +98,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A lower and an upper bound, each at the stated confidence by itself; infinite if there are too few episodes.
+    """A lower and an upper bound, each for itself at the stated confidence; infinite if there are too few episodes.
 
     `exact` is true if the bounds have this coverage for every distribution (learning/bounds.py).
     """
@@ -206,7 +206,7 @@ class Edit:
 class Attempt:
     """A promising candidate and its outcome; `reason` is empty for the accepted one.
 
-    `mean` is its mean reward in `episodes` episodes. `fresh` says that these episodes were not used to choose it.
+    `mean` is its mean reward in `episodes` episodes. `fresh` is true if they were not used to choose it.
     """
 
     what: str
@@ -218,7 +218,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but was not accepted; `gain` is its reward per episode over the unchanged code, fresh seeds.
+    """A change that helps but was not accepted. `gain` is the reward per episode that it gains, on fresh seeds.
 
     `low` and `designed_low` are lower bounds; `patch` is a path below the root.
     """
@@ -268,7 +268,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """A drift's range, and the numbers drawn from it by world, one per episode in the order of the totals."""
+    """A drift's range, and the numbers drawn from it in each world: one per episode, in the order of the totals."""
 
     part: str
     low: float
@@ -305,7 +305,7 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: its mean and least robustness, and how many episodes evaluated and violated it.
+    """A formula in one world: its mean and least robustness, and the numbers of episodes that judged and violated it.
 
     `first` is the time of the earliest violation in s, from the start of its episode.
     """
@@ -343,7 +343,7 @@ class Comparison:
     searches: tuple[SearchTrace, ...] = ()
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
-    ranking: str = ""  # confidence in the order of the culprits
+    ranking: str = ""  # sentence on how certain the ranking of the culprits is
     parts: Mapping[str, tuple[float, float]] = field(
         default_factory=dict
     )  # part of the reward → means: designed, deployed
@@ -351,7 +351,7 @@ class Comparison:
         default_factory=dict
     )  # part of the reward → cells where the deployed world earns less
     target: str = ""  # the pytest argument that records this test
-    node: str = ""  # the one that compares it, if it has other parameters
+    node: str = ""  # the pytest argument that compares it, if the test has parameters besides the drift
     flags: tuple[str, ...] = ()  # non-default options of the run
     changes: Mapping[Cell, float] = field(default_factory=dict)  # cell → difference between worlds
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # guarantees, by the worlds of `totals`

@@ -22,11 +22,11 @@ ROS_KINDS = ("embedded", "real", "auto")
 MOST_EPISODES = 10**6  # upper limit of --tarl-budget
 FEWEST_SHARED = 10  # lower limit of --tarl-total
 _NOT_SHARED = {
-    "episodes": "the first is for all comparisons of the run, the second for each",
+    "episodes": "the first is the number for all comparisons together, the second for each",
     "repair": "a repair is searched during its test. Compare first, then repair the degraded tests",
     "holm": "Holm's method needs smaller p-values than those at which a comparison may end early",
-    "log": "the number of recorded missions is given",
-    "bag": "the number of recorded missions is given",
+    "log": "the number of recorded missions is fixed",
+    "bag": "the number of recorded missions is fixed",
 }  # flags that contradict --tarl-total, with the reason
 
 
@@ -113,7 +113,7 @@ def options(given: Mapping[str, Any]) -> Options:
     localize = given["localize"] or "repair"
     _known("--tarl-localize", localize, RANKINGS)
     if given["localize"] and not given["repair"]:
-        raise SettingsError("--tarl-localize needs --tarl-repair: the search ranks the sites.")
+        raise SettingsError("--tarl-localize needs --tarl-repair: the search for a repair ranks the sites.")
     _known("--tarl-utility", given["utility"], UTILITIES)
     _known("--tarl-edit", given["edit"], EDITS)
     _known("--tarl-ros", given["ros"], ROS_KINDS)
@@ -160,7 +160,7 @@ def _check_total(given: Mapping[str, Any]) -> None:
     """Raise SettingsError if --tarl-total is too small or conflicts with another flag."""
     number_within("--tarl-total", "it", given["total"], int, FEWEST_SHARED, 10**6)
     if not given["online"]:
-        raise SettingsError("--tarl-total needs --tarl-online: its comparisons share the episodes.")
+        raise SettingsError("--tarl-total needs --tarl-online: only comparisons share episodes.")
     for other, reason in _NOT_SHARED.items():
         if given[other]:
             raise SettingsError(f"--tarl-total and --tarl-{other} exclude each other: {reason}.")
@@ -197,9 +197,11 @@ def _check_modes(given: Mapping[str, Any]) -> None:
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not (given["online"] or given["stress"]):
-        raise SettingsError("--tarl-repair needs --tarl-online or --tarl-stress: it repairs what they find.")
+        raise SettingsError(
+            "--tarl-repair needs --tarl-online or --tarl-stress, which find the failures to repair."
+        )
     if given["holm"] and not given["online"]:
-        raise SettingsError("--tarl-holm needs --tarl-online: it corrects the verdicts of comparisons.")
+        raise SettingsError("--tarl-holm needs --tarl-online: only verdicts of comparisons are corrected.")
     if given["holm"] and given["repair"]:
         raise SettingsError(
             "--tarl-holm and --tarl-repair are two runs: verdicts are corrected after all tests, but a repair is "
@@ -255,7 +257,9 @@ def _log(given: Mapping[str, Any]) -> Path | None:
     if given["log"] is None:
         return None
     if not given["online"]:
-        raise SettingsError("--tarl-log needs --tarl-online: the comparison reads its missions.")
+        raise SettingsError(
+            "--tarl-log needs --tarl-online, which compares the missions in the log with the recording."
+        )
     for other in ("repair", "drift", "episodes"):
         if given[other]:
             raise SettingsError(
@@ -275,7 +279,9 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
     if not paths:
         return ()
     if not given["online"]:
-        raise SettingsError("--tarl-bag needs --tarl-online: the comparison replays its missions.")
+        raise SettingsError(
+            "--tarl-bag needs --tarl-online, which compares the missions in the bags with the recording."
+        )
     for other in ("repair", "drift", "episodes", "log"):
         if given[other]:
             raise SettingsError(

@@ -151,7 +151,7 @@ def _ours(error: BaseException) -> bool:
 
 
 def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
-    """Return the text of a TARL error after the place of the innermost call in the user's code."""
+    """Return the text of a TARL error, preceded by file and line of the innermost call in the user's code."""
     ours = Path(__file__).parent
     lines = [entry for entry in excinfo.traceback if ours not in Path(entry.path).parents]
     if not lines:

@@ -97,8 +97,8 @@ def record(
     """Run the episodes and write the recording. Write nothing if too many episodes fail.
 
     `world` holds the digests of the test's modules. A `drift`, which must be permanent, becomes part of the design.
-    If the previous recording cannot be read, say so first. Raise FixtureError before any episode if the file cannot
-    be written.
+    If the previous recording cannot be read, report this first. Raise FixtureError before any episode if the file
+    cannot be written.
     """
     old, broken = _previous(path)
     for note in broken:
@@ -138,7 +138,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; return a note if the result differs, with its spread if there is a simulator."""
+    """Run the first episode again; return a note if the result differs. With a simulator, it states both rewards."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []
@@ -155,13 +155,16 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
 
 
 def detectable(totals: Floats) -> list[str]:
-    """For fewer than FEW episodes, return a note on the loss that a comparison can detect; `totals` is (episodes,)."""
+    """If there are fewer than FEW episodes, return a note on the loss that a comparison can detect.
+
+    `totals` holds the reward of each episode, shape (episodes,).
+    """
     if not 1 < totals.size < FEW or not totals.std():
         return []
     loss = detectable_loss(totals, totals, SIGNIFICANT)
     if not isfinite(loss):
         return [
-            f"{totals.size} episodes are too few: a comparison with as many can show no loss. Record at least 4."
+            f"{totals.size} episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
         ]
     note = (
         f"{totals.size} episodes: a comparison with as many shows a loss of {amount(loss)} per episode in "
@@ -298,7 +301,7 @@ def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording, or None; and the reason if it exists but cannot be read."""
+    """Return the previous recording (None without one) and, if it exists but cannot be read, the reason."""
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:

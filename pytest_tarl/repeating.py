@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What to instrument in the nodes: the positions of the sites (statements to record) by file, and which publish."""
+    """The sites (statements to record) of the nodes: their positions by file, and the numbers of those that publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()
@@ -72,7 +72,7 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # edited files whose previous text ran
+    older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the text before the edit
     simulator: bool = False  # whether an external simulator was the episode's world
 
 
@@ -386,7 +386,7 @@ def _timed_out(error: BaseException | None) -> bool:
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed under an xfail mark; it counts as failed."""
+    """Return whether a mission failed under an xfail mark; such a mission counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 

@@ -17,7 +17,7 @@ KEPT = 6  # started episodes per worker to keep while others are requested
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One planned run of a test. `overlay` maps files to replacement texts; `record` says to instrument the nodes.
+    """One planned run of a test. `overlay` maps files to replacement texts; if `record`, nodes are instrumented.
 
     With a `bag`, its recorded mission replaces the test's world. If `drift` is a space, `point` is a point
     of it; without `point`, the seed determines a random one.
@@ -38,7 +38,8 @@ class EpisodeRun:
     `crashed` is true if the node ended the episode early, `stuck` if the reason is that it never waited. `notes`
     are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
 
-    `older` lists files of the overlay whose previous text ran; then the result is no evidence about the overlay.
+    `older` lists files of the overlay for which the text before the edit ran. If there are any, the result is no
+    evidence about the overlay.
 
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 

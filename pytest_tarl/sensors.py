@@ -16,7 +16,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
-CALLED = "()"  # suffix of a stored field that is the name of a function
+CALLED = "()"  # suffix of `field` in files, if `field` was a function: its name is stored in its place
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of the narrowest bin of a numeric sensor; for a single edge, its last decimal place."""
+        """Return the width of the narrowest bin; for a single edge, one unit of its last decimal place."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 

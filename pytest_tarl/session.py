@@ -138,9 +138,10 @@ class TarlSession:
         return found
 
     def _chosen(self, item: pytest.Item) -> bool:
-        """Return whether the selected scenario includes an item.
+        """Return whether `--tarl-drift` selects an item.
 
-        That is an item of the scenario, or one whose marker declares it but which does not use `tarl_drift`.
+        When recording, it selects every item whose marker declares the drift. When comparing, it selects the items of
+        that scenario, and items that declare it but lack the fixture `tarl_drift`; their reports say so.
         """
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":

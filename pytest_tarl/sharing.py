@@ -24,7 +24,7 @@ def shortage(total: int, comparisons: int) -> str:
 
 @dataclass(frozen=True)
 class SharedEpisodes:
-    """How comparisons share the episodes of a run.
+    """The plan by which the comparisons of a run share its episodes.
 
     A look is one test of the verdict. A comparison has at most `most_looks`.
     """

@@ -52,7 +52,7 @@ def of_tests(file: Path) -> bool:
 
 
 class _Imports:
-    """The dotted names imported anywhere in a module. They reveal imported constants, which refer to no module.
+    """The dotted names imported anywhere in a module, since an imported constant has no reference to its module.
 
     Imports inside functions count, because a function called at module level may return such a constant.
     """
@@ -74,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may contain an import. Inline caches in bytecode may look like one."""
+        """The module's code objects that may contain an import: inline caches in the bytecode can look like one."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 

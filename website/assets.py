@@ -1,6 +1,6 @@
-"""What the site ships beside its pages: fonts, Mermaid and the search shim, so that reading needs no network.
+"""Fetch the fonts, Mermaid and the search shim that the site contains, so that reading it needs no network.
 
-npm fetches each package once; its digest is checked, and only the files named here are kept. A later build finds
+npm fetches each package once; its digest is checked, and only the files named here are stored. A later build finds
 them in `build/assets` and needs no network.
 """
 
@@ -20,11 +20,11 @@ KEPT = Path(__file__).parent.parent / "build" / "assets"
 
 
 class AssetsError(Exception):
-    """A package cannot be fetched, or is not the one that was pinned."""
+    """A package cannot be fetched, or its digest is not the pinned one."""
 
 
 class Package(NamedTuple):
-    """One pinned package of npm: the sha512 of its tarball, and which of its files are kept under which name."""
+    """A pinned npm package: the sha512 digest of its tarball, and the files to store (path in tarball → new name)."""
 
     name: str
     version: str
@@ -33,7 +33,7 @@ class Package(NamedTuple):
 
     @property
     def stamp(self) -> Path:
-        """The file that says that this version is there."""
+        """Return the path of the empty file that marks this version as stored."""
         return KEPT / f".{self.name.replace('/', '-')}-{self.version}"
 
 
@@ -78,12 +78,12 @@ TESTED_WITH = Package(
 
 
 def fetch(package: Package) -> None:
-    """Keep the files of a package in `build/assets`, unless they are there. Raises AssetsError."""
+    """Store the files of a package in `build/assets` unless they are already there. Raise AssetsError on failure."""
     if package.stamp.exists():
         return
     npm = shutil.which("npm")
     if npm is None:
-        raise AssetsError("npm is not installed; the site takes its fonts and Mermaid from there.")
+        raise AssetsError("npm is not installed: install it, since the fonts and Mermaid are npm packages.")
     with tempfile.TemporaryDirectory() as folder:
         spec = f"{package.name}@{package.version}"
         packed = subprocess.run(
@@ -102,11 +102,11 @@ def fetch(package: Package) -> None:
 
 
 def unpack(package: Package, tarball: bytes) -> None:
-    """Write the kept files of a tarball. Raises AssetsError if it is not the pinned one."""
+    """Write the files to store from a tarball. Raise AssetsError if its digest is not the pinned one."""
     digest = base64.b64encode(hashlib.sha512(tarball).digest()).decode()
     if digest != package.sha512:
         raise AssetsError(
-            f"{package.name} {package.version}: the tarball has another digest than the pinned one."
+            f"{package.name} {package.version}: the digest of the tarball is not the pinned one."
         )
     with tarfile.open(fileobj=io.BytesIO(tarball)) as archive:
         for source, name in package.files.items():
@@ -118,5 +118,5 @@ def unpack(package: Package, tarball: bytes) -> None:
 
 
 def available(package: Package) -> bool:
-    """Return whether a package is there without the network."""
+    """Return whether a package is already stored."""
     return package.stamp.exists()

@@ -26,9 +26,9 @@ BUILD = HERE.parent / "build"
 
 
 def settings(address: str, quick: bool) -> str:
-    """Return the settings of zensical: those of website/zensical.toml with what is known only now."""
+    """Return the settings of zensical: website/zensical.toml plus the folders, the address and the menu of versions."""
     text = (HERE / "zensical.toml").read_text("utf-8")
-    tomllib.loads(text)  # a mistake in it is reported with its line
+    tomllib.loads(text)  # reports a syntax error with its line
     known = [
         'docs_dir = "pages"',
         'site_dir = "site"',
@@ -44,7 +44,7 @@ def settings(address: str, quick: bool) -> str:
 
 
 def stage(build: Path, quick: bool) -> None:
-    """Put all pages together below `build`."""
+    """Copy and generate all pages below `build`."""
     staged = build / "pages"
     shutil.rmtree(staged, ignore_errors=True)
     shutil.rmtree(build / "overrides", ignore_errors=True)
@@ -60,7 +60,10 @@ def stage(build: Path, quick: bool) -> None:
 
 
 def build(target: Path, *, quick: bool = False, address: str = "") -> Path:
-    """Build the site below `target` and return its directory; `quick` leaves out the gallery. Exits on a warning."""
+    """Build the site below `target` and return its directory; `quick` omits the gallery.
+
+    Raise CalledProcessError on a warning, AssetsError if a package cannot be fetched.
+    """
     for package in assets.SHIPPED:
         assets.fetch(package)
     target.mkdir(parents=True, exist_ok=True)
@@ -74,9 +77,9 @@ def build(target: Path, *, quick: bool = False, address: str = "") -> Path:
 def main() -> None:
     """Build the site and check its links."""
     parser = argparse.ArgumentParser(description="Build the documentation site in build/site.")
-    parser.add_argument("--quick", action="store_true", help="leave out the gallery, which runs the examples")
+    parser.add_argument("--quick", action="store_true", help="omit the gallery, which runs the examples")
     parser.add_argument(
-        "--fetch", action="store_true", help="only fetch what the site ships, and what tests need"
+        "--fetch", action="store_true", help="only fetch the fonts and scripts of the site and of its tests"
     )
     arguments = parser.parse_args()
     try:
@@ -91,7 +94,7 @@ def main() -> None:
         sys.exit(failed.returncode)
     broken = links.broken(site)
     if broken:
-        sys.exit("docs: links that lead nowhere:\n" + "\n".join(broken))
+        sys.exit("docs: broken links:\n" + "\n".join(broken))
     print(f"tarl {version('tarl')}: {site / 'index.html'}")
 
 

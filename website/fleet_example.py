@@ -1,4 +1,4 @@
-"""Write the fleet of the example in docs/howto/fleet-logs.md: its logs, its recording and its data set.
+"""Write the files of the example in docs/howto/fleet-logs.md: logs, a recording, and the data set of a fleet.
 
     python -m website.fleet_example FOLDER && cd FOLDER && tarl fleet fleet --by site --since 2026-08-01
 
@@ -18,11 +18,11 @@ from tests.plugin.monitoring.missions import fixture, log, walks
 BEGAN = datetime(2026, 9, 7, 8, 26, tzinfo=timezone.utc).timestamp()
 APART = 7.5 * 3600  # s between two missions of a robot
 ROBOTS, DRIFTED = 32, (4, 9)
-SLIGHT = 0.4  # drift of every robot of the second site; a drifted single robot has 1
+SLIGHT = 0.4  # size of the drift at the second site; that of the two drifting robots is 1
 
 
 def write(folder: Path) -> None:
-    """Write everything below a folder that does not exist yet."""
+    """Write all files below a new folder."""
     folder.mkdir(parents=True)
     fixture(folder / "walk.npz", walks(120, 1))
     for robot in range(ROBOTS):

@@ -1,6 +1,6 @@
-"""The gallery: report pages that the examples make, each by recording, comparing and searching a repair.
+"""Build the gallery: run examples (record, compare, search a repair) and collect their report pages.
 
-Runs take minutes, so their pages are kept in build/gallery as long as neither the examples nor the packages change.
+A run takes minutes, so its pages are kept in build/gallery until the example or the packages change.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ KEPT = ROOT / "build" / "gallery"
 
 
 class Shown(NamedTuple):
-    """A test of an example whose reports are shown, and what there is to see."""
+    """A test of an example whose report pages are in the gallery, and a description."""
 
     example: str
     test: str
@@ -29,7 +29,7 @@ class Shown(NamedTuple):
 
     @property
     def address(self) -> str:
-        """The start of the names of its pages."""
+        """Return the prefix of the names of its pages."""
         return f"{self.example}-{self.test.rpartition('::')[2].replace('_', '-')}"
 
 
@@ -41,7 +41,7 @@ SHOWN = (
 
 
 def digest(example: str) -> str:
-    """Return a digest of all that decides the pages of an example."""
+    """Return a digest of all files that affect the pages of an example."""
     folders = (ROOT / "examples" / example, ROOT / "pytest_tarl", ROOT / "tarl_lint")
     files = sorted(path for folder in folders for path in folder.rglob("*") if _source(path))
     found = hashlib.sha256()
@@ -60,7 +60,7 @@ def _source(path: Path) -> bool:
 
 
 def reports(shown: Shown) -> list[Path]:
-    """Return the report pages of an example, made unless they are kept. Raises ValueError where none was made."""
+    """Return the report pages of an example; run it if none are kept. Raise ValueError if the run writes no page."""
     folder = KEPT / f"{shown.address}-{digest(shown.example)}"
     if not folder.is_dir():
         with tempfile.TemporaryDirectory() as parent:
@@ -69,7 +69,7 @@ def reports(shown: Shown) -> list[Path]:
 
 
 def _made(shown: Shown, work: Path, folder: Path) -> None:
-    """Run an example in a copy of its folder and keep its pages."""
+    """Run an example in a copy of its folder, and copy its report pages to `folder`."""
     shutil.copytree(
         ROOT / "examples" / shown.example, work, ignore=shutil.ignore_patterns(".tarl", "__pycache__")
     )
@@ -80,7 +80,7 @@ def _made(shown: Shown, work: Path, folder: Path) -> None:
         ran = subprocess.run(command, cwd=work, env=environment, capture_output=True, text=True, check=False)
     pages = sorted((work / ".tarl" / "report").glob("*.html"))
     if not pages:
-        raise ValueError(f"the example {shown.example} made no report:\n{ran.stdout}")
+        raise ValueError(f"the example {shown.example} wrote no report:\n{ran.stdout}")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for page in pages:
@@ -88,7 +88,7 @@ def _made(shown: Shown, work: Path, folder: Path) -> None:
 
 
 def write(staged: Path) -> None:
-    """Write the page of the gallery and copy the reports beside it."""
+    """Write the page that lists the reports, and copy the reports beside it."""
     folder = staged / "gallery"
     folder.mkdir()
     lines = [

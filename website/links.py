@@ -1,4 +1,4 @@
-"""Check the built site: every link and picture leads to a file, every anchor exists, nothing comes from the network."""
+"""Check the built site: every linked file and anchor exists, and no page loads anything from the network."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LOADED = {("img", "src"), ("script", "src"), ("iframe", "src"), ("source", "src"
 
 
 class Page(HTMLParser):
-    """What a page names: anchors of its own, links, and what it loads."""
+    """The anchors that a page defines, its links, and the addresses that it loads."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -21,7 +21,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Collect the names and addresses of an element."""
+        """Collect the anchors and addresses of an element."""
         values = {name: value or "" for name, value in attrs}
         self.anchors |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
@@ -37,10 +37,8 @@ class Page(HTMLParser):
 
 
 def broken(site: Path) -> list[str]:
-    """Return a sentence for each link that leads nowhere and each thing loaded from the network, in order."""
-    reports = {*site.glob("gallery/*.html")} - {
-        site / "gallery" / "index.html"
-    }  # each report is self-contained
+    """Return a sentence for each broken link and for each address loaded from the network, in the order of pages."""
+    reports = {*site.glob("gallery/*.html")} - {site / "gallery" / "index.html"}  # reports are self-contained
     files = sorted({*site.rglob("*.html")} - reports)
     pages = {path: Page(path.read_text("utf-8")) for path in files}
     return [problem for path, page in pages.items() for problem in _broken(site, path, page, pages)]

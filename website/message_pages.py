@@ -1,4 +1,4 @@
-"""One page for each message of docs/messages.md, and the page that lists them."""
+"""Write a page for each message of docs/messages.md, and a page that lists them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LISTED = "messages.md"
 
 
 class Message(NamedTuple):
-    """What a program says, under which heading it is explained, and how."""
+    """A message of a program: its group of docs/messages.md, its words, and the text that explains it."""
 
     group: str
     words: str
@@ -20,22 +20,22 @@ class Message(NamedTuple):
 
     @property
     def slug(self) -> str:
-        """The name of its page: the words, in small letters, joined by hyphens."""
+        """Return the name of its page: the words in lower case, joined by hyphens."""
         return slug(self.words)
 
 
 def slug(words: str) -> str:
-    """Return words as a part of an address."""
+    """Return words in the form of a part of an address."""
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")
 
 
 def anchor(words: str) -> str:
-    """Return the anchor that GitHub gives a heading, as links in docs/ name it."""
+    """Return the anchor that GitHub gives a heading, which links in docs/ use."""
     return re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
 
 
 def split(page: str) -> tuple[str, list[Message]]:
-    """Return the text before the first group of docs/messages.md, and its messages, each with the text of its group."""
+    """Return the introduction of docs/messages.md, and its messages; each text ends with the text of its group."""
     ends = [*SECTION.finditer(page)]
     introduction = page[: ends[0].start()].strip()
     messages, group, lead = [], "", ""
@@ -49,12 +49,12 @@ def split(page: str) -> tuple[str, list[Message]]:
 
 
 def write(staged: Path) -> list[Message]:
-    """Replace the staged page of messages by a list, and write a page for each. Raises ValueError for equal slugs."""
+    """Replace the staged page of messages by a list, and write a page for each. Raise ValueError for equal slugs."""
     introduction, messages = split((staged / LISTED).read_text("utf-8"))
     slugs = [message.slug for message in messages]
     twice = {slug for slug in slugs if slugs.count(slug) > 1}
     if twice:
-        raise ValueError(f"docs/messages.md: two messages have one address: {', '.join(sorted(twice))}")
+        raise ValueError(f"docs/messages.md: two messages have the same address: {', '.join(sorted(twice))}")
     lines = [introduction]
     for group in dict.fromkeys(message.group for message in messages):
         of = [message for message in messages if message.group == group]
@@ -71,7 +71,7 @@ def write(staged: Path) -> list[Message]:
 
 
 def _relink(page: Path, addresses: Mapping[str, str]) -> None:
-    """Let links to headings of the messages lead to their pages. Raises ValueError for a heading that is not there."""
+    """Replace links to headings of messages.md by links to pages. Raise ValueError for an unknown heading."""
 
     def moved(match: re.Match[str]) -> str:
         if match[2] not in addresses:

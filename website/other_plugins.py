@@ -1,6 +1,6 @@
-"""Options that keep a pytest process from importing other projects' plugins, which takes it a second and more.
+"""Pytest options that block the plugins of other projects, whose import takes a second or more.
 
-The development extra installs these plugins; a project of a user has few of them.
+The development extra installs these plugins; a user has few of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Put the pages of the site together: the written ones with links that hold there, and the generated ones."""
+"""Copy the pages of the repository to the site, and adapt their links."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 
 
 def address(path: PurePosixPath) -> PurePosixPath:
-    """Return where a file of the repository stands in the site."""
+    """Return the path in the site of a file of the repository."""
     parts = path.parts
     if parts[0] == "docs":
         path = PurePosixPath(*parts[1:])
@@ -29,7 +29,7 @@ def address(path: PurePosixPath) -> PurePosixPath:
 
 @cache
 def written() -> dict[PurePosixPath, Path]:
-    """Return every written page, picture and linked file: its place in the repository, and the file."""
+    """Return every page, picture and linked file that is not generated: its path relative to the repository → file."""
     files = [*(ROOT / "docs").rglob("*"), *(ROOT / name for name in TOP), *(ROOT / "examples").rglob("*.md")]
     linked = [*(ROOT / "examples").rglob("*.py"), *schemas()]
     places = {PurePosixPath(path.relative_to(ROOT).as_posix()): path for path in sorted({*files, *linked})}
@@ -51,7 +51,7 @@ def schemas() -> list[Path]:
 
 
 def relinked(text: str, page: PurePosixPath) -> str:
-    """Return a page's text with links that hold in the site. Raises ValueError for one that leads nowhere."""
+    """Return a page's text with its links adapted to the site. Raise ValueError for a broken link."""
 
     def moved(match: re.Match[str]) -> str:
         target, _, anchor = match[2].partition("#")
@@ -63,7 +63,7 @@ def relinked(text: str, page: PurePosixPath) -> str:
 
 
 def _relative(target: str, anchor: str, page: PurePosixPath) -> str:
-    """Return a link of a page of the repository as one from that page's place in the site."""
+    """Convert a link between files of the repository to one between their paths in the site."""
     place = PurePosixPath(os.path.normpath(page.parent / target))
     if (ROOT / place).is_dir():
         place /= "README.md"
@@ -79,7 +79,7 @@ def _relative(target: str, anchor: str, page: PurePosixPath) -> str:
 
 
 def stage(target: Path) -> None:
-    """Write the written pages, pictures and linked files below a directory."""
+    """Write all pages, pictures and linked files that are not generated below a directory."""
     for place, path in written().items():
         to = target / address(place)
         to.parent.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,7 @@
-"""The addresses of the project in the metadata of a wheel.
+"""Set the addresses of the project in the metadata of a wheel.
 
-A release sets SITE_URL, the address of the documentation, and REPOSITORY_URL. A wheel that is built without them names
-no address, so that a fork does not send its users to pages of another version.
+A release sets SITE_URL, the address of the documentation, and REPOSITORY_URL. A wheel built without them contains
+no address, so that a fork does not send its users to the pages of this project.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 
 class ProjectUrls(MetadataHookInterface):
-    """Add the addresses that the environment names."""
+    """Add the addresses that the environment variables contain."""
 
     def update(self, metadata: dict[str, Any]) -> None:
-        """Set `urls` of the project. Raise ValueError for an address that is none."""
+        """Set `urls` of the project. Raise ValueError for an invalid address."""
         metadata["urls"] = urls(os.environ)
 
 
 def urls(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the project's addresses by their labels. Raise ValueError unless they begin with https://."""
+    """Return the project's addresses by label. Raise ValueError unless they begin with https://."""
     found: dict[str, str] = {}
     site, repository = (_address(name, environment) for name in ("SITE_URL", "REPOSITORY_URL"))
     if site:

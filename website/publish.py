@@ -1,9 +1,9 @@
-"""Put a built site into the tree that is published: one directory per version, named by its tag.
+"""Copy a built site into the published tree, which has one directory per version, named after its tag.
 
     python -m website.publish SITE TREE VERSION
 
-A version such as v0.2.0 becomes the directory 0.2.0, and `latest` leads to the newest of them; any other name, such as
-`dev`, becomes a directory only. `versions.json` feeds the menu of versions. The JSON schemas of the newest version
+A version such as v0.2.0 becomes the directory 0.2.0, and `latest` is a copy of the newest version. Any other name, such
+as `dev`, only becomes a directory. `versions.json` feeds the menu of versions. The JSON schemas of the newest version
 are in `schemas/`, so that their addresses do not change.
 """
 
@@ -30,7 +30,7 @@ def number(version: str) -> tuple[int, ...] | None:
 
 
 def publish(site: Path, tree: Path, tag: str) -> None:
-    """Put a site into the tree under the name of its tag. Raises ValueError for a tag that names no directory."""
+    """Copy a site into the tree under the name of its tag. Raise ValueError for a tag that cannot name a directory."""
     version = re.sub(r"^v(?=\d)", "", tag)
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", version) or version in ("latest", "schemas"):
         raise ValueError(f"{tag!r} cannot name a version: use letters, digits, dots and hyphens")
@@ -60,8 +60,8 @@ def _replace(source: Path, target: Path) -> None:
 
 
 def main() -> None:
-    """Put a site into a tree."""
-    parser = argparse.ArgumentParser(description="Put a built site into the tree that is published.")
+    """Copy a site into a tree."""
+    parser = argparse.ArgumentParser(description="Copy a built site into the published tree.")
     parser.add_argument("site", type=Path)
     parser.add_argument("tree", type=Path)
     parser.add_argument("version")

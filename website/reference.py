@@ -1,4 +1,4 @@
-"""Reference pages that come from the code: options, commands, settings, schemas, the API."""
+"""Generate reference pages from the code: options, commands, settings, schemas, the API."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def settings() -> str:
             "# Settings of tarl-lint",
             "",
             "The table `[tool.tarl-lint]` of `pyproject.toml` holds these keys.",
-            "[tarl-lint](../lint.md#settings) says what each does and shows all of them at work.",
+            "[tarl-lint](../lint.md#settings) explains each key and shows an example with all of them.",
             "",
             "| key | value |",
             "|---|---|",
@@ -112,11 +112,11 @@ def schema_page() -> str:
         [
             "# JSON schemas",
             "",
-            "The schemas follow JSON Schema 2020-12. Each document names its version as `format`; a change of a key",
-            "or of its meaning raises it. The addresses below stay: the published site has each schema at its top,",
-            "beside the versions of the documentation.",
+            "The schemas follow JSON Schema 2020-12. The key `format` of a document holds the version of its format,",
+            "which increases if a key or its meaning changes. The addresses below do not change: on the published",
+            "site, the folder `schemas` is beside the folders of the versions of the documentation.",
             "",
-            "| document | address below the top of the site |",
+            "| document | address relative to the root of the site |",
             "|---|---|",
             *rows,
             "",

@@ -1,9 +1,9 @@
-"""Draw a recording of the terminal from a true run of the tutorial: docs/images/terminal.svg.
+"""Run the tutorial and draw a recording of the terminal: docs/images/terminal.svg.
 
     python -m website.terminal
 
-`python -m website.tutorial --write` draws it, too, where it finds other output. Lines appear as they were printed. A
-command that takes longer than two seconds is shown as two seconds.
+`python -m website.tutorial --write` also draws it if the output of the tutorial has changed. Lines appear as they were
+printed. A command that takes longer than two seconds takes two seconds in the recording.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from website.pages import ROOT
 from website.tutorial import TUTORIAL, Ran, run
 
 TARGET = ROOT / "docs" / "images" / "terminal.svg"
-SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefix of the commands that are shown
-HIDDEN = ("tarl-lint --", "pytest -q\n")  # commands with the prefix that are not shown
+SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # prefixes of the commands that are shown
+HIDDEN = ("tarl-lint --", "pytest -q\n")  # prefixes of commands that are hidden although SHOWN includes them
 COLUMNS, ROWS, LINE, CHARACTER, EDGE = 92, 30, 17, 7.4, 14
 TYPED, PAUSE, LONGEST = 0.045, 1.2, 2.0  # pauses in s: per character, after a command's output, per command
 STYLE = """text{font:12.3px ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;fill:#e6e6e6;white-space:pre;\
@@ -30,7 +30,7 @@ opacity:0;animation:show 1ms linear forwards}
 
 
 class Line(NamedTuple):
-    """A line of the terminal, the class that colours it, and the second at which it appears."""
+    """A line of the terminal, the CSS class that colours it, and the time in s at which it appears."""
 
     text: str
     kind: str
@@ -38,7 +38,7 @@ class Line(NamedTuple):
 
 
 def kind(text: str) -> str:
-    """Return the class of a line of output: added, removed, a verdict, or none."""
+    """Return the CSS class of an output line: `a` for added, `r` for removed, `v` for a verdict, otherwise empty."""
     if text.startswith(("+", "applied")) or "accepted: " in text:
         return "a"
     if text.startswith(("-", "FAILED")) and not text.startswith("--write"):
@@ -47,7 +47,7 @@ def kind(text: str) -> str:
 
 
 def recorded(ran: Sequence[Ran]) -> list[Line]:
-    """Return the lines of the recording, in order of time."""
+    """Return the lines of the recording in the order in which they appear."""
     lines, second = [], 0.5
     for one in ran:
         line = one.command.line
@@ -63,7 +63,7 @@ def recorded(ran: Sequence[Ran]) -> list[Line]:
 
 
 def drawn(lines: Sequence[Line]) -> str:
-    """Return the animated picture of a terminal that scrolls."""
+    """Return an animated SVG picture of a scrolling terminal."""
     height = ROWS * LINE + 2 * EDGE
     width = round(COLUMNS * CHARACTER) + 2 * EDGE
     end = lines[-1].second + 0.1
@@ -98,7 +98,7 @@ def main() -> None:
 
 
 def draw(ran: Sequence[Ran]) -> None:
-    """Draw a run of the tutorial."""
+    """Draw a run of the tutorial to TARGET."""
     TARGET.write_text(drawn(recorded(ran)), "utf-8")
 
 

@@ -1,11 +1,11 @@
-"""Run the commands of a page and compare, or renew, the output that it shows.
+"""Run the commands of a page, and compare their output with the page or update the page.
 
     python -m website.tutorial [--write] [PAGE]
 
-A block with a title is a file, a block of `console` holds commands after `$ ` and their output. All run in one shell,
-from top to bottom, in an empty folder. A line `...` in the output stands for lines that are left out. What depends on
-the machine is not compared: seconds that a run took, and digests. After `<!-- nightly -->` a block runs only with
-TARL_SLOW=1, since it installs.
+A block with a title is a file. A `console` block holds commands, each after `$ `, and their output. All commands run in
+one shell, from top to bottom, in an empty folder. A line `...` in the output stands for omitted lines. Durations and
+digests are not compared, because they depend on the machine. A block after `<!-- nightly -->` runs only with
+TARL_SLOW=1, because it installs packages.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Command(NamedTuple):
 
 
 class Block(NamedTuple):
-    """A block of a page that is a file or a list of commands; where its text stands in the page."""
+    """A block of a page: a file or a list of commands. `start` and `end` are the offsets of its text in the page."""
 
     start: int
     end: int
@@ -68,13 +68,13 @@ def blocks(page: str) -> list[Block]:
 
 
 def same(shown: str, printed: str) -> bool:
-    """Return whether the output that a page shows is what was printed, apart from what varies and what is left out."""
+    """Return whether the output in a page matches the printed output, except for varying parts and omitted lines."""
     parts = [re.escape(VARIES.sub("~", part)) for part in LEFT_OUT.split(shown)]
     return re.fullmatch("(?:.*\n)*?".join(parts), VARIES.sub("~", printed)) is not None
 
 
 def shortened(shown: str, printed: str) -> str:
-    """Return the printed output, cut to as many lines at both ends as the page shows."""
+    """Shorten the printed output to as many first and last lines as the page shows."""
     head, *rest = LEFT_OUT.split(shown, maxsplit=1)
     lines = printed.splitlines(keepends=True)
     if not rest:
@@ -84,7 +84,7 @@ def shortened(shown: str, printed: str) -> str:
 
 
 class Shell(AbstractContextManager["Shell"]):
-    """A shell that runs one command after the other in a folder, as a reader's does."""
+    """A shell that runs commands one after the other in a folder, like the shell of a reader."""
 
     def __init__(self, folder: Path) -> None:
         self._shell = subprocess.Popen(
@@ -103,7 +103,7 @@ class Shell(AbstractContextManager["Shell"]):
         self._shell.communicate()
 
     def run(self, line: str) -> str:
-        """Return what a command prints. Raises EOFError if the command ends the shell."""
+        """Run a command and return its output. Raise EOFError if the command ends the shell."""
         assert self._shell.stdin is not None
         assert self._shell.stdout is not None
         self._shell.stdin.write(
@@ -118,12 +118,12 @@ class Shell(AbstractContextManager["Shell"]):
         raise EOFError(f"the shell ended with `{line}`: {printed}")
 
     def folder(self) -> Path:
-        """Return the folder that the shell is in."""
+        """Return the working directory of the shell."""
         return Path(self.run("pwd").strip())
 
 
 def _environment(folder: Path) -> dict[str, str]:
-    """Return the surroundings of a new user: our commands on PATH, a git without settings, 80 columns."""
+    """Return the environment variables of a new user: our commands on PATH, git without settings, 80 columns."""
     kept = {
         name: value
         for name, value in os.environ.items()
@@ -150,7 +150,7 @@ _WHO = {"NAME": "Reader", "EMAIL": "reader@example.org", "DATE": "2026-01-05T09:
 
 
 class Ran(NamedTuple):
-    """A command that was run: its block, what the page shows, what was printed, and the seconds that it took."""
+    """A command that was run: its block, the command as in the page, its output, and its duration in s."""
 
     block: Block
     command: Command
@@ -172,7 +172,7 @@ def run(page: str, folder: Path, *, nightly: bool = False) -> Iterator[Ran]:
 
 
 def renewed(page: str, ran: list[Ran]) -> str:
-    """Return a page with the output that its commands printed."""
+    """Return a page in which each output that differs is replaced by the printed one."""
     texts: dict[Block, str] = {}
     for one in ran:
         output = one.command.output
@@ -185,10 +185,10 @@ def renewed(page: str, ran: list[Ran]) -> str:
 
 
 def main() -> int:
-    """Run a page; return 1 where it shows something else than what is printed."""
+    """Run the commands of a page; return 1 if an output differs and the page was not updated."""
     parser = argparse.ArgumentParser(description="Run the commands of a page and compare their output.")
     parser.add_argument("page", nargs="?", type=Path, default=TUTORIAL)
-    parser.add_argument("--write", action="store_true", help="put what is printed into the page")
+    parser.add_argument("--write", action="store_true", help="update the page with the printed output")
     arguments = parser.parse_args()
     page = arguments.page.read_text("utf-8")
     with tempfile.TemporaryDirectory() as folder:
@@ -203,7 +203,7 @@ def main() -> int:
 
             draw(ran)
     print(
-        f"{shlex.quote(str(arguments.page))}: {len(ran)} commands, {len(other)} print something else than shown"
+        f"{shlex.quote(str(arguments.page))}: {len(ran)} commands, {len(other)} with another output than in the page"
     )
     return int(bool(other) and not arguments.write)
 

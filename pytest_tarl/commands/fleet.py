@@ -200,8 +200,8 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         action="append",
         default=[],
         choices=("degraded", "drifted", "changed", "robot"),
-        help="exit with 1 if a group is degraded, is drifted or degraded, changed in time, or a robot is named; "
-        "repeatable",
+        help="exit with 1 if a group is degraded (degraded), if a group is degraded or drifted (drifted), if a group "
+        "changed over time (changed), or if a robot is named as worse than others (robot); repeatable",
     )
     fleet.set_defaults(run=_fleet)
 

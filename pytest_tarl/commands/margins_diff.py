@@ -17,8 +17,8 @@ def guarantees_changed(before: Sequence[Margins], after: Sequence[Margins]) -> I
         was = old.get(one.title)
         if was is not None and (was.success, was.loss) != (one.success, one.loss):
             yield (
-                f"{one.title}: the guarantee changed from {100 * was.success:.4g} % and a loss of {was.loss:.3g} to "
-                f"{100 * one.success:.4g} % and {one.loss:.3g}, because the test was recorded again."
+                f"{one.title}: the guarantee changed from a success rate of {100 * was.success:.4g} % and a loss of "
+                f"{was.loss:.3g} to {100 * one.success:.4g} % and {one.loss:.3g}, because the test was recorded again."
             )
 
 

@@ -49,7 +49,9 @@ def _at(revision: str, inner: str) -> list[Margins]:
     if revision.startswith("-") or not revision:
         raise FixtureError(f"{revision!r} is not a git revision: name a branch, a tag or a commit.")
     if shutil.which("git") is None:
-        raise FixtureError(f"git was not found, which reads {revision}: install it, or compare two files.")
+        raise FixtureError(
+            f"git is not installed, so {revision} cannot be read: install git, or compare two files."
+        )
     if _git("rev-parse", "--verify", "--quiet", f"{revision}^{{commit}}") is None:
         raise FixtureError(f"{revision}: git knows no such revision here. In CI, fetch it first.")
     place = inner.removesuffix("/")

@@ -36,7 +36,9 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
     diff = commands.add_parser("diff", help="compare two recordings, or the margins of two revisions")
     diff.add_argument("first", help="a recording; margins, as a file or a folder; or a revision of git")
     diff.add_argument(
-        "second", nargs="?", help="the same; without it, .tarl/margins is compared with that of the revision"
+        "second",
+        nargs="?",
+        help="as FIRST; if it is missing, .tarl/margins is compared with the margins at the revision FIRST",
     )
     diff.add_argument(
         "--fail-if-worse",
@@ -109,7 +111,7 @@ def add_summary(commands: argparse._SubParsersAction[Parser]) -> None:
     summary.add_argument(
         "--since",
         metavar="REVISION",
-        help="compare .tarl/margins beside the results with those of a revision",
+        help="compare the margins in .tarl/margins with those at this git revision",
     )
     summary.set_defaults(run=_summary)
 

@@ -57,7 +57,7 @@ def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
         "--step",
         type=float,
         metavar="SECONDS",
-        help="length of a step; the marker's judge computes its reward",
+        help="length of a step; the marker's judge computes the reward of each step",
     )
     flag(
         "--mission-topic",

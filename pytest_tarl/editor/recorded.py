@@ -86,7 +86,7 @@ def _figures(document: Mapping[str, Any]) -> Iterator[tuple[str, Figures]]:
 
 
 def steps(result: Result, path: str) -> dict[str, Step]:
-    """Return the statements of a file that are part of a flow, by identity."""
+    """Return the statements in a file that are part of a flow, by site id."""
     flows = (finding.flow for finding in (*result.findings, *result.silenced) if finding.flow is not None)
     return {str(step.site): step for flow in flows for step in flow.steps if step.span.path == path}
 

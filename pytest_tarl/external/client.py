@@ -14,7 +14,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 30.0  # s until the guardian must have ended; longer than its own limits
+PATIENCE = 30.0  # s until the guardian must have ended; longer than the guardian's own limits
 TAIL = 3  # number of output lines of the simulator in a message
 
 Event = dict[str, Any]

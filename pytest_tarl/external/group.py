@@ -16,7 +16,7 @@ STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
     (signal.SIGKILL, 5.0),
-)  # signals, with the time in s to end after each
+)  # each signal, with the time in s that the processes then get to end
 
 
 class Group:

@@ -24,7 +24,7 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # s between two checks of the ROS graph; after CALM, 1 s
+LOOK = 0.05  # s between two checks of the ROS graph in the first CALM seconds; later, 1 s
 CALM = 5.0  # s
 LAST = 20.0  # s after the end of the test until the simulator is killed, if the main thread hangs in the middleware
 

@@ -12,7 +12,9 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-IDLE = 3  # attempts without a message after which no message is left; an attempt may handle another event
+IDLE = (
+    3  # no message is left after this many attempts without one; an attempt may handle another event instead
+)
 
 Say = Callable[[dict[str, Any]], None]
 
@@ -43,8 +45,8 @@ class Link:
         self._clients: dict[str, Any] = {}
         self._calls: list[dict[str, Any]] = []  # calls of services that do not exist yet
         self._known: dict[str, Any] = {}
-        self._answers: list[dict[str, Any]] = []  # answers of services that were not passed on yet
-        self._handled = 0  # number of messages
+        self._answers: list[dict[str, Any]] = []  # service answers that were not passed on yet
+        self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
         """Wait up to `seconds` for an event and handle it. Before an answer, also handle the messages sent before it.

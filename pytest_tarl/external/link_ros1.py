@@ -44,7 +44,7 @@ class LinkROS1:
         self._known: dict[str, Any] = {}
         self._events: deque[dict[str, Any]] = deque()
         self._arrival = threading.Event()
-        self._sent = False  # whether a command was sent after the last call
+        self._sent = False  # whether a command was sent since the last service call
 
     def spin(self, seconds: float) -> None:
         """Pass on messages that have arrived or arrive within `seconds`."""
@@ -153,7 +153,7 @@ class LinkROS1:
             told: dict[str, Any] = {"response": to_plain(proxy(request))}
         except Exception as problem:
             if str(problem).startswith(LOST):
-                return  # the guardian reports the end of the simulator, or the test that it does not answer
+                return  # if the simulator ended, the guardian reports it; if not, the test reports a missing answer
             told = {"error": str(problem)}
         self._put({"kind": "answer", "id": asked["id"], "asked": when, **told})
 
@@ -163,7 +163,7 @@ class LinkROS1:
         if service not in self._proxies:
             try:
                 kind = _service_type(service, self._master.lookupService(service))
-            except Exception:  # it does not exist yet
+            except Exception:  # the service does not exist yet
                 return None
             self._proxies[service] = rospy.ServiceProxy(service, _service_class(kind))
         return self._proxies[service]

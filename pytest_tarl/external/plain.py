@@ -44,7 +44,7 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
 def _fields(value: Any) -> Mapping[str, str] | None:
     """Return the names and types of a message's fields; None for other values.
 
-    In ROS 1, times and durations count too.
+    In ROS 1, times and durations count as messages.
     """
     if hasattr(value, "get_fields_and_field_types"):
         return dict(value.get_fields_and_field_types())

@@ -57,7 +57,7 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
 def start_of(node: ast.expr | ast.stmt) -> Where:
     """Return the start of the part of `node` that runs first, as a range of length 0.
 
-    The length is 0 for a reason: if a method call spans several lines, CPython places it at the end of its attribute.
+    The length must be 0: if the range of a method call spans several lines, CPython places the call at its end.
     """
     return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
 

@@ -73,7 +73,7 @@ class _Gathering:
         statements[:] = [*result, *self._closed(run)]  # type: ignore[list-item]  # a Run is replaced at once
 
     def _grows(self, run: _Open, statement: ast.stmt, bound: set[str]) -> bool:
-        """Add the statement to the run if it belongs to it; return whether it does."""
+        """Extend the open run by the statement if it fits; return whether it does."""
         reads = _arithmetic(statement)
         if reads is None or not reads <= (bound | run.made) - self._unsure:
             return False
@@ -104,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads if float values of these names guarantee that it assigns a float."""
+    """Return the names that a statement reads; None if it could assign another type although they hold floats."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -114,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression if float values of these names guarantee a float result; else None."""
+    """Return the names in an expression; None if the result could have another type although they hold floats."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):

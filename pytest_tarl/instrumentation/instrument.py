@@ -227,7 +227,7 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # No event if the assertion fails: the caret of its exception depends on how the test is compiled.
+        # No event if the assertion fails: a changed condition would move the carets in the traceback of its exception.
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:

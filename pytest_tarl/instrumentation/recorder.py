@@ -196,7 +196,7 @@ class _Elsewhere:
 
 
 def _plain_hook(entries: list[Any]) -> Hook:
-    """Return the hook for a program that starts with one thread; `entries` handles later threads."""
+    """Return the hook for a program that starts with one thread; `entries` keeps later threads apart."""
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:

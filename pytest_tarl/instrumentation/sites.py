@@ -32,8 +32,8 @@ class HasFlows(Protocol):
 class Plan:
     """The sites to record.
 
-    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`. `positions` holds
-    the sites by path, as the analysis names it; columns count characters.
+    A global site number is an index into `places`; `members[i]` holds the numbers of the sites in `lists[i]`.
+    `positions` holds the sites by path, as the analysis names it; columns count characters.
     """
 
     lists: tuple[TaintList, ...]

@@ -31,7 +31,7 @@ def present(package: str) -> Modules:
 
 
 def show(package: str, modules: Modules) -> None:
-    """Replace the modules of a package in `sys.modules`."""
+    """Replace the modules of a package in `sys.modules` by `modules`."""
     for name in present(package):
         del sys.modules[name]
     sys.modules.update(modules)

@@ -43,7 +43,9 @@ class RclpyNetwork:
         self.contexts: list[Any] = []
         self.expected: Counter[Any] = Counter()  # messages in transit, by subscription of a node
         self.kept: Counter[Any] = Counter()  # stored messages that publishers send to late subscribers
-        self.for_world: deque[Any] = deque()  # the world's subscription for each message in transit
+        self.for_world: deque[Any] = (
+            deque()
+        )  # one entry per message in transit to the world: the world's subscription
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}
@@ -129,7 +131,7 @@ class RclpyNetwork:
     def joined(self, subscription: Any) -> None:
         """Count the publishers' stored messages as in transit to a new subscription.
 
-        Wait until all of them are sent. If a node took messages in the meantime, a short queue would keep older ones.
+        Wait until all are sent: a node that took one earlier would also get old messages, which a short queue drops.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return

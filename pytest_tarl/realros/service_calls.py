@@ -28,7 +28,7 @@ class Arrival(NamedTuple):
 
 
 class ServiceCalls:
-    """The calls of one episode. Other threads than the test's only access `_arrived`, with the lock `_arrival`."""
+    """The calls of one episode. Threads other than the test's access only `_arrived`, under the lock `_arrival`."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler

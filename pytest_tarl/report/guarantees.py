@@ -34,7 +34,7 @@ def sentences(stated: Guarantee) -> Iterator[str]:
         yield f"{most} of the missions earn at least {figure(stated.quantile)}, {sure}"
     elif stated.needed:
         yield (
-            f"a bound that {most} of the missions reach needs {stated.needed} episodes, "
+            f"a reward that {most} of the missions reach can be stated from {stated.needed} episodes on, "
             f"{stated.needed - stated.episodes} more than were run"
         )
     yield "each bound holds separately"
@@ -54,7 +54,7 @@ def brief(stated: Guarantee) -> Iterator[str]:
 
 
 def worlds(comparison: Comparison) -> Iterator[tuple[str, Guarantee]]:
-    """Yield the name of each world that has bounds, as reports show it, with these bounds."""
+    """Yield the displayed name and the bounds of each world that has bounds."""
     for world, name in WORLDS.items():
         if world in comparison.stated:
             yield name, comparison.stated[world]

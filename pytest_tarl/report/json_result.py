@@ -34,7 +34,7 @@ WORLDS = ("offline", "online", "repaired", "nominal_repaired")
 
 
 def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
-    """Write the result of a run; `episodes` counts those of `offline`, `online`, `search` and `acceptance`.
+    """Write the result of a run; `episodes` holds the numbers of episodes: offline, online, search and acceptance.
 
     Raises:
         TarlError: the file cannot be written.

@@ -51,7 +51,7 @@ def edit_words(edit: Edit) -> str:
 
 
 def operand_words(operand: OperandEffect) -> str:
-    """Describe the best change of an operand: a new value, or a factor if its own value is unknown."""
+    """Describe the best change of an operand: a new value, or a factor if the operand's present value is unknown."""
     return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 

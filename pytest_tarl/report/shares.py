@@ -39,4 +39,4 @@ def _end(share: Share) -> str:
         return "decided" if share.missing is None else "decided, so others can have the rest"
     if share.missing is None:
         return "undecided after its last look"
-    return f"undecided, but its next look needs {share.missing} more, and {share.left} are left"
+    return f"undecided, but its next look needs {share.missing} more episodes, and only {share.left} are left"

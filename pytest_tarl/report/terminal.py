@@ -20,7 +20,7 @@ from pytest_tarl.report import (
 
 SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-LEGIBLE = 24  # with fewer columns for code beside its place, code gets its own line
+LEGIBLE = 24  # fewest columns for code beside its file and line; with fewer, code gets its own line
 NARROWEST = 40  # minimum width of the report, in columns
 
 

@@ -12,7 +12,7 @@ _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", 
 _SYSTEM = (
     "/dist-packages/",
     "/opt/ros/",
-)  # from a virtual environment, a system ROS is in neither folder
+)  # folders of a system ROS, which sysconfig omits in a virtual environment
 
 Place = tuple[str, int, str]  # file, line, function
 

@@ -72,7 +72,7 @@ class Ros(Network):
         return (*self._launch_notes, *self.uninstalled.notes(), *self._silent_terminals())
 
     def type(self, text: str, node: str | None = None) -> None:
-        """Type text on the terminal of one running node, by its file or name, or of all. Raise SettingsError."""
+        """Type text on the terminal of all nodes, or of those called `node`. Raise SettingsError if there is none."""
         running = [one for one in self.processes if not one.ended and node in (None, one.name, one.label)]
         if not running:
             which = "no node is running" if node is None else f"no running node is called {node!r}"

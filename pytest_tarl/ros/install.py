@@ -130,13 +130,13 @@ class StandinFinder:
         """Return the ROS generation of the importer, by the client library that its code names."""
         asked = asked_kind()
         if asked is not None:
-            return asked  # not evidence of the generation of the episode's nodes
+            return asked  # this look-up asks for one class, so it says nothing about the episode's nodes
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
 
     def _settle_kind(self, kind: Kind) -> Kind:
-        """Fix the ROS generation of this episode's messages; hide installed ones of the other generation."""
+        """Set the ROS generation of this episode's messages; hide installed messages of the other generation."""
         self._kind = kind
         set_variables(kind)
         if installed_kind("std_msgs") not in (None, kind):
@@ -232,7 +232,9 @@ def standins_installed(
         sys.meta_path.remove(uninstalled)
         gone = [sys.modules[name] for name in finder.loaded if name in sys.modules]
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
-            del sys.modules[name]  # modules that depend on a stand-in are re-imported with the next one
+            del sys.modules[
+                name
+            ]  # refers to a stand-in of this episode, so the next episode must import it again
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)

@@ -14,7 +14,9 @@ from typing import Any
 from pytest_tarl.ros.process import Process, running_process
 from pytest_tarl.ros.scheduler import Task, current_task
 
-_DEBUGGERS = frozenset({"bdb", "cmd", "code", "pdb"})  # modules that ask the user, also while a node runs
+_DEBUGGERS = frozenset(
+    {"bdb", "cmd", "code", "pdb"}
+)  # debuggers, which read from the user's terminal even while a node runs
 _LOCAL_MODES = 3  # index of the local modes in the list that termios.tcgetattr returns
 
 

@@ -30,7 +30,7 @@ _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 
 @dataclass(frozen=True)
 class Launched:
-    """A node of a launch file. `path` is its Python program; without one, `foreign` is the reason.
+    """A node of a launch file. `path` is its Python program; if it has none, `foreign` is the reason.
 
     `problem` is the reason why it cannot be started; empty if it can.
     """
@@ -59,7 +59,7 @@ class Launched:
         )  # fmt: skip
 
     def resolve(self, name: str) -> str:
-        """Return the launched name of a topic, service or parameter in the node's code."""
+        """Return the full name of a topic, service or parameter after the launch file's namespace and remappings."""
         return remapped(name, self.node.namespace, self.name.rpartition("/")[2], self.node.remaps)
 
 
@@ -236,7 +236,7 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
     problems += [f"{one.file.parent.name}/{one.file.name}: {one.reason}" for one in hidden(launch, workspace)]
     if problems:
         more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
-        yield f"not known of {launch.file.name}: {'; '.join(problems[:SHOWN])}{more}."
+        yield f"parts of {launch.file.name} could not be evaluated: {'; '.join(problems[:SHOWN])}{more}."
 
 
 on_forget(_plan.cache_clear)

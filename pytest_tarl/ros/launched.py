@@ -26,9 +26,9 @@ from tarl_lint.workspace.ros_names import joined
 class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
-    `node` is the absolute name of a node that is started under the name of the launch file, else empty. `valueless`
-    holds names of parameters without a usable value: it is known only at launch, or it is null in YAML, which ROS 1
-    cannot store.
+    `node` is the absolute name of a node that `tarl.launch` starts, empty for one that `tarl.start` starts. `valueless`
+    holds names of parameters without a usable value: either the value is known only at launch, or it is null in YAML,
+    which ROS 1 cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
@@ -44,9 +44,10 @@ WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return a script's parameters from the named launch file; without a name, from the only launch file with any.
+    """Return a script's parameters from the file `launch`; without it, from all launch files that start the script.
 
-    If several files start the script with different parameters, use only the files in the script's package.
+    If these files give different parameters, use only the files in the script's package; if those differ as well,
+    return the parameters on which they agree, and a note.
 
     Raise SettingsError if the named file does not exist or does not start the script.
     """

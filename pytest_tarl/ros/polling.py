@@ -1,4 +1,4 @@
-"""Make tasks wait that poll, which means that they read the time or the state of ROS in a loop without a pause.
+"""Make polling tasks wait. A task polls if it reads the time or the state of ROS in a loop without a pause.
 
 On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock moves only when every task
 waits, so such a loop would never end. Therefore, a task that polls PATIENCE times at one instant waits for PAUSE. From
@@ -12,11 +12,11 @@ from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import running_task
 
 AGAIN = 10  # polls of a polling task between two waits
-PAUSE = nanoseconds(0.01)  # ns of virtual time that it waits
+PAUSE = nanoseconds(0.01)  # ns of virtual time that a polling task waits
 
 
 def asked() -> None:
-    """Count a poll of the running task, whose result changes only with time or by other tasks; wait after too many."""
+    """Count a poll of the running task: a query whose result only time or other tasks change. Wait after too many."""
     task = running_task()
     if task is None:
         return

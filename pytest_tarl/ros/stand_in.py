@@ -27,7 +27,7 @@ class StandIn:
         ros.processes.append(self._process)
 
     def resolve(self, name: str) -> str:
-        """Return the launched name of a topic or service."""
+        """Return the full name of a topic or service after the launch file's namespace and remappings."""
         return self._launched.resolve(name)
 
     def parameter(self, name: str, default: Any = None) -> Any:

@@ -17,7 +17,7 @@ from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
-_OWN = str(Path(__file__).parents[1])  # threads of this package stay threads
+_OWN = str(Path(__file__).parents[1])  # threads started by this package remain real threads
 _PASSED_THROUGH = (
     threading.__file__,
     queue.__file__,

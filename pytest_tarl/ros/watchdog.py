@@ -1,4 +1,4 @@
-"""Stop a node that never waits. It measures CPU time, so it does not stop nodes because the machine is busy."""
+"""Stop a node that never waits. It measures CPU time, so it stops no node just because the machine is busy."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Spinning(BaseException):
 
 
 class Watchdog:
-    """Watches the thread that arms it. Arming, disarming and progress cost a few assignments."""
+    """Watches the thread that arms it. `arm`, `disarm` and `beat` cost only a few assignments."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

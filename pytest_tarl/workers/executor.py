@@ -84,8 +84,8 @@ class Answer:
             return protocol.answered(self.plan, self.future.result())
         except WorkerDiedError as died:
             raise RecordingError(
-                f"The worker process of the episode with seed {self.plan.seed} {died}, {TRIES} times in {TRIES}: run "
-                "it without --tarl-workers to debug its node, or use fewer workers if memory is short."
+                f"In each of {TRIES} attempts, the worker process of the episode with seed {self.plan.seed} {died}. "
+                "Run it without --tarl-workers to debug its node, or use fewer workers if memory is short."
             ) from None
         except WorkerHeldError as held:
             raise RecordingError(

@@ -21,7 +21,7 @@ from pytest_tarl.workers import protocol
 TRIES = 3  # runs of an episode whose worker dies, including the first run
 PATIENCE = 5.0  # seconds to tear down fixtures before a worker is killed
 SILENCE = (
-    180  # checks without a heartbeat, one per second; a count, so that suspending the machine does not add
+    180  # checks without a heartbeat, one per second; a count, so that suspending the machine adds nothing
 )
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
@@ -32,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held a worker's interpreter lock, so the worker was ended. No retry: it would hang again."""
+    """A node held a worker's interpreter lock, so the worker was ended. A retry of the episode would hang again."""
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,7 @@ class Replays:
         self._pool.close()
 
     def _posted(self, bag: Path) -> Post:
-        """Describe the job of the worker. The name of one bag suffices for pytest to collect the test for bags."""
+        """Describe the job of the worker. One bag in its arguments suffices for pytest to collect the test for bags."""
         test = self.fixture.test.partition("[")[0]
         if not (self.root / test.partition("::")[0]).is_file():
             raise SettingsError(

@@ -32,7 +32,7 @@ ENDED = 70  # exit status if the parent run has ended
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
     """Serve the parent process until it closes the pipe or exits.
 
-    The arguments are the descriptors of the pipes, and pytest's configuration or the error that occurred in its place.
+    The arguments are the descriptors of the pipes, pytest's configuration, and the error if there is no configuration.
     """
     alive, told = os.pipe()
     _thread.start_new_thread(_forwarded, (requests, told))

@@ -19,7 +19,7 @@ def main() -> None:
     problem = ""
     config = None
     try:
-        if "arguments" in start:  # of a command line that pytest has not parsed yet
+        if "arguments" in start:  # command line arguments, which pytest has not parsed yet
             config = _prepareconfig(start["arguments"])
             vars(config.option).update(start["options"])
         else:  # pytest reads `-p no:` from these options only after it has imported the plugins

@@ -16,6 +16,8 @@ def test_few_episodes_show_large_losses_only() -> None:
 
 def test_two_episodes_show_nothing_and_many_or_equal_ones_need_no_note() -> None:
     (note,) = detectable(np.array([1.0, 2.0]))
-    assert note == "2 episodes are too few: a comparison with as many can show no loss. Record at least 4."
+    assert (
+        note == "2 episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
+    )
     assert not detectable(np.arange(30.0))
     assert not detectable(np.ones(20))

@@ -103,10 +103,10 @@ def test_no_episode_runs_twice_and_no_finished_episodes_are_kept(sharing: pytest
     ("more", "words"),
     [
         ({"online": False}, "needs --tarl-online"),
-        ({"episodes": 30}, "exclude each other: the first is for all comparisons"),
+        ({"episodes": 30}, "exclude each other: the first is the number for all comparisons"),
         ({"repair": True}, "Compare first, then repair"),
         ({"holm": True}, "Holm's method"),
-        ({"log": "a.tarl"}, "number of recorded missions is given"),
+        ({"log": "a.tarl"}, "number of recorded missions is fixed"),
         ({"looks": 1}, "at least two looks"),
         ({"total": 3}, "--tarl-total"),
     ],

@@ -25,7 +25,7 @@ class SimpleGoalState:
 
 
 class SimpleClientGoalState:
-    """Names of the goal states that older nodes use."""
+    """Goal states under the names that older nodes use."""
 
     PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 0, 1, 2, 3, 4, 5, 8, 9
 

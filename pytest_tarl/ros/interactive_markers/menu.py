@@ -14,7 +14,7 @@ from pytest_tarl.ros.interactive_markers.server import __getattr__ as __getattr_
 __all__ = ["MenuHandler", *MESSAGES]
 
 _MENU_SELECT = 2  # InteractiveMarkerFeedback.MENU_SELECT
-_MARKS = {1: "[ ] ", 2: "[x] "}  # before the title, by check state
+_MARKS = {1: "[ ] ", 2: "[x] "}  # text before the title of an entry, by check state
 
 
 @dataclass

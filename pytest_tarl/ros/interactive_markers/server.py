@@ -15,7 +15,7 @@ from pytest_tarl.ros.missing import refuse
 MESSAGES = ["ImageMarker", "InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerFeedback",
             "InteractiveMarkerInit", "InteractiveMarkerPose", "InteractiveMarkerUpdate", "Marker", "MarkerArray",
             "MenuEntry"]  # fmt: skip
-__all__ = ["InteractiveMarkerServer", *MESSAGES]  # nodes import the messages with an asterisk from here
+__all__ = ["InteractiveMarkerServer", *MESSAGES]  # nodes get the messages by `import *` from here
 
 Callbacks = dict[int, Callable[[Any], Any]]
 DEFAULT = 255  # event type whose callback gets the feedback that no other callback gets

@@ -23,9 +23,10 @@ _BUILDERS: dict[tuple[str, str], Callable[[str, str], type[Any] | None]] = {
 def message_type(name: str) -> type[Any]:
     """Return a message class by its ROS name.
 
-    `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. Nodes of either generation can
-    receive both: a subscriber gets the class that it subscribed with. Services and actions likewise:
-    `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
+    `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. ROS 1 and ROS 2 nodes can receive
+    messages of either class: a subscriber always gets an instance of the class that it subscribed with. The names of
+    services and actions have the same forms: `std_srvs/SetBool` (ROS 1), `std_srvs/srv/SetBool` and
+    `nav2_msgs/action/NavigateToPose` (ROS 2).
 
     Raise UnsupportedApiError if the type is unknown.
     """

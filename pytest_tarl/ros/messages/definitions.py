@@ -238,7 +238,7 @@ def _store(kind: Kind) -> Mapping[str, Any]:
         from rosbags.typesys import Stores, get_typestore
     except ImportError as error:
         raise UnsupportedApiError(
-            "ROS message types were asked for, but neither ROS nor `rosbags`, which ships their definitions, is "
+            "The definitions of ROS message types are missing: neither ROS nor `rosbags`, which contains them, is "
             f"installed in this environment: run {install_command('ros')}."
         ) from error
     store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST)

@@ -20,7 +20,7 @@ PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 def could_be_package(name: str) -> bool:
     """Return whether a name could be a message package.
 
-    This check is cheap, since most imports are of other modules.
+    The check has to be cheap, because most imported modules are no message packages.
     """
     return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 

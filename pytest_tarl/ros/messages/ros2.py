@@ -202,7 +202,7 @@ def _init_lines(fields: list[Field]) -> list[str]:
     for position, field in enumerate(fields):
         plain = LITERALS.get(field.base) if field.shape == "one" and field.default is None else None
         lines.append(f"    if {field.name} is UNSET: self._{field.name} = {plain or f'default{position}()'}")
-        code = _packed_code(field)  # rosidl's constructors accept any argument of `array`, its setters do not
+        code = _packed_code(field)  # rosidl's constructors convert the value to an array; its setters do not
         given = f"array({code!r}, {field.name})" if code else field.name
         lines.append(f"    else: self.{field.name} = {given}")
     return lines

@@ -66,7 +66,7 @@ class Executor:
             True  # whether an entity other than a timer may have become ready since the last check
         )
         self._is_shutdown = False
-        self._active, self._limit = 0, 1  # running callbacks and their limit
+        self._active, self._limit = 0, 1  # number of running callbacks, and its limit
         self.context.on_wake(self.wake)
 
     def add_node(self, node: Node) -> bool:
@@ -161,7 +161,7 @@ class Executor:
                 return None
             looks = (
                 1 if self._active < self._limit else 0
-            )  # if a group refuses an entity, it waits for the next round
+            )  # an entity that its group refuses waits for the next round
             while True:
                 if not batch:
                     if not looks or not self._look():
@@ -178,7 +178,9 @@ class Executor:
         """Return whether the entity's group lets its callback start now."""
         group = entity.callback_group
         if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
-            group.active = entity  # shortcut for the default group, with the result of the two calls below
+            group.active = (
+                entity  # shortcut for the default kind of group; the two calls below have the same result
+            )
             return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
@@ -294,7 +296,7 @@ class MultiThreadedExecutor(Executor):
 
 
 def _nothing(_: Future) -> None:
-    """Replace rclpy's callback that wakes the executor, so that done callbacks take as many executor turns as there."""
+    """Replace rclpy's callback that wakes the executor, so that done callbacks take as many turns as in rclpy."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

@@ -101,7 +101,7 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """Return the level of a name, in any case. Raise RuntimeError for an unknown name."""
+    """Return the level of a name in upper or lower case. Raise RuntimeError for an unknown name."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:

@@ -33,7 +33,7 @@ class NodeParameters:
 
     def __init__(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
         self._parameters: dict[str, Parameter] = {}
-        self._descriptors: dict[str, Any] = {}  # default: only the type of the value is fixed
+        self._descriptors: dict[str, Any] = {}  # without a descriptor, only the type of the value is fixed
         self._parameter_overrides = overrides
         self._allow_undeclared = allow_undeclared
         self._pre_set_callbacks: list[SetCallback] = []
@@ -190,7 +190,7 @@ class NodeParameters:
         return parameter.get_parameter_value()
 
     def set_parameters(self, parameter_list: list[Parameter]) -> list[Any]:
-        """Set parameters one by one; each result tells whether it was accepted."""
+        """Set parameters one by one; each result says whether the parameter was accepted."""
         self._require_declared(parameter_list)
         return [self._set([parameter]) for parameter in parameter_list]
 

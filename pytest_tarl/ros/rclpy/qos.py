@@ -70,7 +70,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class QoSProfile:
-    """A profile; requires `depth` or a history without depth."""
+    """A profile; requires `depth`, or a `history` that needs no depth, such as KEEP_ALL."""
 
     def __init__(self, **given: Any) -> None:
         if "history" not in given and "depth" not in given:
@@ -175,5 +175,5 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Any:
-        """Return the profile of a name, in any case. Raise KeyError."""
+        """Return the profile of a name in upper or lower case. Raise KeyError."""
         return cls[name.upper()].value

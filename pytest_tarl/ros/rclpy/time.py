@@ -17,7 +17,7 @@ CONVERSION_CONSTANT = S_TO_NS = NANOSECONDS
 
 
 class ClockType(Enum):
-    """The clock of an instant. Prints by name; not an int, but converts to one."""
+    """The clock of an instant. It prints as `ClockType.ROS_TIME`; it is not an int, but `int` converts it."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -192,7 +192,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """The least jump of the clock that is reported."""
+    """The smallest clock jump that is reported."""
 
     def __init__(
         self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True

@@ -76,9 +76,9 @@ _WITH_BYTES: dict[Any, Any] = {}  # class of an installed ROS → class of `_wit
 
 
 def _with_bytes(message_type: Any) -> Any:
-    """Return a class that also has the serialised message, which a subscriber to any type reads.
+    """Return a message class whose instances have `_buff`, the serialised message, which subscribers to AnyMsg read.
 
-    Classes of an installed ROS 1 lack it; others are returned as they are.
+    Only classes of an installed ROS 1 lack `_buff`; other classes are returned unchanged.
     """
     if hasattr(message_type, "_buff") or not hasattr(message_type, "serialize"):
         return message_type

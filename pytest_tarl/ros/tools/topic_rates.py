@@ -14,7 +14,7 @@ from pytest_tarl.ros.rospy.timing import get_time
 
 Rate = tuple[
     float, float, float, float, int
-]  # Hz; shortest, longest period, standard deviation in s; messages
+]  # rate in Hz; shortest period, longest period and standard deviation in s; number of messages
 
 
 class ROSTopicHz:

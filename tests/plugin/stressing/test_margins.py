@@ -152,7 +152,7 @@ def test_diff_compares_with_a_revision_and_fails_if_asked(
     told = capsys.readouterr().out
     assert "mud to 0.05      0.2 to 0.3 → 0.35 to 0.5: more fragile" in told
     assert "camera='down'    holds → fails: more fragile" in told
-    assert "the guarantee changed from 98 % and a loss of 0.466 to 97 % and 0.466" in told
+    assert "the guarantee changed from a success rate of 98 % and a loss of 0.466 to 97 % and 0.466" in told
     assert main(["diff", "main", "--fail-if-worse"]) == 1
     assert main(["diff", ".tarl/margins", "main:.tarl/margins", "--fail-if-worse"]) == 0
     assert main(["diff", ".tarl/margins/it.json", "main:.tarl/margins/it.json", "--format", "markdown"]) == 0

@@ -78,7 +78,7 @@ def test_an_episode_that_kills_every_worker_is_reported_and_the_old_recording_ke
     found = tank.runpytest(*RECORD, TWO)
     found.assert_outcomes(failed=1, deselected=1)
     found.stdout.fnmatch_lines(
-        ["*worker process of the episode with seed * ended with status -9*3 times in 3*"]
+        ["*In each of 3 attempts, the worker process of the episode with seed * ended with status -9*"]
     )
     assert fixture_file(tank).read_bytes() == before
 
