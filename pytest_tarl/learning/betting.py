@@ -1,7 +1,7 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
 Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes a fixed share of its wealth
-each time. If the claim is true, the probability that the wealth reaches 1/risk times its start at any time is at most
+each time. If the claim is true, the probability that the wealth ever reaches 1/risk times its initial value is at most
 `risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
 mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
 bad episodes.
@@ -28,7 +28,7 @@ CERTAIN = 0.005  # approximate probability of stopping early although the mean i
 class Bet:
     """Bets that the mean difference is above `-margin`.
 
-    Differences below `least` are raised to it. `stakes` are per unit of reward.
+    Differences below `least` count as `least`. `stakes` are per unit of reward.
     """
 
     margin: float
@@ -41,7 +41,7 @@ class Bet:
         return (OF_BOLD, 1.0 - OF_BOLD) if len(self.stakes) > 1 else (1.0,)
 
     def wealth(self, differences: Sequence[float]) -> float:
-        """Return the logarithm of the wealth, which starts at 1; -inf if everything is lost."""
+        """Return the logarithm of the wealth; the initial wealth is 1, and the result is -inf if everything is lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
         if most == -inf:

@@ -103,7 +103,7 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # no options as keywords: numpy before 2.1 stores them as arrays
+    np.savez_compressed(buffer, **arrays)  # pass no options: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
