@@ -15,16 +15,13 @@ if TYPE_CHECKING:
     import numpy as np
 
 Arrivals = Iterable[tuple[float, Any]]  # (delay in s, message)
-Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → its arrivals, in order
+Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → arrivals of the message, in order
 OFF_ON = Choice((False, True))
 
 
 @dataclass(frozen=True)
 class TopicFault:
-    """A fault of all messages on one topic.
-
-    `begin` makes the channel of an episode from the fault's size and random numbers.
-    """
+    """A fault of all messages on one topic. `begin` makes the channel of an episode from the fault's size and random numbers."""
 
     kind: str
     topic: str
