@@ -127,7 +127,7 @@ def rewrite(
     """Apply mutations under a guard; return the new text of every changed file, by path.
 
     `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
-    holds further files that define constants. Raises RepairError if a change cannot be written.
+    holds further files that define constants. Raise RepairError if a change cannot be written.
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
@@ -219,13 +219,13 @@ class Conditions:
         self.subscriptions = Subscriptions(analysis, topics)
 
     def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the guard as Python at a place. Raises RepairError if a sensor's value is not available there."""
+        """Return the guard as Python at a place. Raise RepairError if a sensor's value is not available there."""
         wanted = [each for each in self._guard.conjuncts if not always(each)]
         readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value as Python at a place, 0 before its first message. Raises RepairError."""
+        """Return a sensor's value as Python at a place, 0 before its first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
