@@ -52,7 +52,7 @@ class Structures:
         self._found: dict[Operand, Form] = {}
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, cheap templates first. Raises BudgetSpentError."""
+        """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
         known, places = templates(self.order.root), list(spots(self.order))
         told = self._told(known, places)
         groups = [*([told] if told else []), *self._groups(known, places)]
@@ -201,10 +201,9 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
         return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
-    if (
-        template.on == "sensor"
-    ):  # sensors are read where messages arrive, and correct the values that are sent
-        # ... before these are limited, so that the limits still hold
+    if template.on == "sensor":
+        # Sensors are read where messages arrive. They correct sent values before the values are limited, so that the
+        # limits still hold.
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
