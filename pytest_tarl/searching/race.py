@@ -46,7 +46,7 @@ class Race:
         self.gains: dict[Arm, dict[int, float]] = {}
 
     def run(self, arms: Sequence[Arm], seeds: int) -> None:
-        """Run all arms on the first `seeds` seeds, skipping those already run. Raises BudgetSpentError."""
+        """Run all arms on the first `seeds` seeds, skipping those already run. Raise BudgetSpentError."""
         pairs = self.pairs[:seeds]
         wanted = [(arm, one) for arm in arms if (one := arm.candidate(self.mutate)) is not None]
         for pair in pairs:

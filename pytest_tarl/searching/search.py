@@ -1,4 +1,4 @@
-"""What all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
+"""The parts that all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
 A mission is one episode of the test. A candidate holds on a seed if its mission there earns about as much as designed.
 A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
@@ -21,10 +21,18 @@ from tarl_lint.model import Operand
 Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
-FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
-CONFIRMATIONS = 5  # further seeds on which a promising candidate must also earn enough ...
-HARD = 2  # ... starting with at most this many seeds on which other candidates earned too little
-FAR = 0.6  # a candidate that gains this share of the wanted gain releases the reserve of episodes
+FACTORS = (
+    2.2,
+    0.4,
+    5.0,
+    0.15,
+    1.5,
+    0.65,
+    10.0,
+)  # factors on a constant, in the order in which they are tried
+CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
+HARD = 2  # maximum number of those seeds that are chosen because other candidates earned too little on them
+FAR = 0.6  # a candidate that gains this share of the wanted gain makes the reserve of episodes available
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -95,7 +103,7 @@ class Goal:
 
 
 class BudgetSpentError(Exception):
-    """The search has spent its budget of episodes."""
+    """Raised if the search has spent its budget of episodes."""
 
 
 def lost_nothing(_: Candidate) -> bool:
@@ -115,8 +123,10 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    reserve: int = 0  # extra episodes, added to the budget once a candidate has gained `FAR` ...
-    worth: Goal | None = None  # ... of the gain wanted by this goal
+    reserve: int = (
+        0  # extra episodes, added to the budget once a candidate has gained `FAR` of what `worth` wants
+    )
+    worth: Goal | None = None  # the goal whose wanted gain releases `reserve`
     loses: Callable[[Candidate], bool] = (
         lost_nothing  # whether a candidate loses the missions that rejected candidates lost
     )
@@ -135,7 +145,7 @@ class Trials:
     )  # totals of candidates that fell short, by seed
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
-        """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""
+        """Return the outcome of one episode, from the cache if it has run. Raise BudgetSpentError and RepairError."""
         key = (candidate, seed)
         if key not in self._known:
             self._afford()
@@ -152,7 +162,7 @@ class Trials:
     def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
         """Return the mean deviation of a candidate's missions from the designed ones (see `course`), 0 if unknown.
 
-        Each designed mission that runs is charged to the budget once. Raises BudgetSpentError and RepairError.
+        Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
         """
         found = [deviation(self(candidate, seed).rewards, self._designed(seed)) for seed in seeds]
         return fmean(found) if self.design is not None else 0.0
@@ -166,7 +176,7 @@ class Trials:
         return self._course[seed]
 
     def charge(self) -> None:
-        """Count an episode that is about to run in the designed world. Raises BudgetSpentError."""
+        """Count an episode that is about to run in the designed world. Raise BudgetSpentError."""
         self._afford()
         self.beside += 1
 
@@ -211,7 +221,7 @@ class Trials:
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Return whether a candidate will probably earn too little, estimated from earlier candidates that did.
+        """Return whether a candidate will probably earn too little, judging by earlier candidates that did.
 
         The estimate uses an earlier candidate as a control variate: its mean total, plus the mean difference between
         the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
@@ -301,7 +311,7 @@ class Strategy(Protocol):
     """Interface of a search."""
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, best first. Raises BudgetSpentError."""
+        """Yield confirmed candidates, best first. Raise BudgetSpentError."""
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site id, the best gain found for each of its operands."""

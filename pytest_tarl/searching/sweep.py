@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
-LEADING = 3  # best units that get larger steps before the next guard is tried ...
-HINT = 0.005  # ... if they gained at least this share of the loss
-FLIP = -1.0  # flips the sign
+LEADING = 3  # number of best units that get larger steps before the next guard is tried
+HINT = 0.005  # minimum gain of those units, as a share of the loss
+FLIP = -1.0  # factor that flips the sign
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
-FINE = (*FINER, 1.1, 0.91)  # for operands that change the reward but gain nothing with larger steps
+FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but gain nothing with larger steps
 BETWEEN_FINE = (
     1.16,
     0.86,
@@ -46,13 +46,17 @@ BETWEEN_FINE = (
     0.95,
     1.35,
     0.74,
-)  # for named constants, if the `FINE` steps gain nothing either
+)  # factors for named constants, if the `FINE` steps gain nothing either
 LAST = (10.0, 0.05)
-FLIPPED = 3  # number of units to try with the other sign, because a smaller value gained
-REFINEMENTS = 3  # consecutive refinements of one operand while it gains `PROMISING` ...
-REFINED = 8  # ... and maximum number of refining runs per operand
-PLAINER_ROUNDS = 2  # refinements of each constant whose change reads plainer than the candidate found ...
-PLAINER = 12  # ... and maximum number of runs for all of them
+FLIPPED = (
+    3  # maximum number of units to try with the other sign, among those that gained with a smaller value
+)
+REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
+REFINED = 8  # maximum number of runs that refine one operand
+PLAINER_ROUNDS = (
+    2  # number of refinements of each constant whose change reads plainer than the candidate found
+)
+PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
 SLACK = 0.1  # a smaller step may lose this share of the loss to repair before larger steps are skipped
 
 
@@ -103,7 +107,7 @@ class Sweep:
         self._compared = (
             False  # whether rival constants were already compared by the course of their missions
         )
-        self._replaced: set[Unit] = set()  # units for which gentler ones were already tried
+        self._replaced: set[Unit] = set()  # units for which gentler units were already tried
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
 
@@ -190,7 +194,7 @@ class Sweep:
         yield from self._refine(pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try operands outside all data flows, such as the period of a timer."""
+        """Try operands that are in no data flow, such as the period of a timer."""
         new = [unit for unit in late if unit not in self.units]
         self.units = (*self.units, *new)
         for guard in guards if new else ():
