@@ -21,7 +21,10 @@ OFF_ON = Choice((False, True))
 
 @dataclass(frozen=True)
 class TopicFault:
-    """A fault of all messages on one topic. `begin` makes the channel of an episode from the fault's size and random numbers."""
+    """A fault of all messages on one topic.
+
+    `begin` makes the channel of an episode from the fault's size and random numbers.
+    """
 
     kind: str
     topic: str
@@ -91,9 +94,8 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
-LONGEST = (
-    1e9  # s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
-)
+# s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
+LONGEST = 1e9
 
 
 def moment(value: Any) -> float | None:
