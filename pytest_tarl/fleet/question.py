@@ -37,7 +37,7 @@ class Question:
     alpha: float = 0.05
     tolerance: float | None = None
     cluster: str = ""  # address of a Dask scheduler; without it, threads of this process are used
-    workers: int = 1  # number of such threads
+    workers: int = 1  # number of threads of this process, without a cluster
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Answer:
     groups: tuple[groups.Group, ...]
     onsets: robots.Robots  # the evidence on each group
     robots: robots.Robots
-    parts: decomposition.Decomposition | None  # None with one robot
+    parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
