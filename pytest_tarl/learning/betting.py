@@ -17,7 +17,8 @@ from statistics import fmean, variance
 from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares of the wealth that each bet may lose in the worst possible episode
-# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9 accepts 197 and
+# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9
+# accepts 197 and
 # 0.5 accepts 93. Correct repairs that seldom fail are accepted equally often with both.
 OF_BOLD = 0.9
 DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes

@@ -86,9 +86,8 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
         return -inf
     if least <= 0.0:
         return 0.0
-    above = BinomialTail(passed, episodes + 1)(
-        least
-    )  # probability that a Beta(passed + 1, failed + 1) variable is above `least`
+    # probability that a Beta(passed + 1, failed + 1) variable is above `least`
+    above = BinomialTail(passed, episodes + 1)(least)
     if above <= 0.0:
         return -inf
     mixed = log(above) - log(episodes + 1) - log_choose(episodes)[passed] - log1p(-least)

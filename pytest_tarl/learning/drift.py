@@ -26,9 +26,8 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-MATERIAL = (
-    0.1  # a cell is in the region if its difference is at least this share of the largest significant one
-)
+# a cell is in the region if its difference is at least this share of the largest significant one
+MATERIAL = 0.1
 
 
 @dataclass(frozen=True)

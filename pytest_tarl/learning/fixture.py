@@ -66,9 +66,8 @@ class Fixture:
     design: tuple[str, ...] = ()  # names of permanent drifts that are part of the design
     signals: tuple[Signal, ...] = ()  # signals that formulas read from messages
     stated: Guarantee | None = None
-    world: Mapping[str, Mapping[str, str]] = field(
-        default_factory=dict
-    )  # file → definition → digest, see modules_of_tests.py
+    # file → definition → digest, see modules_of_tests.py
+    world: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def statements(self) -> list[tuple[str, str, list[str]]]:

@@ -16,9 +16,8 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-SETTLED = (
-    0.2  # further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
-)
+# further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
+SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
 
