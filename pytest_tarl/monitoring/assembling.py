@@ -62,9 +62,8 @@ class Assembly:
     place: int
     missions: int = 0
     unfinished: int = 0
-    _last: Spot | None = (
-        None  # the last record of the latest mission, or a later record that belongs to no mission
-    )
+    # the last record of the latest mission, or a later record that belongs to no mission
+    _last: Spot | None = None
     _latest: Spot | None = None  # the last record read
     # start time (in s since 1970) and steps of the unfinished mission
     _mission: tuple[float, list[Steps]] | None = None

@@ -53,9 +53,8 @@ class Scale:
     """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    known: NDArray[
-        np.bool_
-    ]  # whether the model was fitted in a cell; the last entry, False, is for all other cells
+    # whether the model was fitted in a cell; the last entry, False, is for all other cells
+    known: NDArray[np.bool_]
     model: Model
     edges: Floats
 
