@@ -46,9 +46,8 @@ class Topics:
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
     """Pass messages to the observer while a node of this client library runs. Raise LogError."""
-    import_module(
-        library
-    )  # import it before any message type, because the library selects ROS 1 or ROS 2 messages
+    # import it before any message type, because the library selects ROS 1 or ROS 2 messages
+    import_module(library)
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
     resume = _watch_publishing(library, observer) if idle else None

@@ -71,9 +71,8 @@ class Observer:
         self.running = False  # whether a mission runs
         self.problem = ""  # the first error of the observer; errors must not reach the node
         self._lock = threading.RLock()  # keeps records in order
-        self._over = (
-            threading.Lock()
-        )  # locked until `close`; waiting for an Event would cost the node more time
+        # locked until `close`; waiting for an Event would cost the node more time
+        self._over = threading.Lock()
         self._over.acquire()
         self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)
         self._outlet.put("start", time())
