@@ -41,9 +41,8 @@ class Mutation:
     operand: Operand
     value: float | int | bool
     place: Place | None = None
-    form: Form | None = (
-        None  # set for a structural repair: the operand is then an expression and the value a factor
-    )
+    # set for a structural repair: the operand is then an expression and the value a factor
+    form: Form | None = None
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)
 

@@ -31,11 +31,8 @@ SCALES = (  # units of a parameter's default
 )
 FIXED = "designed"  # parameters with this scale stay fixed in the search
 STRONGER = ("larger", "smaller")
-OPERATORS = (
-    "op",
-    "closed",
-    "back",
-)  # placeholders of comparisons: the operator, its form with or without equality, its reverse
+# placeholders of comparisons: the operator, its form with or without equality, its reverse
+OPERATORS = ("op", "closed", "back")
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 LEADING = {
