@@ -42,9 +42,8 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        self.chosen: set[Candidate] = (
-            set()
-        )  # values that earned more than the tested value on missions of its test
+        # values that earned more than the tested value on missions of its test
+        self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
         """Propose larger steps if the candidate fails on some seeds, smaller ones if it only earns too little.

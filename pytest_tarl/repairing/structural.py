@@ -202,7 +202,8 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":
-        # Sensors are read where messages arrive. They correct sent values before the values are limited, so that the
+        # Sensors are read where messages arrive. They correct sent values before the values are limited, so
+        # that the
         # limits still hold.
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
