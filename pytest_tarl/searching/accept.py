@@ -30,9 +30,9 @@ SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-SHARE = (
-    2 / 3
-)  # share of the risk α spent on the first candidate; each later test spends a third of the risk of the test before it
+# share of the risk α spent on the first candidate; each later test spends a third of the risk of the test
+# before it
+SHARE = 2 / 3
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,9 +19,8 @@ from pytest_tarl.sensors import Cell, Sensor
 ALWAYS = Guard()
 COVERED = 0.95  # a guard that holds in this share of the drifted steps counts as holding everywhere
 ENTIRELY = 0.999  # share of drifted steps from which on a search under a guard is as good as without it
-HARMLESS = (
-    0.25  # bonus in the merit of a guard that never holds in the designed world, as a share of the change
-)
+# bonus in the merit of a guard that never holds in the designed world, as a share of the change
+HARMLESS = 0.25
 CONDITION = 0.1  # cost of a second condition in the merit of a guard, as a share of the change
 EVERYWHERE = 0.3  # if no guard has at least this merit, the drift counts as present everywhere
 WIDER = 2  # bins added to each side of an interval for the last proposals

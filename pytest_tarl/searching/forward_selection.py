@@ -17,9 +17,8 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
-LEADERS = (
-    5  # number of further units to combine with the first unit, because a useful unit may gain little alone
-)
+# number of further units to combine with the first unit, because a useful unit may gain little alone
+LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly
 CLIMB = 4  # maximum number of times that a fixed parameter is moved by such a factor

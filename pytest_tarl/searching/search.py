@@ -21,17 +21,10 @@ from tarl_lint.model import Operand
 Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
-FACTORS = (
-    2.2,
-    0.4,
-    5.0,
-    0.15,
-    1.5,
-    0.65,
-    10.0,
-)  # factors on a constant, in the order in which they are tried
+# factors on a constant, in the order in which they are tried
+FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
-HARD = 2  # maximum number of those seeds that are chosen because other candidates earned too little on them
+HARD = 2  # maximum number of seeds for confirmation that are chosen because other candidates failed there
 FAR = 0.6  # a candidate that gains this share of the wanted gain makes the reserve of episodes available
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
@@ -123,26 +116,21 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    reserve: int = (
-        0  # extra episodes, added to the budget once a candidate has gained `FAR` of what `worth` wants
-    )
+    # extra episodes, added to the budget once a candidate has gained `FAR` of what `worth` wants
+    reserve: int = 0
     worth: Goal | None = None  # the goal whose wanted gain releases `reserve`
-    loses: Callable[[Candidate], bool] = (
-        lost_nothing  # whether a candidate loses the missions that rejected candidates lost
-    )
+    # whether a candidate loses the missions that rejected candidates lost
+    loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
-    misses: Counter[int] = field(
-        default_factory=Counter
-    )  # seed → number of candidates that earned too little on it
+    # seed → number of candidates that earned too little on it
+    misses: Counter[int] = field(default_factory=Counter)
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    _course: dict[int, tuple[float, ...]] = field(
-        default_factory=dict
-    )  # rewards of designed missions, by seed
-    _short: list[dict[int, float]] = field(
-        default_factory=list
-    )  # totals of candidates that fell short, by seed
+    # rewards of designed missions, by seed
+    _course: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    # totals of candidates that fell short, by seed
+    _short: list[dict[int, float]] = field(default_factory=list)
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
         """Return the outcome of one episode, from the cache if it has run. Raise BudgetSpentError and RepairError."""

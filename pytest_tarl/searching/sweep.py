@@ -34,28 +34,20 @@ if TYPE_CHECKING:
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
-HINT = 0.005  # minimum gain of those units, as a share of the loss
+HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
 FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but gain nothing with larger steps
-BETWEEN_FINE = (
-    1.16,
-    0.86,
-    1.05,
-    0.95,
-    1.35,
-    0.74,
-)  # factors for named constants, if the `FINE` steps gain nothing either
+# factors for named constants, if the `FINE` steps gain nothing either
+BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
-FLIPPED = (
-    3  # maximum number of units to try with the other sign, among those that gained with a smaller value
-)
+# maximum number of units to try with the other sign, among those that gained with a smaller value
+FLIPPED = 3
 REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 REFINED = 8  # maximum number of runs that refine one operand
-PLAINER_ROUNDS = (
-    2  # number of refinements of each constant whose change reads plainer than the candidate found
-)
+# number of refinements of each constant whose change reads plainer than the candidate found
+PLAINER_ROUNDS = 2
 PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
 SLACK = 0.1  # a smaller step may lose this share of the loss to repair before larger steps are skipped
 
@@ -104,9 +96,8 @@ class Sweep:
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
-        self._compared = (
-            False  # whether rival constants were already compared by the course of their missions
-        )
+        # whether rival constants were already compared by the course of their missions
+        self._compared = False
         self._replaced: set[Unit] = set()  # units for which gentler units were already tried
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
@@ -276,9 +267,8 @@ class Sweep:
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
             if not self._gains.of(other, guard) and ALWAYS in self.guards:
-                held = (
-                    ALWAYS  # the condition cannot be written at this place, for example in a helper function
-                )
+                # the condition cannot be written at this place, for example in a helper function
+                held = ALWAYS
                 for factor in NEAR:
                     yield from self._try(other, held, factor, pair)
             yield from self._closer(other, held, before, pair)
