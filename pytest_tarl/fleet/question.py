@@ -60,7 +60,7 @@ class Answer:
     copies: int  # number of repeated rows, beyond the first row of each mission
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
-    onsets: robots.Robots  # the evidence on each group
+    onsets: robots.Robots  # the evidence that each group changed, and since when
     robots: robots.Robots
     parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
