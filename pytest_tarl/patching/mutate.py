@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 class Mutation:
     """A new value for an operand at its use.
 
-    An operand is a use of a constant. `value` is the new value of a literal. For other operands it is a factor on the
-    use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at the
-    constant's definition instead.
+    An operand is a use of a constant. `value` is the new value of a literal. For other operands, `value` is a factor on
+    the use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at
+    the constant's definition instead.
     """
 
     operand: Operand
