@@ -40,8 +40,8 @@ LEAST = 50  # minimum number of episodes for templates with a telling sensor; li
 class Structures:
     """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
 
-    Templates of equal cost share a part of the episodes, in proportion to their number of parameters. If one of them
-    gains much, the group also gets half of the episodes left for the other groups.
+    Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
+    parameters. If one of them gains much, the group also gets half of the episodes left for the other groups.
     """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
