@@ -23,7 +23,7 @@ from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
-SCREEN = 8  # episodes before the test
+SCREEN = 8  # number of episodes before the test, from which the bet is chosen
 EARLY = (8, 16, 32)  # looks (numbers of episodes after which the test is evaluated) that can only refuse
 LOOKS = tuple(range(60, 201, 20))  # looks (see EARLY) that can refuse or accept
 SEEDS = SCREEN + LOOKS[-1]
