@@ -11,7 +11,7 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """Raised if a hunk matches no place in the file; the argument is its original line number, counted from 1."""
+    """A hunk matches no place in the file; the argument is its original line number, counted from 1."""
 
 
 @dataclass(frozen=True, slots=True)
