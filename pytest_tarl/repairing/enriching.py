@@ -20,7 +20,7 @@ from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, 
 
 ENOUGH = 1 + CONFIRMATIONS  # number of losing seeds that a search needs
 LOOKED_AT = 12  # maximum number of recorded missions to run under the drift to find such seeds
-SELECTED = 0.5  # if at least this share of the episodes fails, the failing ones count as typical
+SELECTED = 0.5  # if this share of episodes fails or more, the failing ones are no selection
 CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
 
 

@@ -41,7 +41,7 @@ class Structures:
     """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
 
     Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
-    parameters. If one of them gains much, the group also gets half of the episodes left for the other groups.
+    parameters. If one of its templates gains much, it also gets half of the episodes left for the other groups.
     """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
