@@ -96,9 +96,10 @@ class Sweep:
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
-        # whether rival constants were already compared by the course of their missions
-        self._compared = False
-        self._replaced: set[Unit] = set()  # units for which gentler units were already tried
+        self._compared = (
+            False  # whether rival constants were already compared by the course of their missions
+        )
+        self._replaced: set[Unit] = set()  # units for which gentler ones were already tried
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
 
