@@ -10,7 +10,7 @@ from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import field_names, is_message
 from pytest_tarl.ros.messages.values import FieldError
 
-OF_ONE_GENERATION = {"seq"}  # fields that only ROS 1 has, in a header
+OF_ONE_GENERATION = {"seq"}  # fields of a header that only ROS 1 has
 
 
 def class_named(name: str, kind: Kind) -> type[Any] | None:
@@ -41,7 +41,7 @@ def _value(value: Any, template: Any, kind: Kind) -> Any:
         return _numbers(value, template, kind)
     if isinstance(value, list) and value and hasattr(value[0], "__msgtype__"):
         return [_element(one, kind) for one in value]
-    if isinstance(template, bytes) and isinstance(value, int):  # a single byte of ROS 2
+    if isinstance(template, bytes) and isinstance(value, int):  # ROS 2 stores a single byte as `bytes`
         return bytes([value])
     return value
 

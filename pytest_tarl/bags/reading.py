@@ -116,7 +116,7 @@ def _unreadable() -> tuple[type[Exception], ...]:
 
 
 def _of_databases() -> Iterator[type[Exception]]:
-    """Yield the exceptions of the database libraries with which versions of rosbags read .db3 files."""
+    """Yield the exceptions of the database libraries that any version of rosbags uses to read .db3 files."""
     for name in ("apsw", "sqlite3"):
         with suppress(ImportError):
             yield import_module(name).Error

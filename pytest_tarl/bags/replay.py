@@ -39,7 +39,7 @@ ALWAYS_THERE = {
 
 
 class MissionReplayed(Skipped):
-    """Raised to leave the test body after the replay, because the rest of the body drives its own world."""
+    """Raised to leave the test body after the replay, because the rest of the body would drive the test's own world."""
 
 
 class Moment:
@@ -48,7 +48,7 @@ class Moment:
     def __init__(self, bag: Bag) -> None:
         self.now = 0.0  # seconds since the bag began
         self.over = False  # whether this is the last step
-        self.observe: Callable[..., None] = _unheard  # sets signals that are on no topic
+        self.observe: Callable[..., None] = _unheard  # sets signals that come from no topic
         self._bag = bag
         self._data: dict[str, bytes] = {}
         self._read: dict[str, Any] = {}
@@ -106,8 +106,8 @@ class Replay:
     ) -> None:
         """Replay the mission in steps of `dt` seconds; close each step once `ready` returns true.
 
-        `close` receives the monitor's judgement, or None if formulas judge. `observe` lets the monitor set signals.
-        Raise SettingsError if `dt` is not positive.
+        `close` receives the reward from the monitor, or None if the rewards come from formulas. `observe` lets the
+        monitor set signals. Raise SettingsError if `dt` is not positive.
         """
         step = nanoseconds(dt)
         if step <= 0:
@@ -189,14 +189,14 @@ def _unheard(**values: Any) -> None:
 def _chosen(
     monitor: Monitor | None, judge: Judge | None, sensors: Sequence[Sensor], requirements: Requirements
 ) -> Monitor | None:
-    """Return the monitor of a mission; if formulas judge, it only observes."""
+    """Return the monitor of a mission; if the rewards come from formulas, the monitor only observes."""
     if requirements.rewarding:
         return _watching(_made(monitor)) if monitor is not None else None
     return _made(monitor) if monitor is not None else _judging(judge, sensors)
 
 
 def _watching(monitor: Monitor) -> Any:
-    """Return a monitor whose own judgement is discarded."""
+    """Return a monitor that calls another one and discards its reward."""
 
     def watch(moment: Moment) -> None:
         monitor(moment)

@@ -26,7 +26,7 @@ _SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # record types of MC
 
 
 class CutOffError(Exception):
-    """The file ends inside a record."""
+    """Raised if a file ends inside a record."""
 
 
 def walk(path: Path) -> Walk:
@@ -149,13 +149,13 @@ def _inflated(data: bytes, compression: str) -> bytes:
     return bytes(_decompressor(compression).decompress(data))
 
 
-_ZSTANDARD = ("zstandard", "ZstdDecompressor")  # of rosbags 0.11.0
+_ZSTANDARD = ("zstandard", "ZstdDecompressor")  # library that rosbags 0.11.0 uses
 
 
 def _decompressor(compression: str) -> Any:
     """Return a streaming decompressor from the library that the installed `rosbags` depends on.
 
-    Raises ValueError for an unsupported compression.
+    Raise ValueError for an unsupported compression.
     """
     if compression == "bz2":
         return bz2.BZ2Decompressor()

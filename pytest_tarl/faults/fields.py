@@ -38,7 +38,7 @@ def store(message: Any, field: str, value: Any) -> None:
 
 
 def no_such_field(name: str, kind: str, topic: str, field: str, message: Any) -> SettingsError:
-    """Return the error for a fault whose field the messages lack, or do not have as a number."""
+    """Return the error for a fault of a field that the messages lack or that is not a number."""
     return SettingsError(
         f"faults.{kind} of {name!r}: a message on {topic} ({type(message).__name__}) has no number {field!r}. Correct "
         "the field in the marker."

@@ -12,7 +12,7 @@ from pytest_tarl.spaces import Fault
 
 @dataclass(frozen=True)
 class Faults:
-    """All declared faults by direction, and the sizes that one episode draws; `seed` is the episode's."""
+    """All declared faults by direction, and their sizes in one episode; `seed` is the seed of that episode."""
 
     declared: Mapping[str, Fault] = field(default_factory=dict)
     active: Mapping[str, tuple[Fault, float]] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""A node that crashes and is respawned, as by its launch file."""
+"""A node that crashes and is started again, as by a launch file with `respawn`."""
 
 from __future__ import annotations
 

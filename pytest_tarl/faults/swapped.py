@@ -1,4 +1,4 @@
-"""Two swapped axes, as by a sensor mounted at an angle of 90°, or by another frame convention."""
+"""Two swapped axes, as caused by a sensor mounted at an angle of 90° or by another frame convention."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def swapped(topic: str, first: str, second: str) -> TopicFault:
-    """Return a fault that exchanges the values of two fields, or does not."""
+    """Return a fault that is off or on; if it is on, it exchanges the values of two fields."""
 
     def exchange(message: Any, _now: float) -> Arrivals:
         copy = deepcopy(message)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 Arrivals = Iterable[tuple[float, Any]]  # (delay in s, message)
-Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → its arrivals, in order
+Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → arrivals of the message, in order
 OFF_ON = Choice((False, True))
 
 
@@ -94,9 +94,8 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
-LONGEST = (
-    1e9  # s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
-)
+# s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
+LONGEST = 1e9
 
 
 def moment(value: Any) -> float | None:

@@ -1,4 +1,4 @@
-"""The mission of a bag: its identity comes from its messages, its statistics from a replay."""
+"""The mission of a bag: its identity is computed from its messages, its statistics from a replay."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Bagged:
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether the name of a file or folder is that of a bag."""
+    """Return whether a file or folder is named like a bag."""
     return path.is_dir() or path.name.endswith(ENDINGS)
 
 
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    if bag.notes:  # truncated: the complete bag would have another identity
+    if bag.notes:  # the bag is truncated, and the complete bag would have another identity
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
             "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."

@@ -42,7 +42,7 @@ class Clusters:
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
     left_out: int = 0
-    maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # by robot
+    maps: Mapping[str, ResidualMap] = field(default_factory=dict, compare=False)  # residual maps by robot
 
 
 def clustered(
@@ -62,7 +62,7 @@ def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
     """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual, by cell."""
-    # sorted, because the last bits of sums depend on the order
+    # in sorted order, because the last bits of sums depend on the order
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]
     unclear = tuple(sorted({one.robot for one in maps} - {one.robot for one in clear}))

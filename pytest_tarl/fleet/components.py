@@ -3,13 +3,14 @@
 The model of a mission's reward is y = Σ effect of its version, site and season + effect of its robot + rest. The
 effects of factors are fixed numbers, one for each level; those of robots are random, with variance σ_r².
 
-- σ_e² (rest) and σ_r² by fitting constants (Henderson 1953, "Estimation of variance and covariance components",
-  Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set equal to
-  their expectations, which gives one equation for each variance. The method assumes no distribution.
-- The effects by generalised least squares with these variances (Fuller & Battese 1973, JASA 68:626-632).
+- σ_e² (rest) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and covariance
+  components", Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set
+  equal to their expectations, which gives one equation for each variance. The method assumes no distribution.
+- The effects are estimated by generalised least squares with these variances (Fuller & Battese 1973, JASA 68:626-632).
 - The component of a factor is the variance of its effects over missions (a finite population; Gelman 2005, Annals of
   Statistics 33:1-53), Σ share·(effect - mean)², minus what the errors of the effects add to it, tr(M·Cov).
-- Intervals by a bootstrap over robots (Davison & Hinkley 1997, section 3.8), since missions of one robot are alike.
+- Intervals come from a bootstrap over robots (Davison & Hinkley 1997, section 3.8), since missions of one robot are
+  alike.
 
 All sums come from one row for each robot and combination of levels.
 """

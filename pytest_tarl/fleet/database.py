@@ -1,4 +1,4 @@
-"""The missions of a question in an embedded DuckDB, each once, ordered by robot, time and identity.
+"""Load the missions of a question into an embedded DuckDB: each once, ordered by robot, time and identity.
 
 The database has one row for each mission; the rows of cells stay in their files (partitions.py). DuckDB only counts
 integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order, so results do not depend on
@@ -125,12 +125,12 @@ def _spilled() -> Iterator[str]:
     with folder as name:
         yield name
     for one in made:
-        with suppress(OSError):  # another run uses it
+        with suppress(OSError):  # another run uses the folder
             one.rmdir()
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; of several copies of one, keep the first in the order of version, robot and site."""
+    """Load the missions; of several copies of a mission, keep the first by version, robot and site."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0

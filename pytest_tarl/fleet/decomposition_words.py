@@ -9,7 +9,7 @@ from pytest_tarl.fleet.components import Component
 from pytest_tarl.fleet.decomposition import Decomposition
 
 NAMES = {"mission": "within a robot"}
-EXTREMES = 2  # number of levels named for each factor
+EXTREMES = 2  # maximum number of levels named for each factor
 
 
 def lines(parts: Decomposition) -> Iterator[str]:

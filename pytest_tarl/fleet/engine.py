@@ -26,7 +26,7 @@ from pytest_tarl.extras import install_command
 
 REACHED = 10  # maximum seconds to wait for the scheduler
 RETRIES = 3  # maximum retries of a task whose worker dies
-AHEAD = 2  # waiting and running tasks per thread of a cluster, limited to bound the memory
+AHEAD = 2  # maximum number of waiting and running tasks per thread of a cluster, to bound the memory
 WINDOW = 8  # tasks passed to Dask together, per thread of this process
 
 Result = TypeVar("Result")
@@ -88,7 +88,7 @@ class Cluster:
 
     def _submitted(self, function: Callable[..., Result], arguments: tuple[Any, ...]) -> Future[Result]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # Dask's on the size of a task's arguments
+            warnings.simplefilter("ignore", UserWarning)  # Dask warns about large arguments of tasks
             return self.executor.submit(_by_one_thread, function, *arguments)
 
 

@@ -49,7 +49,7 @@ class Group:
     reward: float  # mean total
     success: Bound
     mean: Bound
-    outside: int  # number of totals outside the declared range; with any, the bound of the mean is not exact
+    outside: int  # number of totals outside the declared range; if it is above 0, the bound of the mean is not exact
     compared: int
     verdict: Verdict | None
     region: Region

@@ -26,9 +26,10 @@ from pytest_tarl.report.json_result import finite
 from pytest_tarl.report.regions import Vocabulary
 from pytest_tarl.sensors import Cell
 
-MOST_GROUPS = 2000  # groups on the map: those that differ, then those with the lowest reward
-MOST_CELLS = 12  # cells listed, for the fleet and for a robot
-NAMES = 30  # robots of a cluster that are linked
+# maximum number of groups on the map: those that differ, then those with the lowest reward
+MOST_GROUPS = 2000
+MOST_CELLS = 12  # maximum number of cells listed for the fleet, and for each robot
+NAMES = 30  # maximum number of a cluster's robots that are shown as links
 TAGS = {"helps": "helps", "harms": "harms"}
 
 
@@ -242,7 +243,7 @@ def _group(one: Group, watched: Robot, changed: bool, vocabulary: Vocabulary) ->
 
 
 def _since(one: Robot) -> tuple[int, float] | None:
-    """Return the mission and time at which the difference began, for the question with more evidence."""
+    """Return the mission and time at which the difference began, according to the test with more evidence."""
     if one.status is None:
         return None
     below = lower(one.status)

@@ -34,7 +34,7 @@ class Order:
     logs: tuple[Path, ...]
     to: str
     fixture: Path
-    robot: str  # {folder} and {file} are replaced by those of each log
+    robot: str  # {folder} and {file} are replaced by the names of each log's folder and file
     version: str = "unknown"
     site: str = "unknown"
     salt: str = ""  # if given, names of robots are replaced by digests
@@ -129,7 +129,7 @@ def keep_origin(to: Store, given: str, repair: str) -> None:
     try:
         facts = dict(read(Path(given)).facts)
     except RepairError:
-        return  # a patch of another program; only its name is known
+        return  # the patch is from another program, so only its name is known
     known = {key: facts[key] for key in REPAIRS_KEEP if key in facts}
     to.write(repair_path(repair), json.dumps(known, ensure_ascii=False, sort_keys=True).encode())
 

@@ -58,7 +58,7 @@ def _is_log(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
     except OSError:
-        return False  # reading it as a recording gives the reason
+        return False  # the later attempt to read it as a recording reports the reason
 
 
 def _parts(files: Sequence[Path], samples: Sequence[Sequence[Sample]]) -> Iterator[Part]:
@@ -87,7 +87,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of the episodes, without the digests of modules that differ between recordings."""
+    """Return the recording of the episodes; digests of modules that differ between recordings are left out."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(

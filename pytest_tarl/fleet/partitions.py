@@ -42,7 +42,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Transitions:
-    """Rows of transitions, sorted by all columns; `number` is that of the mission.
+    """Rows of transitions, sorted by all columns; `number` is the number of the mission.
 
     `next_cell` is END after the last step.
     """
@@ -54,7 +54,7 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return them as a chain in which a mission's index is its place in the sorted `numbers`."""
+        """Return the transitions as a chain in which the index of a mission is its place in the sorted `numbers`."""
         episode: Ints = np.asarray(np.searchsorted(numbers, self.number), np.int64)
         return Chain(
             episode, self.cell, self.next_cell, self.count, self.reward, np.zeros((self.cell.size, 0))

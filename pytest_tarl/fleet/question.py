@@ -37,7 +37,7 @@ class Question:
     alpha: float = 0.05
     tolerance: float | None = None
     cluster: str = ""  # address of a Dask scheduler; without it, threads of this process are used
-    workers: int = 1  # number of such threads
+    workers: int = 1  # number of threads of this process, without a cluster
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ class Answer:
     copies: int  # number of repeated rows, beyond the first row of each mission
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
-    onsets: robots.Robots  # the evidence on each group
+    onsets: robots.Robots  # the evidence that each group changed, and since when
     robots: robots.Robots
-    parts: decomposition.Decomposition | None  # None with one robot
+    parts: decomposition.Decomposition | None  # None if there is only one robot
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]

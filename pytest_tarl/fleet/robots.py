@@ -3,10 +3,10 @@
 Each robot has its own monitor, as in `tarl watch`. An e-value measures evidence against a hypothesis: its expectation
 is at most 1 if the hypothesis is true. The last value of each process is an e-value if the number of missions does not
 depend on their results; it is large if the robot still differs. The adjusted running maximum (monitoring/e_bh.py) is an
-e-value at any time; it is large if the robot differed at some time. Their mean, averaged over the processes with their
-shares of α, is an e-value, too. e-BH over the robots keeps the expected share of wrongly named robots at or below q,
-even if robots are dependent. All monitors may therefore start from the same recording. For bounds, the share may be
-larger by the probability that a stated bound is wrong.
+e-value at any time; it is large if the robot differed at some time. The mean of these two e-values, averaged over the
+processes with their shares of α, is an e-value, too. e-BH over the robots keeps the expected share of wrongly named
+robots at or below q, even if robots are dependent. All monitors may therefore start from the same recording. For
+bounds, the share may be larger by the probability that a stated bound is wrong.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pytest_tarl.monitoring.monitor import Counts, Monitor, shares
 from pytest_tarl.monitoring.status import Evidence, Status
 from pytest_tarl.monitoring.status import status as status_of
 
-PORTION = 50_000  # missions judged together
+PORTION = 50_000  # number of missions judged together
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def watched(
 
 
 def named(every: tuple[Robot, ...], q: float) -> Robots:
-    """Return all robots with those that e-BH names."""
+    """Return all robots, and the robots that e-BH names."""
     return Robots(
         q=q,
         every=every,

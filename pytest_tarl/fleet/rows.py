@@ -33,12 +33,12 @@ class Row:
 
     @property
     def mission(self) -> int:
-        """Return its identity."""
+        """Return the identity of the mission."""
         return self.sample.seeds[0]
 
     @property
     def date(self) -> str:
-        """Return its day in UTC; 1970-01-01 if the clock was wrong."""
+        """Return the day of the mission in UTC; 1970-01-01 if the clock was wrong."""
         return date(self.time)
 
 

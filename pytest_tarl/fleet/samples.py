@@ -14,7 +14,7 @@ from pytest_tarl.fleet.store import Store
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.sensors import Cell
 
-COLUMNS = "number, mission, passed, total, steps"  # of missions
+COLUMNS = "number, mission, passed, total, steps"  # columns of the table `missions`
 COMPARED = """
     CREATE OR REPLACE TEMP TABLE compared AS
     SELECT number, group_number FROM (
@@ -33,7 +33,7 @@ def groups(
 ) -> Iterator[Sample]:
     """Yield at most `most` missions of each of `count` groups.
 
-    They are those with the smallest identities, which are digests and thus select at random.
+    Missions with the smallest identities are chosen; identities are digests, so the choice is random.
     """
     database.run(COMPARED, most)
     sizes = database.columns(

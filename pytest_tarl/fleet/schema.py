@@ -26,7 +26,7 @@ from pytest_tarl.sensors import Cell, binning_digest
 
 SCHEMA_VERSION = 2
 READABLE = (1, 2)
-TABLES = ("statements", "cells", "missions")  # in the order in which they are written
+TABLES = ("statements", "cells", "missions")  # the tables, in the order in which they are written
 PREFIX = "tarl."
 _NAME = pa.dictionary(pa.int32(), pa.string())
 
@@ -48,7 +48,7 @@ SCHEMAS = {
         [
             ("mission", pa.uint64()),
             ("cell", _NAME),  # bins of the sensors, such as 3,0
-            ("next_cell", _NAME),  # null: after the last step
+            ("next_cell", _NAME),  # null after the last step
             ("count", pa.int64()),
             ("reward", pa.float64()),  # sum over the steps
         ]

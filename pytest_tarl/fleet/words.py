@@ -13,7 +13,7 @@ from pytest_tarl.model import Bound
 from pytest_tarl.monitoring.status import Evidence
 from pytest_tarl.report.regions import Vocabulary
 
-NAMED = 20  # robots listed
+NAMED = 20  # maximum number of robots listed
 
 
 def lines(answer: Answer) -> Iterator[str]:

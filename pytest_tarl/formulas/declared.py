@@ -23,8 +23,8 @@ LONGEST = 1e9  # upper limit of an episode's length in s
 class Requirements:
     """The formulas of a test.
 
-    `cap` limits the reward if it comes from robustness; otherwise it is None. `lasts` is the longest episode in virtual
-    seconds.
+    `cap` limits the reward if robustness is the reward; otherwise `cap` is None. `lasts` is the longest episode in
+    virtual seconds.
     """
 
     signals: tuple[Signal, ...] = ()

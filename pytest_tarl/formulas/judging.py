@@ -19,10 +19,10 @@ NEGLIGIBLE = 1e-12  # margins smaller than this are shown as 0
 
 
 class Judged(NamedTuple):
-    """The result of one formula: its robustness, which is above 0 if it holds, and the time in s when it was lost.
+    """The result of one formula in an episode: its robustness, and the time in s from which it could no longer hold.
 
-    Robustness is NaN if the episode ended before the formula could be judged. `lost` is NaN if the formula was not
-    violated.
+    The robustness is above 0 if the formula holds, and NaN if the episode ended before the formula could be judged.
+    `lost` is NaN if the formula was not violated.
     """
 
     formula: str

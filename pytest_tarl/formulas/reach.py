@@ -34,7 +34,7 @@ def _unjudged(node: Any, span: Span, end: float) -> str:
 
 
 def _spans(node: Any, first: float, last: float) -> list[Span]:
-    """Return the spans of instants at which a node's operands are evaluated, or none for a comparison."""
+    """Return the spans of instants at which a node's operands are evaluated; a comparison has no spans."""
     if isinstance(node, FUTURE):
         begin, end = bounds(node) if isinstance(node, TIMED) else (0, math.inf)
         return [(first, last + end), (first + begin, last + end)][-len(operands(node)) :]

@@ -1,4 +1,4 @@
-"""Compute the robustness of a formula over an episode, and the instant when the formula was lost.
+"""Compute the robustness of a formula over an episode, and the instant after which it can no longer hold.
 
 Robustness is the margin by which a formula holds; it is negative if the formula is violated.
 """
@@ -74,7 +74,8 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
     """Return the first instant after which no future can satisfy the formula; None if it can still be satisfied.
 
-    The result is never too early. It can be late if atoms depend on each other, because each is bounded alone.
+    The returned instant is never too early. It can be too late if atoms depend on each other, because the future of
+    each atom is bounded separately.
     """
     low, high = 0, len(instants)
     while low < high:

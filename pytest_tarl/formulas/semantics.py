@@ -4,9 +4,10 @@ Time is counted in whole nanoseconds. Signals are constant between their changes
 window extends past the known part of an episode, a subformula keeps its last value there. Before the beginning, it has
 its first value. Values are therefore finite wherever signals are.
 
-The corrections of rtamt 0.4 in dense time are the following. `until` and `since` do not require the left side at the
-instant of the right side, as in discrete time. A comparison at equality is slightly positive if it holds and slightly
-negative otherwise (`TRUTH`). An empty window is not infinite. Units of bounds are converted in the right direction.
+The corrections of rtamt 0.4 in dense time are the following. As in discrete time, `until` and `since` do not require
+the left side to hold at the instant at which the right side holds. A comparison at equality is slightly positive if it
+holds and slightly negative otherwise (`TRUTH`). An empty window is not infinite. Units of bounds are converted in the
+right direction.
 """
 
 from __future__ import annotations

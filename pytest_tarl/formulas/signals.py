@@ -17,7 +17,7 @@ Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rta
 
 @dataclass(frozen=True)
 class Signal:
-    """A number for formulas that is not a sensor.
+    """A number that formulas can use and that is not the value of a sensor.
 
     If `topic` and `field` are given, the number is read from every message on the topic, including messages that the
     node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number:
@@ -47,7 +47,7 @@ class Signal:
 
 
 def stored_signal(signal: Signal) -> Signal:
-    """Return the signal in a form that can be stored: a function becomes its name."""
+    """Return the signal in a form that can be stored: a function is replaced by its name."""
     if not callable(signal.field):
         return signal
     return replace(

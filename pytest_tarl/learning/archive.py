@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # unpacked bytes that any file may have
+FREE = 256_000_000  # unpacked bytes allowed for a file of any size
 RATIO = 100  # unpacked bytes allowed beyond FREE, per byte of the file; recordings need 2 to 20
 # bytes of memory per unpacked byte while a recording is read (benchmarks/limits.py, case recording)
 NEEDED = 9
@@ -23,11 +23,11 @@ ENDING = ".npy"
 
 
 class DamagedError(ValueError):
-    """An archive is not a valid recording; the argument is a clause that gives the reason."""
+    """Raised if an archive is not a valid recording; the argument is the reason, worded as a clause."""
 
 
 class TooLargeError(ValueError):
-    """There is too little memory to read an archive; the argument is a clause that states what is needed."""
+    """Raised if there is too little memory to read an archive; the argument is a clause that says how much it takes."""
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:

@@ -1,7 +1,7 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
 Each episode is a bet against the claim that the mean is at most the limit. A bettor stakes a fixed share of its wealth
-each time. If the claim is true, the probability that the wealth reaches 1/risk times its start at any time is at most
+each time. If the claim is true, the probability that the wealth ever reaches 1/risk times its initial value is at most
 `risk`. This holds for any distribution of the values and any number of looks (Ville's inequality), and also for a
 mixture of bets. Two bets share the wealth: a bold one wins early if no episode is bad, and a careful one survives a few
 bad episodes.
@@ -17,7 +17,8 @@ from statistics import fmean, variance
 from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares of the wealth that each bet may lose in the worst possible episode
-# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9 accepts 197 and
+# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9
+# accepts 197 and
 # 0.5 accepts 93. Correct repairs that seldom fail are accepted equally often with both.
 OF_BOLD = 0.9
 DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes
@@ -28,7 +29,7 @@ CERTAIN = 0.005  # approximate probability of stopping early although the mean i
 class Bet:
     """Bets that the mean difference is above `-margin`.
 
-    Differences below `least` are raised to it. `stakes` are per unit of reward.
+    Differences below `least` count as `least`. `stakes` are per unit of reward.
     """
 
     margin: float
@@ -41,7 +42,7 @@ class Bet:
         return (OF_BOLD, 1.0 - OF_BOLD) if len(self.stakes) > 1 else (1.0,)
 
     def wealth(self, differences: Sequence[float]) -> float:
-        """Return the logarithm of the wealth, which starts at 1; -inf if everything is lost."""
+        """Return the logarithm of the wealth; the initial wealth is 1, and the result is -inf if everything is lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
         if most == -inf:

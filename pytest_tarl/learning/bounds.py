@@ -1,7 +1,7 @@
 """Compute bounds on future episodes of a world: success rate, mean and quantiles of total reward, loss.
 
-Each bound assumes that episodes are drawn independently from one world. Each holds on its own; several hold together
-at the sum of their risks. Further assumptions:
+Each bound assumes that episodes are drawn independently from one world. Each bound holds on its own; the probability
+that any of several bounds is wrong is at most the sum of their risks. Further assumptions:
 
     rate          nothing                                       exact (Clopper & Pearson 1934)
     mean_of       totals lie in a declared range                exact (betting; Waudby-Smith & Ramdas 2023, Theorem 3)
@@ -77,18 +77,17 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 def evidence_above(passed: int, episodes: int, least: float) -> float:
     """Return the log of an e-process against the claim that the success rate is at most `least`.
 
-    An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log
-    exceeds log(1 / α) at any time is at most α (Ville's inequality). This e-process averages the likelihood ratio
-    uniformly over all higher rates (Robbins 1970).
+    An e-process measures evidence and may be read at any time. If the claim is true, the probability that the log ever
+    exceeds log(1 / α) is at most α (Ville's inequality). This e-process averages the likelihood ratio uniformly over
+    all higher rates (Robbins 1970).
     """
     failed = episodes - passed
     if least >= 1.0:
         return -inf
     if least <= 0.0:
         return 0.0
-    above = BinomialTail(passed, episodes + 1)(
-        least
-    )  # probability that a Beta(passed + 1, failed + 1) variable is above `least`
+    # probability that a Beta(passed + 1, failed + 1) variable is above `least`
+    above = BinomialTail(passed, episodes + 1)(least)
     if above <= 0.0:
         return -inf
     mixed = log(above) - log(episodes + 1) - log_choose(episodes)[passed] - log1p(-least)
@@ -125,7 +124,7 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
     """Return a lower bound of the mean of `values` in [0, 1], shape (episodes,).
 
     A bet against each candidate mean m stakes λ on values above m. If m is the mean, the wealth is a martingale, so it
-    rarely reaches 1 / risk. The bound is the largest m against which the wealth did. λ depends only on earlier values.
+    rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only on earlier values.
     It is tuned for the given number of values, or for any number with `anytime`.
     """
     if not values.size:

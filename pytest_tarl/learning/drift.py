@@ -26,15 +26,16 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-MATERIAL = 0.1  # a cell of the region has at least this share of the largest significant difference
+# a cell is in the region if its difference is at least this share of the largest significant one
+MATERIAL = 0.1
 
 
 @dataclass(frozen=True)
 class Difference:
     """The result of comparing two samples of episodes.
 
-    `changes` holds for each cell the difference between the worlds in the part of the residual, move or reward, that
-    determined the region.
+    `changes` holds, for each cell, the difference between the worlds in one part of the residual: the part (move or
+    reward) that determined the region.
     """
 
     verdict: Verdict
@@ -176,8 +177,8 @@ def _drift(
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
     """Return the cells that deployed episodes avoid significantly, boolean of shape (cells,).
 
-    Let K of all N episodes visit a cell. If the worlds are equal, none of the n deployed episodes does so with
-    probability C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of candidate
+    Let K of all N episodes visit a cell. If the worlds are equal, the probability that none of the n deployed episodes
+    visits it is C(N - K, n) / C(N, n). A cell counts as avoided if this is below α divided by the number of candidate
     cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)

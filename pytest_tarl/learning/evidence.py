@@ -13,8 +13,8 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # a cell that the fit does not know is novel if it has at least this many visits
-NOVEL_EPISODES = 2  # and if at least this many episodes visit it
+NOVEL_VISITS = 3  # minimum number of visits to a novel cell, that is, a cell that the fit does not know
+NOVEL_EPISODES = 2  # minimum number of episodes that visit a novel cell
 
 
 @dataclass(frozen=True)

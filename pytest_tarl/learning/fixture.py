@@ -66,9 +66,8 @@ class Fixture:
     design: tuple[str, ...] = ()  # names of permanent drifts that are part of the design
     signals: tuple[Signal, ...] = ()  # signals that formulas read from messages
     stated: Guarantee | None = None
-    world: Mapping[str, Mapping[str, str]] = field(
-        default_factory=dict
-    )  # file → definition → digest, see modules_of_tests.py
+    # file → definition → digest, see modules_of_tests.py
+    world: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def statements(self) -> list[tuple[str, str, list[str]]]:
@@ -103,7 +102,7 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # no options as keywords: numpy before 2.1 stores them as arrays
+    np.savez_compressed(buffer, **arrays)  # pass no options: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

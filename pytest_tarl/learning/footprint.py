@@ -17,7 +17,8 @@ from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
 PEAK = 5  # peak bytes of memory per byte of columns (benchmarks/limits.py, case recording)
-FIRST = 3  # episodes before the first estimate, which is repeated whenever their number has doubled
+# number of episodes before the first estimate; each doubling of the number leads to another estimate
+FIRST = 3
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9
 

@@ -25,7 +25,7 @@ def judgements(judged: Sequence[Judged]) -> Judgements | None:
 
 
 def together(samples: Sequence[Sample], picked: Sequence[tuple[int, int]]) -> Judgements | None:
-    """Return the rows of the picked episodes, with a column for every formula of any sample.
+    """Return the rows of the picked episodes, with a column for every formula that occurs in a sample.
 
     A picked episode is a pair: the index of its sample and its row there. Entries are NaN where a sample lacks a
     formula.
@@ -80,7 +80,7 @@ def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple
 def with_worlds(
     known: Sequence[FormulaRow], worlds: Mapping[str, Sequence[Sequence[Judged]]]
 ) -> tuple[FormulaRow, ...]:
-    """Add worlds to the rows, from the results of the formulas in each of their episodes."""
+    """Add to each formula's row its results in further worlds; `worlds` holds each world's results by episode."""
     summed = {name: stacked(episodes) for name, episodes in worlds.items()}
     return tuple(
         replace(

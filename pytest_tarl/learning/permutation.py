@@ -16,9 +16,8 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-SETTLED = (
-    0.2  # further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
-)
+# further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
+SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
 
@@ -66,8 +65,8 @@ def max_statistic(
 
     The first `first` rows form one group, the other rows the second. The statistic is the difference between the group
     means in units of the column's standard deviation; it orders columns as the pooled t statistic does. Each column is
-    compared with the maximum over all columns with no larger difference (step-down). A column that varies by at most
-    `error` of its largest entry counts as constant and has the p-value 1.
+    compared with the maximum over all columns whose difference is not larger (step-down). A column that varies by at
+    most `error` of its largest entry counts as constant and has the p-value 1.
     """
     deviation = columns - columns.mean(axis=0)
     extent, largest = (np.abs(part).max(axis=0, initial=0.0) for part in (deviation, columns))
@@ -138,7 +137,7 @@ def _smallest(draws: Floats, first: int) -> Floats:
     """Return 1 for the `first` smallest numbers of each row and 0 for the others, in the same shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which equal numbers lie at the limit
+    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which several numbers equal the limit
     for row in tied.tolist():
         picked[row] = 0.0
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

@@ -4,8 +4,8 @@ A residual is the difference between what a step brings and what the designed ut
 wherever the world is unchanged since the fit. Residuals therefore locate the change itself, and not the cells upstream
 of it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual smaller than its error is set to 0. Such a residual of a constant reward only reflects rounding (packing.py)
-and the order of sums.
+A residual smaller than its error is set to 0. If the reward is constant, so small a residual only reflects rounding
+(packing.py) and the order of sums.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Model:
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over all steps except the last one of an episode
     reward: Floats
-    size: Floats  # per step; the| mean |Σr| per step, the scale of the rounding error of `reward`
+    size: Floats  # mean |Σr| per step, the scale of the rounding error of `reward`
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:

@@ -1,10 +1,10 @@
-"""Find by bisection up to which value a hypothesis is refuted."""
+"""Find, by bisection, the largest value for which a hypothesis is refuted."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-HALVINGS = 60  # enough for the precision of a float
+HALVINGS = 60  # number of bisection steps, enough for the precision of a float
 
 
 def root(refuted: Callable[[float], bool], low: float, high: float, halvings: int = HALVINGS) -> float:

@@ -1,6 +1,7 @@
 """Learn the utility event by event: SARSA as in the paper, and the related expected SARSA and TD(λ).
 
-An event is one execution of a site. q(c) is the expected reward from a state c, a pair of cell and site, on.
+An event is one execution of a site. A state c is a pair of cell and site, and q(c) is the expected reward from this
+state on.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.seeds import generator
 
-COARSE = 30  # number of halvings; p-values from shuffles do not support the precision of floats
+COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse for more precision
 LEAST_PERMUTATIONS = 999
 PER_RISK = 20  # expected number of permutations beyond the statistic at the requested risk
 MOST_PERMUTATIONS = 40_000

@@ -56,7 +56,7 @@ def _check_chain(chain: Chain, sample: Sample) -> None:
     _within("transitions", chain.next_cell, END, len(sample.cells))
     _counted(chain.count)
     if chain.parts.shape[1] != len(sample.part_names):
-        raise DamagedError("its rewards have other parts than its header")
+        raise DamagedError("its rewards have other parts than its header names")
     if not (np.isfinite(chain.reward).all() and np.isfinite(chain.parts).all()):
         raise DamagedError("its rewards are not finite")
 

@@ -17,7 +17,7 @@ MOST = 1.5  # maximum number of episodes of a comparison, as a multiple of an ev
 
 @dataclass(frozen=True)
 class Stage:
-    """Part of a comparison: the looks of the whole comparison, and the number of episodes at the end of this part."""
+    """A part of a comparison: all looks of the comparison, and the number of episodes after which this part ends."""
 
     looks: tuple[Look, ...]
     episodes: int

@@ -17,7 +17,7 @@ GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
 PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest one
-STEPS = 300  # maximum number of biconjugate gradient steps; sweeps complete the solution in any case
+STEPS = 300  # maximum number of biconjugate gradient steps; sweeps then complete the solution
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
@@ -54,7 +54,7 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 
 
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve the same by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
+    """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
     This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by γ: one or
     two suffice if the gradients converged, more are needed if they broke down.

@@ -24,7 +24,7 @@ LATEST = 1e11  # seconds since 1970; a later time comes from a wrong clock
 
 @dataclass(frozen=True)
 class Expected:
-    """The test and the sensors with which a log must have been written to match the recording."""
+    """What a log must match to be comparable with the recording: its test and its sensors."""
 
     test: str
     sensors: tuple[str, ...]
@@ -58,16 +58,17 @@ class Assembly:
 
     expected: Expected
     path: Path
-    begun: Progress  # progress when the log was opened; `refused` says why missions do not count now
+    begun: Progress  # progress when the log was opened; `refused` says why its missions are currently not counted
     place: int
     missions: int = 0
     unfinished: int = 0
-    _last: Spot | None = None  # the last record of the latest mission, or a later one outside missions
+    # the last record of the latest mission, or a later record that belongs to no mission
+    _last: Spot | None = None
     _latest: Spot | None = None  # the last record read
-    # start time in s since 1970, and steps, of the unfinished mission
+    # start time (in s since 1970) and steps of the unfinished mission
     _mission: tuple[float, list[Steps]] | None = None
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = b""  # cells of the table as JSON, if they came with a mission in consecutive records
+    _text: bytes = b""  # JSON from which `_table` was read, if it came with a mission in consecutive records
 
     @property
     def progress(self) -> Progress:
@@ -110,7 +111,7 @@ class Assembly:
         return self._ended(passed == b"true", valid_time(time), [steps], spot)
 
     def _ended(self, passed: bool, time: float, steps: list[Steps], spot: Spot) -> Mission:
-        """Return a mission that ends with the record at this spot."""
+        """Return the mission that ends with the record at this spot."""
         self._mission, self._last, self.missions = None, spot, self.missions + 1
         new = _new(steps) if any(table.new for table, _, _ in steps) else ()
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)

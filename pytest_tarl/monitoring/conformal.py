@@ -6,8 +6,9 @@ ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theor
 its few missions are a random selection, and their peculiarities would accumulate as evidence.
 
 Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so binning is a
-fixed function of a score. The pool is then a row of counts, whose size does not grow with the missions. The test stays
-exact, because ties are broken at random. A bet is a non-negative function of the rank p with integral 1 over [0, 1].
+fixed function of a score. The pool is then a row of counts, and its size does not grow with the number of missions. The
+test stays exact, because ties are broken at random. A bet is a non-negative function of the rank p with integral 1 over
+[0, 1].
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
 
 
 def _earlier(bins: Ints) -> tuple[Ints, Ints]:
-    """Return the numbers of earlier missions with the same bin and with a smaller bin, for each mission and score."""
+    """Count, for each mission and score, the earlier missions with the same bin and those with a smaller bin."""
     count, scores = bins.shape
     mine = np.full((scores, TOGETHER), BINS, np.int8)
     mine[:, :count] = bins.T
@@ -96,11 +97,12 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 
 
 def factors(low: Floats, high: Floats, found: Floats) -> None:
-    """Write to `found` the factor of each bet's stake, shape (missions, bets, scores).
+    """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
 
     `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks. The same
-    function of 1 - p wins on large ranks, and of the distance to the nearer end on both. The lines 1 ± (1 - 2p)/2 win
-    on small shifts. Powers are computed by square roots, which round equally on all platforms.
+    function of 1 - p wins on large ranks. The same function of the rank's distance to the nearer end of [0, 1] wins on
+    both. The lines 1 ± (1 - 2p)/2 win on small shifts. Powers are computed by square roots, which round equally on all
+    platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

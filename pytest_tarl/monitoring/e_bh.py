@@ -30,7 +30,10 @@ def adjusted(log_peak: NDArray[np.float64]) -> Floats:
 
 
 def chosen(log_evidence: NDArray[np.float64], alpha: float) -> NDArray[np.bool_]:
-    """Return which hypotheses e-BH rejects at the false discovery rate α, from log2 of e-values; both (cells,)."""
+    """Return which hypotheses e-BH rejects at the false discovery rate α, shape (cells,).
+
+    `log_evidence` holds log2 of the e-values, in the same shape.
+    """
     count = len(log_evidence)
     if not count:
         return np.zeros(0, bool)

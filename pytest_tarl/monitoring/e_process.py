@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats
 
-# λ(1 - m), the share of the stake that a success loses, for each of restarts.BETS bets: for mild losses to total
-# failure
+# λ(1 - m), the share of its stake that a bet loses by a success, for each of restarts.BETS bets: small shares
+# detect mild losses of performance, large ones total failure
 SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 0.9)
 
 

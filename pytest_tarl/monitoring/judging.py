@@ -1,7 +1,7 @@
 """Update the bets on missions, for one robot or for several robots side by side.
 
 The columns are first the bounds, each for all robots, and then the scores, robot by robot. Columns do not affect each
-other, so each robot gets exactly the bits that it would get alone.
+other, so the result of each robot equals, to the last bit, the result that it would get alone.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def judged(
 
 
 def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
-    """Return the processes of several robots before the first mission; `threshold` is that of one robot."""
+    """Return the processes of several robots before the first mission; `threshold` holds a single robot's."""
     return restarts.begun(
         np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
     )

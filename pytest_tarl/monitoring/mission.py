@@ -17,9 +17,9 @@ from pytest_tarl.sensors import Cell
 class Progress(NamedTuple):
     """The progress in a log, which was read up to `offset`.
 
-    That is the end of the record at the offset `last`, which `mark` identifies by length and checksum. `log` identifies
-    the log by its first record, so a renamed log is recognised. `refused` says why missions after the offset are not
-    comparable with the recording, or is empty.
+    The last record that was read begins at the offset `last`; `mark` identifies it by its length and checksum. `log`
+    identifies the log by its first record, so a renamed log is recognised. `refused` says why missions after the offset
+    are not comparable with the recording, or is empty.
     """
 
     log: str

@@ -2,8 +2,8 @@
 
 An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
 recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
-(union bound). The probability of a false alarm at any time is therefore at most α, plus the error probability of the
-bound.
+(union bound). The probability that a false alarm is ever raised is therefore at most α, plus the probability that a
+bound is wrong.
 """
 
 from __future__ import annotations
@@ -57,12 +57,12 @@ class Monitor:
     pool: Ints
     counts: Counts = field(default_factory=Counts)
     moments: Moments = field(default_factory=Moments)
-    # cell that is not in the recording → number of missions there
+    # cell that is not in the recording → number of missions that visited it
     new: dict[Cell, int] = field(default_factory=dict)
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order; the division into calls does not change the state, to the last bit."""
+        """Update with missions in order; however they are divided into calls, the state is the same to the last bit."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:

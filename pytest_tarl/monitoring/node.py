@@ -20,7 +20,7 @@ OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
 NOTICED = 0.5  # maximum delay in seconds between a signal and the end of the watch
 
-Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, the watch, and its status
+Look = Callable[[], tuple[bool, Watch, Status]]  # returns (whether to continue, the watch, its status)
 
 
 def run(library: str, look: Look, period: float, stopped: Event) -> None:

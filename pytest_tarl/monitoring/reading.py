@@ -30,7 +30,7 @@ class LogReader:
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # whether the last call of `missions` was not read to its end
+    _ahead: bool = False  # whether the caller of `missions` stopped before the last mission
 
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
@@ -110,7 +110,8 @@ class LogReader:
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
         """Return whether the log was rotated or truncated.
 
-        Then another file has its name, or it is shorter than the part already read.
+        After a rotation, another file has the log's name; after a truncation, the log is shorter than the part already
+        read.
         """
         mine = os.fstat(file.fileno())
         try:

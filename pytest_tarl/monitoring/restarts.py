@@ -1,14 +1,15 @@
 """Many e-processes in parallel, each a mixture over bets and over start times (restarts before each mission).
 
-One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If started before observation τ, its value is
-∏_{t ≥ τ} f_t, and 1 before. The mixture over k and τ with weights that sum to 1 is again an e-process (Shin, Ramdas &
-Rinaldo 2023, e-detectors): by Ville's inequality, it exceeds 1/α at any time with probability at most α. A restart
-before every observation costs only one product, since
+One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If it starts before observation τ, its value is 1
+until then, and the product of the f_t with t ≥ τ afterwards. The mixture over k and τ with weights that sum to 1 is
+again an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors): by Ville's inequality, the probability that it ever
+exceeds 1/α is at most α. A restart before every observation costs only one product, since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
-Half of the weight is on a change before the first observation; the rest falls geometrically from one octave of τ to
-the next, by 2^(-1/8), so that a change after 100,000 quiet missions loses only 15 units of log evidence.
+Half of the weight is on a start before the first observation. The other half falls by the factor 2^(-1/8) from one
+octave of τ to the next, so a change after 100,000 quiet missions lowers the natural logarithm of the evidence by only
+about 15.
 
 Only sums, products and square roots are used, which IEEE 754 rounds the same everywhere: equal observations give
 equal bits, however they are divided into portions.
@@ -189,7 +190,7 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return the last mission at which a term was `fresh`, along the first axis, or `earlier` if none was."""
+    """Return, along the first axis, the last mission at which a term was `fresh`, or `earlier` if there was none."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 

@@ -1,4 +1,4 @@
-"""Scores of missions that can be compared with those of held-out recorded missions.
+"""Compute scores of new missions, to compare them with the scores of held-out recorded missions.
 
 The model is fitted to one half of the recorded episodes; the scores of the other half start the pools. New missions are
 rounded as in a recording, so that their scores are exchangeable with the recorded ones.
@@ -31,8 +31,8 @@ FEWEST = 2  # minimum number of episodes in each half of a recording
 class Missions:
     """Missions in order; columns of steps have shape (steps,).
 
-    `cell` is the row of the cell in the scale, the number of rows for any other cell, and -1 until all sensors have a
-    value. A mission may have no steps.
+    `cell` is the row of the step's cell in the scale. For a cell that is not in the scale, it is the number of rows;
+    until all sensors have a value, it is -1. A mission may have no steps.
     """
 
     passed: NDArray[np.bool_]
@@ -53,9 +53,8 @@ class Scale:
     """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    known: NDArray[
-        np.bool_
-    ]  # whether the model was fitted in a cell; the last entry, False, is for all other cells
+    # whether the model was fitted in a cell; the last entry, False, is for all other cells
+    known: NDArray[np.bool_]
     model: Model
     edges: Floats
 

@@ -64,7 +64,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     buffer = io.BytesIO()
     text = np.frombuffer(json.dumps(header).encode(), np.uint8)
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # no options as keywords: numpy before 2.1 stores them as arrays
+    np.savez_compressed(buffer, **arrays)  # pass no options: numpy before 2.1 stores them as arrays
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

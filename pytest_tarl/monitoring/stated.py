@@ -35,8 +35,8 @@ class Bound:
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
     """Return the bounds of the recording: of success, and of the mean total if its range was declared.
 
-    There are none if all episodes are equal, since they sample only one world. Recordings of older versions state no
-    bounds; then the bound of success is computed from the episodes.
+    There are no bounds if all episodes are equal, because equal episodes do not show how much episodes can vary.
+    Recordings of older versions state no bounds; then the bound of success is computed from the episodes.
     """
     told = fixture.stated
     if told is None:

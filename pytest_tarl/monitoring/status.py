@@ -28,7 +28,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The evidence on one question, now and at its maximum, as log10; an alarm is raised at -log10(α).
+    """The evidence against one hypothesis, now and at its maximum, as log10; an alarm is raised at -log10(α).
 
     `since` is the mission before which the difference probably began. `alarm` is the mission that raised the alarm.
     """
@@ -64,22 +64,22 @@ class Status:
 
     @property
     def below(self) -> bool:
-        """Return whether there was an alarm against a bound."""
+        """Return whether an alarm was raised because missions violate a bound."""
         return any(evidence is not None and evidence.alarm is not None for _, evidence in self.bounds)
 
     @property
     def drifted(self) -> bool:
-        """Return whether there was an alarm that missions differ from the recorded ones."""
+        """Return whether an alarm was raised because missions differ from the recorded ones."""
         return self.world.alarm is not None
 
     @property
     def alarm(self) -> bool:
-        """Return whether there ever was an alarm; it stays, since α covers the whole life of a watch."""
+        """Return whether an alarm was ever raised; an alarm is not withdrawn, since α covers the whole watch."""
         return self.below or self.drifted
 
     @property
     def error(self) -> float:
-        """Return the probability of a false alarm at any time, including the error of the bounds."""
+        """Return the probability that a false alarm is ever raised, including the probability that a bound is wrong."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)

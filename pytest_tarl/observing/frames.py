@@ -24,7 +24,7 @@ from pytest_tarl.framed import framed, next_payload
 
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
-LARGEST = 1 << 26  # maximum size in bytes of a record; a larger length is damaged
+LARGEST = 1 << 26  # maximum size in bytes of a record; a larger stated length shows that the log is damaged
 
 Record = dict[str, Any]
 
@@ -70,7 +70,7 @@ class LogFile:
     def set_aside(self, keep: int = 0) -> None:
         """Rotate the log: rename it with the next free number (`missions.log.7`) and continue in a new file.
 
-        `keep` is the number of rotated files to keep, 0 for all; the oldest others are removed.
+        `keep` is the number of rotated files to keep, 0 for all; if there are more, the oldest are removed.
         """
         self.close()
         older = set_aside(self.path)

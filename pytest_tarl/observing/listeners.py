@@ -16,7 +16,7 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
-DEPTH = 1000  # queue length per topic while the node is busy; rclpy then drops the oldest messages
+DEPTH = 1000  # messages queued per topic while the node is busy; rclpy drops the oldest of a full queue
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,8 @@ class Topics:
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
     """Pass messages to the observer while a node of this client library runs. Raise LogError."""
-    import_module(library)  # before any message type, because the library selects ROS 1 or ROS 2 messages
+    # import it before any message type, because the library selects ROS 1 or ROS 2 messages
+    import_module(library)
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
     resume = _watch_publishing(library, observer) if idle else None

@@ -71,9 +71,8 @@ class Observer:
         self.running = False  # whether a mission runs
         self.problem = ""  # the first error of the observer; errors must not reach the node
         self._lock = threading.RLock()  # keeps records in order
-        self._over = (
-            threading.Lock()
-        )  # held until the end; waiting for an Event would cost the node more time
+        # locked until `close`; waiting for an Event would cost the node more time
+        self._over = threading.Lock()
         self._over.acquire()
         self._thread = threading.Thread(target=self._look, name="tarl-observer", daemon=True)
         self._outlet.put("start", time())
@@ -212,4 +211,6 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return None  # `told` reports it; a sensor without a number has no bin
+        return (
+            None  # `told` reports a sensor value that is not a number; here it only leaves the cell unknown
+        )

@@ -22,7 +22,7 @@ class Chunk:
     """The events between two cuts, as columns.
 
     Columns of events have shape (events,), columns of steps (steps,). `step` counts from the first step of the chunk.
-    Events after its last reward belong to a step that the next chunk closes.
+    Events after the chunk's last reward belong to a step that the next chunk closes.
     """
 
     cells: tuple[Cell, ...]

@@ -27,7 +27,7 @@ class Rotation:
     `keep` is the number of rotated files to keep, 0 for all.
     """
 
-    size: int = 0  # 0: never
+    size: int = 0  # 0 for never
     keep: int = 0
 
 

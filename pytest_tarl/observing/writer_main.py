@@ -67,7 +67,7 @@ def main() -> int:
 def _serve(writer: Writer, ring: Ring) -> None:
     waiting, due, over = bytearray(), monotonic() + PERIOD, False
     while not over:
-        over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])  # before the last look
+        over = bool(select.select([sys.stdin.fileno()], [], [], _POLL)[0])  # before `read`, to miss nothing
         while (piece := ring.read()) is not None:
             waiting += piece
             over = _take(writer, waiting) or over

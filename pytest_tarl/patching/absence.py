@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether a place is skipped while `code` is None, or the code there or around it already raises."""
+    """Return whether, while `code` is None, a place is skipped or the code there or around it already raises."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place

@@ -16,7 +16,7 @@ Scope = Function | ast.Lambda
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A place that assigns `target`: `constants` if the value is a constant, `fresh` if it is a default object."""
+    """A place that assigns `target`: its value is one of `constants`, a new default object (`fresh`), or unknown."""
 
     node: ast.AST
     target: str

@@ -85,7 +85,7 @@ class FilePatch:
         return made if identical(made, self.after) else None
 
     def applied(self, content: bytes) -> bytes:
-        """Return the patched content even if lines have moved. Raises MisfitError."""
+        """Return the patched content even if lines have moved. Raise MisfitError."""
         lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
         for hunk in self.hunks:
             found = _place(hunk, lines, at, hunk.start + shift)

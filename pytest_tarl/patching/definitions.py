@@ -112,7 +112,7 @@ def redefined(place: Place, value: bool | int | float) -> str:
 
 
 def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
-    """Return the edits of one file. Raises RepairError if a place no longer contains its number."""
+    """Return the edits of one file. Raise RepairError if a place no longer contains its number."""
     found = []
     for place, value in places.items():
         new = redefined(place, value)

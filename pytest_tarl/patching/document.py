@@ -116,7 +116,7 @@ class Document:
         return self.expressions.get((self._characters(*first), self._characters(*last)))
 
     def find(self, span: Span) -> ast.expr:
-        """Return the expression at a span. Raises RepairError if there is none."""
+        """Return the expression at a span. Raise RepairError if there is none."""
         node = self.at(span)
         if node is None:
             raise RepairError(
@@ -173,7 +173,7 @@ class Document:
 
 @cache
 def document(path: str, text: str) -> Document:
-    """Parse a text once. Raises RepairError if it is not Python."""
+    """Parse a text once. Raise RepairError if it is not Python."""
     try:
         return Document(path, text, parse(text))
     except SyntaxError as error:
@@ -181,14 +181,14 @@ def document(path: str, text: str) -> Document:
 
 
 def parse(text: str) -> ast.Module:
-    """Parse a text without issuing the warnings of the compiler. Raises SyntaxError."""
+    """Parse a text without issuing the warnings of the compiler. Raise SyntaxError."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ast.parse(text)
 
 
 def parse_expression(code: str) -> ast.expr:
-    """Parse an expression, which may span several lines and end in a comment. Raises SyntaxError."""
+    """Parse an expression, which may span several lines and end in a comment. Raise SyntaxError."""
     statement = parse(f"({code}\n)").body[0]
     assert isinstance(statement, ast.Expr)  # noqa: S101  (parentheses hold nothing else)
     return statement.value
@@ -197,7 +197,7 @@ def parse_expression(code: str) -> ast.expr:
 def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
     """Return the text with all edits applied; insertions at the same offset keep their order.
 
-    Raises RepairError if two edits overlap or the result is not valid Python.
+    Raise RepairError if two edits overlap or the result is not valid Python.
     """
     changed = apply_plain_edits(source.path, source.text, edits, source.newline)
     _check(source.path, changed)
@@ -205,7 +205,7 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
 
 def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
-    """Return a text in any language with all edits applied. Raises RepairError if two edits overlap."""
+    """Return a text in any language with all edits applied. Raise RepairError if two edits overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:

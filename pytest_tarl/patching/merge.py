@@ -55,7 +55,7 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
 
 
 def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
-    """Return a text with all replacements applied; insertions at the same line keep their order. Raises RepairError."""
+    """Return a text with all replacements applied; insertions at the same line keep their order. Raise RepairError."""
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:

@@ -33,17 +33,16 @@ if TYPE_CHECKING:
 class Mutation:
     """A new value for an operand at its use.
 
-    An operand is a use of a constant. `value` is the new value of a literal. For other operands it is a factor on the
-    use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at the
-    constant's definition instead.
+    An operand is a use of a constant. `value` is the new value of a literal. For other operands, `value` is a factor on
+    the use, or a summand if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at
+    the constant's definition instead.
     """
 
     operand: Operand
     value: float | int | bool
     place: Place | None = None
-    form: Form | None = (
-        None  # set for a structural repair: the operand is then an expression and the value a factor
-    )
+    # set for a structural repair: the operand is then an expression and the value a factor
+    form: Form | None = None
     # the scale on which the search moves the operand
     chart: Chart | None = field(default=None, compare=False)
 
@@ -127,7 +126,7 @@ def rewrite(
     """Apply mutations under a guard; return the new text of every changed file, by path.
 
     `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts`
-    holds further files that define constants. Raises RepairError if a change cannot be written.
+    holds further files that define constants. Raise RepairError if a change cannot be written.
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
@@ -219,13 +218,13 @@ class Conditions:
         self.subscriptions = Subscriptions(analysis, topics)
 
     def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the guard as Python at a place. Raises RepairError if a sensor's value is not available there."""
+        """Return the guard as Python at a place. Raise RepairError if a sensor's value is not available there."""
         wanted = [each for each in self._guard.conjuncts if not always(each)]
         readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value as Python at a place, 0 before its first message. Raises RepairError."""
+        """Return a sensor's value as Python at a place, 0 before its first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(

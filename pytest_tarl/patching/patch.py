@@ -21,8 +21,8 @@ CONTEXT = 3  # unchanged lines around a change
 BASE = "paths are relative to"  # header key of the patch's base folder
 SEAL = "digest of all other lines"  # header key of the digest that reveals edited or damaged patches
 TITLE = "Repair by tarl "
-PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair ...
-QUOTE = b"| "  # ... and prefix of each line in them, so that no tool applies the change
+PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair
+QUOTE = b"| "  # prefix of each line of a PARTIAL file, so that no tool applies the change
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
@@ -62,7 +62,7 @@ def readable(diff: str) -> str:
 
 
 def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a patch atomically as `<test>-<drift>-<digest>.patch` and delete older ones. Raises RepairError."""
+    """Write a patch atomically as `<test>-<drift>-<digest>.patch` and delete older ones. Raise RepairError."""
     content = diff.encode("utf-8", "surrogateescape")
     digest = hashlib.sha256(content).hexdigest()[:8]
     name = f"{slug(test)}-{slug(drift or 'online')}"
@@ -82,7 +82,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a change that is not a repair, each line quoted so that no tool applies it. Raises RepairError."""
+    """Write a change that is not a repair, each line quoted so that no tool applies it. Raise RepairError."""
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
@@ -125,7 +125,7 @@ def split_lines(content: bytes) -> list[bytes]:
 
 
 def _base(files: Sequence[Path], root: Path) -> Path:
-    """Return the folder to which the paths of a patch are relative. Raises RepairError."""
+    """Return the folder to which the paths of a patch are relative. Raise RepairError."""
     tops = {_git_top(file) for file in files}
     if len(tops) > 1:
         names = ", ".join(str(file) for file in files)
@@ -157,7 +157,7 @@ def _stated_base(text: str) -> str:
 
 
 def _encoded(path: Path, original: bytes, text: str) -> bytes:
-    """Return the new text in the file's encoding, with its line endings. Raises RepairError."""
+    """Return the new text in the file's encoding, with its line endings. Raise RepairError."""
     encoding, _ = tokenize.detect_encoding(io.BytesIO(original).readline)
     text = text.removeprefix("\ufeff")
     if b"\r\n" in original and "\r\n" not in text:

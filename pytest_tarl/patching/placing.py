@@ -1,4 +1,4 @@
-"""Locate the files of a patch; they must be inside the project, even if header or links lead elsewhere."""
+"""Locate the files of a patch; refuse files outside the project, to which a header or links may lead."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     """Return the project's folder and the patched files in order, with links resolved.
 
     The project is `directory`, else the git repository around `.tarl`, else the folder that contains `.tarl`.
-    Raises RepairError if the files do not exist, RefusedError if one lies outside the project.
+    Raise RepairError if the files do not exist, RefusedError if one lies outside the project.
     """
     try:
         return _located(patch, directory)

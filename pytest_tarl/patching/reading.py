@@ -61,7 +61,7 @@ class Patch:
 
 
 def read(path: Path) -> Patch:
-    """Read a patch. Raises RepairError if it is missing, not written by TARL, truncated or edited."""
+    """Read a patch. Raise RepairError if it is missing, not written by TARL, truncated or edited."""
     try:
         content = unquoted(read_regular(path))
     except OSError as problem:
@@ -107,7 +107,7 @@ def _inside(name: str) -> bool:
 
 
 def _file(body: bytes) -> FilePatch:
-    """Parse the section after `diff --git`. Raises ValueError."""
+    """Parse the section after `diff --git`. Raise ValueError."""
     lines = split_lines(body)
     first = next((at for at, line in enumerate(lines) if line.startswith(b"@@ ")), 0)
     if first != len(_HEADER):
@@ -121,7 +121,7 @@ def _file(body: bytes) -> FilePatch:
 
 
 def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
-    """Yield the hunks; a backslash line marks the line before it as unterminated. Raises ValueError."""
+    """Yield the hunks; a backslash line marks the line before it as unterminated. Raise ValueError."""
     starts = [at for at, line in enumerate(lines) if line.startswith(b"@@ ")]
     for at, end in pairwise((*starts, len(lines))):
         found = _HUNK.fullmatch(lines[at])
@@ -135,7 +135,7 @@ def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
 
 
 def _signed(lines: Sequence[bytes]) -> list[tuple[str, bytes]]:
-    """Return the lines of a hunk with their signs. Raises ValueError."""
+    """Return the lines of a hunk with their signs. Raise ValueError."""
     body: list[tuple[str, bytes]] = []
     for line in lines:
         sign = line[:1].decode("ascii")

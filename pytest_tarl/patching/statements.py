@@ -178,7 +178,7 @@ def _place(source: Document, node: ast.expr) -> tuple[int, int]:
 
 
 def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> str:
-    """Return a statement with its changes; of comments, keep only directives for tools."""
+    """Return a statement with its changes; drop its comments, except directives for tools."""
     start, end = source.start(statement), source.end(statement)
     text = source.text[start:end]
     for edit in sorted(replaced(source, changes), key=lambda each: -each.start):

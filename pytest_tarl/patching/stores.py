@@ -16,8 +16,8 @@ from pytest_tarl.patching.document import Document, Edit, Function
 class Store:
     """A place for values: attributes of `owner`'s instances, or globals of the module if there is no owner.
 
-    `places` are the syntax nodes that read the values. If another module subscribes, `module` is this module's name
-    there.
+    `places` are the syntax nodes that read the values. If another module subscribes, it imports this module under the
+    dotted name `module`.
     """
 
     source: Document

@@ -52,7 +52,7 @@ def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: s
 def form_edits(
     source: Document, node: ast.expr, form: Form, values: Mapping[str, float], condition: str, sensor: str
 ) -> list[Edit]:
-    """Return the edits that write a form at an expression. Raises RepairError if it cannot be written there."""
+    """Return the edits that write a form at an expression. Raise RepairError if it cannot be written there."""
     made = form.template
     statement = source.statement(node)
     fill = {name: number(float(value)) for name, value in values.items()} | {"sensor": sensor}
@@ -115,7 +115,7 @@ def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
 
 
 def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
-    """Return edits that change a value after the statement that assigns it to a name. Raises RepairError."""
+    """Return edits that change a value after the statement that assigns it to a name. Raise RepairError."""
     source, statement = place.source, place.statement
     target = _target(statement)
     if target is None or statement.value is not place.node or not source.alone(statement):  # type: ignore[attr-defined]
@@ -221,7 +221,7 @@ def _keeper(source: Document, statement: ast.stmt) -> Keeper:
 
 
 def _first(body: Sequence[ast.stmt]) -> ast.stmt:
-    """Return the first statement after the docstring and the call of the base class. Raises RepairError."""
+    """Return the first statement after the docstring and the call of the base class. Raise RepairError."""
     for statement in body:
         value = statement.value if isinstance(statement, ast.Expr) else None
         docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)

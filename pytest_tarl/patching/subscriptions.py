@@ -50,7 +50,7 @@ class Subscriptions:
         self._taken: dict[tuple[str, bool], set[str]] = {}
 
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
-        """Return the expression for a sensor's value at a place. Raises RepairError if no subscription reaches it."""
+        """Return the expression for a sensor's value at a place. Raise RepairError if no subscription reaches it."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
         wanted = sensor.path
         if wanted not in subscription.names:
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return a subscription whose values a place can read; add one if necessary. Raises RepairError."""
+        """Return a subscription whose values a place can read; add one if necessary. Raise RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -96,7 +96,7 @@ class Subscriptions:
         return self._added[-1]
 
     def _reach(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> tuple[Anchor, Store]:
-        """Return where to subscribe and where to store values so that a place can read them. Raises RepairError."""
+        """Return where to subscribe and where to store values so that a place can read them. Raise RepairError."""
         seen: Anchor | None = None
         for anchor in anchors(self._analysis, site, source.path):
             seen = seen or anchor

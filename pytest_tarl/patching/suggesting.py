@@ -95,7 +95,7 @@ def _escaped(text: str) -> str:
 
 
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
-    """Yield (path, first line, last line, new text), lines from 1; a pure insertion also replaces one line."""
+    """Yield (path, first line, last line, new text), lines counted from 1; a pure insertion also replaces one line."""
     for file in patch.files:
         encoding = _encoding(patch, file)
         around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}

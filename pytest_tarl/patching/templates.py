@@ -22,20 +22,17 @@ OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own t
 KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sensor")
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
-    "",  # 1
+    "",  # the default is used unscaled
     "typical",  # the usual size of the value in the designed world
-    "larger",  # the larger of its usual sizes in the designed and in the drifted world
+    "larger",  # the larger of the value's usual sizes in the designed and in the drifted world
     "sensor",  # 1 divided by the sensor's usual size in the drifted world
     "usual",  # the sensor's usual size in the drifted world
     "designed",  # the sensor's usual size in the designed world, for sensors that are never negative
 )
 FIXED = "designed"  # parameters with this scale stay fixed in the search
 STRONGER = ("larger", "smaller")
-OPERATORS = (
-    "op",
-    "closed",
-    "back",
-)  # placeholders of comparisons: the operator, its form with or without equality, its reverse
+# placeholders of comparisons: the operator, its form with or without equality, its reverse
+OPERATORS = ("op", "closed", "back")
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 LEADING = {
@@ -77,14 +74,14 @@ class Template:
 
 
 def templates(root: Path) -> tuple[Template, ...]:
-    """Return TARL's templates and those of the project, cheapest first. Raises SettingsError."""
+    """Return TARL's templates and those of the project, cheapest first. Raise SettingsError."""
     files = [*sorted(SHIPPED.glob("*.toml")), *sorted((root / OWN).glob("*.toml"))]
     found = {path.stem: template(path) for path in files}
     return tuple(sorted(found.values(), key=lambda one: one.cost))
 
 
 def template(path: Path) -> Template:
-    """Read a template. Raises SettingsError if the file is not one."""
+    """Read a template. Raise SettingsError if the file is not one."""
     data = contents(path)
     unknown = sorted(data.keys() - _KEYS)
     if unknown:
@@ -122,7 +119,7 @@ def template(path: Path) -> Template:
 
 
 def contents(path: Path) -> Mapping[str, Any]:
-    """Read a TOML file. Raises SettingsError."""
+    """Read a TOML file. Raise SettingsError."""
     try:
         return tomllib.loads(path.read_text("utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def nothing_lost(path: str, original: str, patched: str, changed: Collection[int]) -> None:
     """Check that every simple statement and comment of the original occurs in the patched text, in the same order.
 
-    `changed` are the line numbers (from 1) of statements that the repair rewrites; these may differ. Raises RepairError
+    `changed` are the line numbers (from 1) of statements that the repair rewrites; these may differ. Raise RepairError
     if the patched text does not parse or loses something.
     """
     import libcst as cst

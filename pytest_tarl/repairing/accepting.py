@@ -24,11 +24,11 @@ from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome,
 from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Candidate, Trials
 
-QUICK = 3  # known seeds on which to try a guard before its test on fresh seeds
-WORLDS = 3  # worlds in which a test runs: drifted, designed, and designed without the candidate
+QUICK = 3  # number of known seeds on which to try a guard before its test on fresh seeds
+WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # episodes in the old world, to display the reward there if the drift is permanent
-MOST = 5  # maximum number of candidates to test per search ...
-SHARE = 2  # ... and tests for the same operands; further such candidates wait for those of other operands
+MOST = 5  # maximum number of candidates to test per search
+SHARE = 2  # maximum number of tests for the same operands, until the candidates of other operands were tested
 WORSE: Reason = "nominal gets worse"
 SCREENED = 20  # maximum number of candidates to run on fresh seeds per search
 
@@ -62,7 +62,7 @@ class Examiner:
         self.turns = 1  # number of searches so far; each has its own `MOST` tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # one sentence for each other test that earned less under a candidate
+        self.lost: tuple[str, ...] = ()  # one sentence for each other test that earned less with a candidate
         self.cut = False  # whether the budget ended the search
 
     @property
@@ -103,7 +103,7 @@ class Examiner:
                 if accepted is not None or self._exhausted():
                     return accepted
             if operands(examined.candidate) == operands(candidate):
-                candidate = replace(candidate, mutations=examined.candidate.changes)  # centred once
+                candidate = replace(candidate, mutations=examined.candidate.changes)  # is not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # this guard is as wide as the one of the search, so narrower ones cannot gain more
@@ -276,7 +276,7 @@ class Examiner:
         """Return the reason why a candidate fails on known episodes, "" if it does not.
 
         Known episodes are drifted ones (all with a loss, some without), and recorded ones in which the guard holds.
-        Raises BudgetSpentError and RepairError.
+        Raise BudgetSpentError and RepairError.
         """
         goal, offline = self.order.goal, self.order.fixture.sample
         known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))

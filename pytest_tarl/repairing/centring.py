@@ -1,9 +1,9 @@
 """Improve the value of a candidate that holds but loses much of the margin, before its expensive test.
 
 A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The mean reward on
-the known seeds is biased upwards, because the candidate was chosen on them. A loss of a third of the margin there may
-be half of it on other seeds. A value in the middle of the range of good values loses less. Finding it costs a few
-episodes on known seeds and saves a test of hundreds of episodes.
+the known seeds is biased upwards, because the candidate was chosen on them. A candidate that loses a third of the
+margin on the known seeds may lose half of the margin on other seeds. A value in the middle of the range of good values
+loses less. Finding it costs a few episodes on known seeds and saves a test of hundreds of episodes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def centred(
 ) -> Candidate:
     """Return the candidate with the best value found by hill climbing on known seeds.
 
-    A candidate that fails on these seeds, or loses little, is returned unchanged. Raises BudgetSpentError.
+    A candidate that fails on these seeds, or loses little, is returned unchanged. Raise BudgetSpentError.
     """
     pairs = goal.pairs[:SEEDS]
     harder = fmean(goal.harder.get(pair.seed, 0.0) for pair in pairs)

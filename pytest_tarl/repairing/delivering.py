@@ -40,7 +40,7 @@ def delivered(
     history: tuple[Attempt, ...],
     bounds: Mapping[str, Guarantee],
 ) -> Repair:
-    """Write the patch of an accepted repair. Raises RepairError.
+    """Write the patch of an accepted repair. Raise RepairError.
 
     `search` and `acceptance` are numbers of episodes; `bounds` maps worlds to guarantees for the repaired program.
     """
@@ -70,7 +70,7 @@ def _written(order: Order, diff: str) -> str:
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
-    """Check that files lose nothing except the changed lines. Raises RepairError."""
+    """Check that files lose nothing except the changed lines. Raise RepairError."""
     for shown, original in order.analysis.sources.items():
         text = changed.get(order.root / shown)
         if text is not None:

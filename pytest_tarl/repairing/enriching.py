@@ -67,7 +67,7 @@ def enriched(mutants: Mutants, trials: Trials) -> Goal:
 
 
 def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> float:
-    """Return the total reward of the unrepaired program. Raises BudgetSpentError."""
+    """Return the total reward of the unrepaired program. Raise BudgetSpentError."""
     trials.charge()
     total: float = mutants.run(ORIGINAL, seed, drift).total
     return total

@@ -34,7 +34,7 @@ class Watch:
         return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
 
     def best_so_far(self, refused: Refused) -> Refused:
-        """Return the best candidate of the search with its figures, or `refused` if that has a candidate."""
+        """Return `refused` if it has a candidate, else the best candidate of the search with its figures."""
         if refused.candidate is not None or self.best is None:
             return refused
         totals = [run.total for run in self.seen[self.best].values()]

@@ -23,7 +23,7 @@ class Joined:
 
 
 def joined(paths: Sequence[Path], cwd: Path) -> Joined:
-    """Merge the patches of a run that share a file, where possible. Raises RepairError."""
+    """Merge the patches of a run that share a file, where possible. Raise RepairError."""
     lines: list[str] = []
     commands: list[str] = []
     for group in _groups([read(path) for path in paths]):
@@ -61,7 +61,7 @@ def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
 
 
 def _combined(patches: Sequence[Patch]) -> Path:
-    """Write one patch for several. Raises RepairError if the files have changed since."""
+    """Write one patch for several. Raise RepairError if the files have changed since."""
     root = patches[0].root
     if root is None or len({one.base for one in patches}) > 1:
         raise RepairError("they belong to different repositories.")

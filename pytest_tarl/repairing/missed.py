@@ -56,7 +56,7 @@ class Missed:
             self.spread[candidate] = _spread(found)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses most of the missions that were stored last. Raises BudgetSpentError."""
+        """Return whether a candidate loses most of the missions that were stored last. Raise BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
             lost += _loses(candidate, trials, goal, seed, near)
@@ -65,7 +65,7 @@ class Missed:
         return False
 
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses none of the missions that `refused` lost. Raises BudgetSpentError."""
+        """Return whether a candidate loses none of the missions that `refused` lost. Raise BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
 
 

@@ -16,7 +16,7 @@ from pytest_tarl.searching.search import Candidate, Wanted
 from tarl_lint.model import Operand
 
 ORIGINAL = Candidate((), Guard())  # the unrepaired program
-MOST_KEPT = 128  # candidates whose source is cached
+MOST_KEPT = 128  # maximum number of candidates whose source is cached
 
 
 class Mutants:
@@ -33,7 +33,7 @@ class Mutants:
         return mutations(operand, factor, is_integral(self.order.analysis, operand))
 
     def source(self, candidate: Candidate) -> Mapping[Path, str]:
-        """Return path → text of every file that a candidate changes. Raises RepairError."""
+        """Return path → text of every file that a candidate changes. Raise RepairError."""
         if candidate not in self._sources:
             order = self.order
             self._read_places(candidate)
@@ -56,7 +56,7 @@ class Mutants:
         self._ahead.foresee(self._foreseen(wanted, drift))
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
-        """Run one episode of a candidate. Raises RepairError if it cannot be written into the source."""
+        """Run one episode of a candidate. Raise RepairError if it cannot be written into the source."""
         plan = EpisodePlan(seed, drift, self.source(candidate))
         return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 
@@ -65,7 +65,7 @@ class Mutants:
     ) -> Outcome:
         """Run one episode of another test, with the unrepaired program if `candidate` is None.
 
-        `worst` is the total reward to assume if the candidate breaks that test. Raises RepairError.
+        `worst` is the total reward to assume if the candidate breaks that test. Raise RepairError.
         """
         plan = EpisodePlan(seed, drift, self.source(candidate) if candidate else {})
         return _outcome(lambda: rollout(plan), worst)
@@ -93,7 +93,7 @@ def _check_text(ended: EpisodeRun) -> None:
 
 
 def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
-    """Run an episode of a candidate and return its outcome. Raises StaleTextError.
+    """Run an episode of a candidate and return its outcome. Raise StaleTextError.
 
     The unrepaired program ran in this test, so any error now (a silent node, a reward that is not a number) is due to
     the candidate. After an error or a crash of the node, the reward so far means nothing. The total is then at most

@@ -42,9 +42,8 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        self.chosen: set[Candidate] = (
-            set()
-        )  # values that earned more than the tested value on missions of its test
+        # values that earned more than the tested value on missions of its test
+        self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
         """Propose larger steps if the candidate fails on some seeds, smaller ones if it only earns too little.
@@ -68,7 +67,7 @@ class Others:
 
         Bisect between the original value and the refused one. A change that fails on the first seed of the search is
         too small; one that passes may be too large. Of the values that also pass the missions lost in the test, propose
-        the middle one. Raises BudgetSpentError.
+        the middle one. Raise BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         if not self.missed.few.get(refused) or place in self._inward:
@@ -94,7 +93,7 @@ class Others:
     def beside(self, trials: Trials) -> OtherValues:
         """Propose neighbours of a candidate that lost few missions in its test, if they lose none of these missions.
 
-        If a close value was rejected as well, the value halfway between the two comes first. Raises BudgetSpentError.
+        If a close value was rejected as well, the value halfway between the two comes first. Raise BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)

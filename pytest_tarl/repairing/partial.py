@@ -19,8 +19,8 @@ from pytest_tarl.searching.search import Candidate
 
 MOST = 2  # number of candidates to test
 EPISODES = 40  # episodes per world, each paired with one of the unrepaired program
-SCREENED = 12  # maximum number of candidates to screen ...
-KNOWN = 3  # ... in this many recorded episodes of the designed world
+SCREENED = 12  # maximum number of candidates to screen
+KNOWN = 3  # number of recorded episodes of the designed world in which a candidate is screened
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (
     "nominal gets worse",

@@ -16,7 +16,7 @@ from tarl_lint.model import Operand
 
 LOOKED_AT = 3  # seeds on which a repair at the definition must hold
 MOST_PLACES = 6  # configuration files to try for one parameter
-MOST_NAMED = 5  # other users to name in a note
+MOST_NAMED = 5  # maximum number of other users of a constant to name in a note
 
 
 class Placing:
@@ -49,7 +49,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions that the test uses; return None if there are none or the result fails."""
+        """Move mutations to definitions that the test uses; return None if there are none or the result then fails."""
         mutations = []
         for mutation in candidate.mutations:
             stays = mutation.operand.literal or mutation.form is not None

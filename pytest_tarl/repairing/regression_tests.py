@@ -15,7 +15,7 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
-MOST = 5  # tests to run
+MOST = 5  # maximum number of other tests to run
 EPISODES = 8  # episodes per test: the first ones in which the guard holds
 
 
@@ -32,7 +32,7 @@ NOTHING_BESIDE = Beside()
 
 
 def beside(mutants: Mutants, candidate: Candidate) -> Beside:
-    """Run the recorded missions of other tests of the changed files, until a test loses reward. Raises RepairError."""
+    """Run the recorded missions of other tests of the changed files, until a test loses reward. Raise RepairError."""
     changed = {path.resolve() for path in mutants.source(candidate)}
     concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, mutants.order.root)]
     held: list[str] = []
@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test depends on changed files: as its nodes, or mentioned in a node or in the test."""
+    """Return whether a test depends on changed files: they are its nodes, or a node or the test mentions them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]

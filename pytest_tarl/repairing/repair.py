@@ -45,7 +45,7 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """Results of the searches so far; `method` names the first search with any `effects`, which are kept."""
+    """Results of the searches so far; `method` names the search that found `effects`, the first with any."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
@@ -64,7 +64,7 @@ class _Findings:
 
 
 def repair(order: Order) -> Repaired:
-    """Run the requested searches; the first accepted candidate is the repair. Raises RepairError."""
+    """Run the requested searches; the first accepted candidate is the repair. Raise RepairError."""
     mutants, found = Mutants(order), _Findings()
     purse = Purse(order.options.budget, order.options.seconds)
     _enrich(mutants, purse)

@@ -26,7 +26,7 @@ MOST_GUARDS = 3  # guards per search
 
 
 def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
-    """Return the search of that name. Raises SearchError and SettingsError for unsuitable plug-ins."""
+    """Return the search of that name. Raise SearchError and SettingsError for unsuitable plug-ins."""
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":

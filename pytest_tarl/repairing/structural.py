@@ -40,8 +40,8 @@ LEAST = 50  # minimum number of episodes for templates with a telling sensor; li
 class Structures:
     """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
 
-    Templates of equal cost share a part of the episodes, in proportion to their number of parameters. If one of them
-    gains much, the group also gets half of the episodes left for the other groups.
+    Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
+    parameters. If one of its templates gains much, it also gets half of the episodes left for the other groups.
     """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
@@ -52,7 +52,7 @@ class Structures:
         self._found: dict[Operand, Form] = {}
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, cheap templates first. Raises BudgetSpentError."""
+        """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
         known, places = templates(self.order.root), list(spots(self.order))
         told = self._told(known, places)
         groups = [*([told] if told else []), *self._groups(known, places)]
@@ -201,10 +201,10 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
         return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
-    if (
-        template.on == "sensor"
-    ):  # sensors are read where messages arrive, and correct the values that are sent
-        # ... before these are limited, so that the limits still hold
+    if template.on == "sensor":
+        # Sensors are read where messages arrive. They correct sent values before the values are limited, so
+        # that the
+        # limits still hold.
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)

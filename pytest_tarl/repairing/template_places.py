@@ -23,7 +23,7 @@ class Spot:
     """An expression of a kind at which a template may be written.
 
     `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in both
-    worlds. `away` is its distance from a publish call, in statements. `hears` is whether its module subscribes to
+    worlds. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
     topics, so that a template can read a sensor there.
     """
 
@@ -73,7 +73,7 @@ def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
 
 
 def _away(order: Order) -> dict[SiteId, int]:
-    """Return how many statements each statement is away from a publish call."""
+    """Return the distance of each statement from a publish call, counted in statements."""
     away: dict[SiteId, int] = {}
     for flow in order.analysis.flows:
         for distance, step in enumerate(reversed(flow.steps)):
@@ -86,7 +86,8 @@ def _expressions(
 ) -> Iterator[tuple[ast.expr, str]]:
     """Yield (expression, kind) for the expressions to change in the statement at a span.
 
-    `numeric` is whether the recording has numbers for the statement; `returned` names functions that returned numbers.
+    `numeric` says whether the recording has numbers for the statement; `returned` names functions that returned
+    numbers.
     """
     statements = [
         node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line

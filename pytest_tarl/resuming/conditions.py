@@ -1,4 +1,4 @@
-"""The conditions of a run: kept episodes are used again only if all of them are unchanged."""
+"""The conditions of a run: kept episodes are used again only if all conditions are unchanged."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def conditions(
 ) -> dict[str, Any]:
     """Return the conditions of a run by name, as JSON: digests of files, and values of settings.
 
-    `files` are those in which something is recorded. Settings that only select or judge episodes are omitted: their
-    number, the level of significance, the search.
+    `files` are the files of the recorded statements. Settings that only select or judge episodes are omitted: the
+    number of episodes, the level of significance, the search.
     """
     nodes = [(folder / node).resolve() for node in designation.nodes]
     code = {path.resolve() for path in files} | {one for node in nodes for one in _sources(node)}

@@ -23,13 +23,13 @@ except ImportError:  # pragma: no cover - Windows: two runs of one test at a tim
     fcntl = None  # type: ignore[assignment]
 
 MAGIC = b"tarl episodes 1\n"
-KEY = 32  # bytes of an episode's key
+KEY = 32  # length in bytes of an episode's key
 LARGEST = 1 << 30  # maximum size in bytes of a record
-SYNC = 1.0  # seconds between two syncs; a power cut loses at most the episodes of this time
+SYNC = 1.0  # seconds between two syncs; a power cut loses at most the episodes that ended in this time
 
 
 class TakenError(OSError):
-    """Another run is writing the file."""
+    """Raised if another run is writing the file."""
 
 
 class Journal:
@@ -64,7 +64,7 @@ class Journal:
         self._file = file
 
     def taken(self, key: bytes, count: int) -> bytes | None:
-        """Return the episode number `count`, from 0, among those with this key, or None if there is none."""
+        """Return the episode with index `count` among the episodes with this key, or None if there is none."""
         places = self._places.get(key, ())
         if count >= len(places):
             return None
@@ -132,7 +132,7 @@ class Journal:
 
 
 def conditions_of(path: Path) -> tuple[dict[str, Any], int] | None:
-    """Return the conditions of a file's episodes, and their number; None if it has no episode."""
+    """Return the conditions of a file's episodes and the number of episodes; None if it has no episode."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC or (first := next_payload(file, LARGEST)) is None:

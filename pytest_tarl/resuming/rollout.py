@@ -23,7 +23,7 @@ from pytest_tarl.workers import protocol
 
 
 class KeptRollout:
-    """Run episodes of another rollout, except those in the journal; `shown` is the journal's path for messages."""
+    """Run the episodes of another rollout that are not in the journal; `shown` is the journal's path for messages."""
 
     def __init__(
         self, rollout: Rollout, journal: Journal, scope: bytes, shown: str, *, checked: bool = False
@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether a kept episode was shown to still have the same result
+        self._checked = checked  # whether a repetition of a kept episode already had the same result
 
     @property
     def workers(self) -> int:

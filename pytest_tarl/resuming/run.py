@@ -27,7 +27,7 @@ COMPLETE = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 @dataclass
 class ResumableTest:
-    """A test in one mode whose finished episodes are kept; `tell` prints a sentence immediately."""
+    """A test, run in one mode, with the finished episodes that are kept; `tell` prints a sentence immediately."""
 
     item: pytest.Function
     designation: Designation
@@ -124,7 +124,7 @@ class ResumableRun:
         options: Options,
         tell: Callable[[str], None],
     ) -> ResumableTest:
-        """Return a further test, or one that shares a total of episodes and continues in this run."""
+        """Return a new test, or the known one if a total number of episodes is shared among all calls for it."""
         known = next((one for one in self.tests if one.item is item), None)
         if known is not None and options.total is not None:
             return known

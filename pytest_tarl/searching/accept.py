@@ -7,8 +7,8 @@ In both the drifted and the designed world the test must show that
 
 The loss of one mission is capped at the reward of a designed mission, because failures are counted separately. Each
 mission is paired with the unrepaired program's mission of the same seed in the designed world. The means are tested by
-betting (see `learning`). The size of the bets is chosen on separate seeds before the test. These first seeds can refuse
-the candidate but not accept it.
+betting (learning/betting.py). The size of the bets is chosen on separate seeds before the test. Episodes on these first
+seeds can refuse the candidate but not accept it.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
-SCREEN = 8  # episodes before the test
-EARLY = (8, 16, 32)  # looks (numbers of episodes after which the test is evaluated) that can only refuse ...
-LOOKS = tuple(range(60, 201, 20))  # ... and looks that can also accept
+SCREEN = 8  # number of episodes before the test, from which the bet is chosen
+EARLY = (8, 16, 32)  # looks (numbers of episodes after which the test is evaluated) that can only refuse
+LOOKS = tuple(range(60, 201, 20))  # looks (see EARLY) that can refuse or accept
 SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-SHARE = (
-    2 / 3
-)  # share of the risk α spent on the first candidate; each later test spends a third of the one before
+# share of the risk α spent on the first candidate; each later test spends a third of the risk of the test
+# before it
+SHARE = 2 / 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,10 +73,10 @@ class Reference:
     def least(self) -> float:
         """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
 
-        The bound is the difference of the worst mission, declared or recorded, but at most 20 margins. With a margin of
-        5 %, 20 margins are the whole reward of a designed mission. Failures can be clipped because a separate test
-        counts them. Without the clip, one costly failure would hide a small loss from a test of 200 episodes, and
-        correct repairs would be refused.
+        The bound is the difference of the worst mission, declared or recorded, but no further than 20 margins below 0.
+        With a margin of 5 %, 20 margins are the whole reward of a designed mission. Failures can be clipped because a
+        separate test counts them. Without the clip, one costly failure would hide a small loss from a test of 200
+        episodes, and correct repairs would be refused.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
@@ -148,7 +148,7 @@ def accept(
 ) -> Acceptance:
     """Test one candidate; `nominal` is None if the repair changes nothing in the designed world.
 
-    `seeds` are `SEEDS` fresh ones. `risk` bounds the probability of accepting a candidate that loses more than the
+    `seeds` are `SEEDS` fresh seeds. `risk` bounds the probability of accepting a candidate that loses more than the
     margin or fails too often in one of the worlds.
     """
     original = Designed(designed)
@@ -169,7 +169,8 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # Report all missions of a refused candidate, but only the test's missions of an accepted one.
+    # Report all missions of a refused candidate; of an accepted candidate, report only the missions of the
+    # test.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])

@@ -63,7 +63,7 @@ Factory = Callable[[Sequence[Constant], int], Optimiser]
 
 
 def factory(name: str, folders: Sequence[Path]) -> Factory:
-    """Import `module:factory`, searching the folders for the module first. Raises SettingsError."""
+    """Import `module:factory`, searching the folders for the module first. Raise SettingsError."""
     module, _, attribute = name.partition(":")
     where = f"--tarl-search={name}"
     try:
@@ -111,7 +111,7 @@ class Asking:
         self._found: list[Candidate] = []
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, reduced to the mutations that they need. Raises SearchError."""
+        """Yield confirmed candidates, reduced to the mutations that they need. Raise SearchError."""
         turn, idle, leads = 0, 0, list(self._leads)
         while self.operands and leads and idle < MOST_IDLE:
             guard, optimiser = leads[turn % len(leads)]
@@ -138,7 +138,7 @@ class Asking:
         return found
 
     def _asked(self, optimiser: Optimiser) -> list[list[float]]:
-        """Ask for a batch; it is shorter if the optimiser has no more proposals. Raises SearchError."""
+        """Ask for a batch; it is shorter if the optimiser has no more proposals. Raise SearchError."""
         asked: list[list[float]] = []
         with self._heeding("ask()"):
             for _ in range(getattr(optimiser, "batch", 1)):

@@ -14,7 +14,7 @@ from tarl_lint.model import Operand
 
 
 def calls_of(unit: Unit, among: Sequence[Unit]) -> list[Unit]:
-    """Return the units (calls, each once) of the function whose return value `unit` changes.
+    """Return the units that are calls of the function whose return value `unit` changes.
 
     Units on a chart are left out: they use another scale, on which the factor of the return value has no meaning.
     """

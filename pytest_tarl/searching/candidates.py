@@ -18,10 +18,11 @@ from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
 COVERED = 0.95  # a guard that holds in this share of the drifted steps counts as holding everywhere
-ENTIRELY = 0.999  # from this share on, a search under the guard adds nothing to a search without a guard
-HARMLESS = 0.25  # bonus in `merit` for a guard that never holds in the designed world ...
-CONDITION = 0.1  # ... and cost of a second condition, both as shares of the change
-EVERYWHERE = 0.3  # if the best merit is lower, the drift counts as present everywhere
+ENTIRELY = 0.999  # share of drifted steps from which on a search under a guard is as good as without it
+# bonus in the merit of a guard that never holds in the designed world, as a share of the change
+HARMLESS = 0.25
+CONDITION = 0.1  # cost of a second condition in the merit of a guard, as a share of the change
+EVERYWHERE = 0.3  # if no guard has at least this merit, the drift counts as present everywhere
 WIDER = 2  # bins added to each side of an interval for the last proposals
 
 Bins = tuple[int, int]  # first and last bin, both included
@@ -53,7 +54,7 @@ class Evidence:
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
-    """Return the guards worth simulating, fewest conditions first, then those that hold least as designed."""
+    """Return the guards worth simulating, by number of conditions, then by the share of designed steps under them."""
     region = evidence.region
     proposals = [
         ALWAYS,
@@ -197,13 +198,13 @@ def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[
 
 
 def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
-    """Return whether the bins contain every bin ever seen."""
+    """Return whether the bins contain every bin that was ever visited."""
     turn = sensor.bins if sensor.angle and sensor.bins else 0
     return all(bins[0] <= index <= bins[1] or bins[0] <= index + turn <= bins[1] for index in seen)
 
 
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
-    """Return the interval of the bins; an end is unbounded if no bin beyond it was ever seen."""
+    """Return the interval of the bins; an end is unbounded if no bin beyond it was ever visited."""
     low, high = sensor.interval(*bins)
     if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low

@@ -14,13 +14,11 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.01  # deviation (see `course`) up to which a mission counts as going as designed
+EXACT = 0.01  # maximum deviation (see `course`) of a mission that counts as going as designed
 CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
-COMPARED = 3  # missions on which two candidates that hold are compared
-POWERS = (
-    1.0,
-    0.7,
-)  # exponents for the factor found, because the first factor that holds is often larger than needed
+COMPARED = 3  # number of missions on which two candidates that hold are compared
+# exponents for the factor found, because the first factor that holds is often larger than needed
+POWERS = (1.0, 0.7)
 RIVALS = 8  # maximum number of runs of rival constants per candidate
 
 

@@ -18,10 +18,11 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
-LEADERS = 5  # number of units to combine with the first, because a useful one may gain little alone
+# number of further units to combine with the first unit, because a useful unit may gain little alone
+LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly ...
-CLIMB = 4  # ... at most this many times
+CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly
+CLIMB = 4  # maximum number of times that a fixed parameter is moved by such a factor
 STRONG = 5.0  # factor for parts that have no effect alone
 
 
@@ -92,7 +93,7 @@ class ForwardSelection:
         """Yield combined candidates that hold on every seed they ran on."""
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
-            return  # the base reaches the goal on this seed, so no further part can show a gain
+            return  # the combination to start from reaches the goal on this seed, so no further part can show a gain
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
             widened = list(self._with_another(base))
@@ -110,7 +111,7 @@ class ForwardSelection:
     ) -> Iterator[Candidate]:
         """Combine the first part with each of the next, add a third to the best pair, and balance the best result.
 
-        `hidden` are units that never changed a reward alone.
+        `hidden` are the units that never changed a reward alone.
         """
         first = Joint(tuple(parts[:1]), guard)
         if first.candidate(self.mutate) in self.settled.held:
@@ -135,7 +136,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units without effect alone to a pair with a high gain: missions may have ended too early for them."""
+        """Add units that had no effect alone to a good pair; alone, missions may have ended before they mattered."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():

@@ -60,7 +60,7 @@ class Gains:
         return any(moved == unit for moved, _ in self._moved)
 
     def moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units, without those that were increased and decreased under any guard without effect."""
+        """Return the units, except those for which neither an increase nor a decrease had any effect."""
         tries: dict[Unit, int] = {}
         for (unit, _), by_factor in self._by_key.items():
             tries[unit] = tries.get(unit, 0) + sum(factor != 1.0 for factor in by_factor)
@@ -68,10 +68,11 @@ class Gains:
         return [unit for unit in among if tries.get(unit, 0) < len(NEAR) or unit in moved]
 
     def distinct(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units, without those that use the same constant as an earlier unit with the same effect.
+        """Return the units, except those that use the same constant as an earlier unit and have the same effect.
 
-        For example, a constant that is passed to a function is used both in the call and in the function. Such units
-        share the definition, and changed missions equally by all common factors, of which two or more are needed.
+        For example, a constant that is passed to a function is used both in the call and in the function. Two units
+        count as such if they share a definition, and if all factors that were tried on both, at least two, had equal
+        gains.
         """
         kept: list[Unit] = []
         for unit in among:
@@ -97,8 +98,8 @@ class Gains:
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
         """Return the units that lost more than `slack` with each of these factors.
 
-        A mission that already earns the least possible reward cannot lose more. There a changed episode without a gain
-        counts as a loss.
+        A mission that already earns the least possible reward cannot lose more. In that case, a changed episode without
+        a gain counts as a loss.
         """
         tried = {unit: self.of(unit, guard) for unit in among}
 

@@ -27,19 +27,19 @@ from tarl_lint.model import Operand
 
 Floats = NDArray[np.float64]
 
-DIMENSIONS = 8  # maximum number of constants to move ...
-LEAST = 2  # ... and minimum number
-EPISODES = 50  # maximum number of trials ...
-PATIENCE = 25  # ... and of consecutive trials without an improvement
+DIMENSIONS = 8  # maximum number of constants to move
+LEAST = 2  # minimum number of constants to move
+EPISODES = 50  # maximum number of trials
+PATIENCE = 25  # maximum number of consecutive trials without an improvement
 FARTHEST = 3.0  # largest |log step|, a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
 SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
 PROPOSALS = 400  # random proposals per trial; the one with the largest expected improvement runs
-STARTS = 4  # number of best points to start from ...
-ASUNDER = 0.2  # ... which must differ by at least this much in some log step
-HIDDEN = 2  # maximum number of constants that hardly changed the reward alone ...
-SELDOM = 0.25  # ... and how often they move, relative to the other constants
-LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant's log step
+STARTS = 4  # number of best points to start from
+ASUNDER = 0.2  # two points to start from must differ by at least this much in some log step
+HIDDEN = 2  # maximum number of hidden constants: they are moved although they hardly changed the reward alone
+SELDOM = 0.25  # how often hidden constants are moved, relative to the other constants
+LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant to choose from, in units of its log step
 REFITTED = 4  # number of trials between two fits of the length scales
 NOISES = (0.05, 0.2)  # noise of a trial, as a share of the standard deviation of all trials
 WORST = 2.0  # larger deviations from the designed mission are clipped to this
@@ -118,7 +118,7 @@ def expected_improvement(mean: Floats, deviation: Floats, best: float) -> Floats
 class Jointly:
     """Joint search of units, starting at given points; `selection` runs and confirms the combinations.
 
-    The last `hidden` units move less often.
+    The last `hidden` units hardly changed the reward alone and move less often.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class Jointly:
         self._lengths: Floats | None = None
 
     def candidates(self, starts: Sequence[Joint], guard: Guard) -> Iterator[Candidate]:
-        """Yield combinations that hold. Raises BudgetSpentError."""
+        """Yield combinations that hold. Raise BudgetSpentError."""
         begun, since, best = self.trials.spent, 0, -float("inf")
         waiting = [(0.0,) * len(self.units), *(self._point(start) for start in starts)]
         while self.trials.spent - begun < EPISODES and since < PATIENCE:
@@ -219,7 +219,7 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 
 
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
-    """Return the units to move jointly, and how many of the last ones have effects that others may hide.
+    """Return the units to move jointly, and the number of hidden ones (see HIDDEN), which come last.
 
     Each constant moves on the scale on which it gained most. Named constants come first, then the other constants by
     how much they changed the reward. Booleans, zeros and constants of nature are left out.

@@ -13,7 +13,7 @@ from tarl_lint.model import Operand
 
 UNTRIED = 2  # named constants to try before a changed literal is accepted
 GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)  # m/s², as programs write it
-ROUNDED = 6e-4  # relative error of 3.14 as π, with some room
+ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 
 
 class Oddness(IntEnum):
@@ -66,7 +66,7 @@ def named(units: Iterable[Unit]) -> list[Unit]:
 
 
 def writing(operand: Operand) -> Oddness:
-    """Return the oddness of changing an operand, which is also the order to try operands in.
+    """Return the oddness of changing an operand; the least odd operands are tried first.
 
     In a product, scaling a named constant and scaling a literal have the same effect; a maintainer changes the named
     one. A literal zero is more often a bound or a start value than a tuned number.

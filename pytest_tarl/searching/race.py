@@ -13,9 +13,8 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
 from pytest_tarl.searching.units import Unit
 
-CONFIDENCE = (
-    0.95  # confidence of an approximate interval that decides what to run next, not whether a repair holds
-)
+# confidence of an approximate interval that decides what to run next, not whether a repair holds
+CONFIDENCE = 0.95
 LEAST = 3  # minimum number of common seeds for calling one arm behind another
 FINEST = 1.1  # stop refining between two factors when their ratio is below this
 
@@ -46,7 +45,7 @@ class Race:
         self.gains: dict[Arm, dict[int, float]] = {}
 
     def run(self, arms: Sequence[Arm], seeds: int) -> None:
-        """Run all arms on the first `seeds` seeds, skipping those already run. Raises BudgetSpentError."""
+        """Run all arms on the first `seeds` seeds, skipping those already run. Raise BudgetSpentError."""
         pairs = self.pairs[:seeds]
         wanted = [(arm, one) for arm in arms if (one := arm.candidate(self.mutate)) is not None]
         for pair in pairs:

@@ -26,9 +26,9 @@ SEEDS = 8  # common seeds of the final race
 class Certainty:
     """How certain it is that the first site is ahead of all others.
 
-    `by` is an approximate confidence interval for the lead in gain over the second site, on `seeds` common seeds. It is
-    None if these are too few. `level` is the number of other sites that cannot be distinguished from the first, `ahead`
-    the number of sites that gain significantly more. `gaining` is the number of sites that gain at all.
+    `by` is an approximate confidence interval for the lead in gain over the second site, on `seeds` common seeds; `by`
+    is None if there are too few seeds. `level` is the number of other sites that cannot be distinguished from the
+    first, `ahead` the number of sites that gain significantly more. `gaining` is the number of sites that gain at all.
     """
 
     gaining: int

@@ -9,8 +9,9 @@ OUTWARD = 2.3  # if the outermost factor is the best, the next one is larger (or
 FINEST = 1.1  # stop refining between two factors when their ratio is below this
 ALMOST = 0.9  # a factor that gains this share of the loss is refined down to the ratio `NARROWEST`
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-PROMISING = 0.4  # a factor that gains this share of the loss is also refined to `NARROWEST`, if ...
-SHARP = 0.5  # ... both neighbours gain at most this share of its gain
+# a factor that gains this share of the loss at a sharp peak (SHARP) is also refined to `NARROWEST`
+PROMISING = 0.4
+SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
 
 
 def between(by_factor: Mapping[float, float], wanted: float) -> list[float]:

@@ -1,4 +1,4 @@
-"""What all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
+"""The parts that all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
 A mission is one episode of the test. A candidate holds on a seed if its mission there earns about as much as designed.
 A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
@@ -21,10 +21,11 @@ from tarl_lint.model import Operand
 Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
-FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
-CONFIRMATIONS = 5  # further seeds on which a promising candidate must also earn enough ...
-HARD = 2  # ... starting with at most this many seeds on which other candidates earned too little
-FAR = 0.6  # a candidate that gains this share of the wanted gain releases the reserve of episodes
+# factors on a constant, in the order in which they are tried
+FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
+CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
+HARD = 2  # maximum number of seeds for confirmation that are chosen because other candidates failed there
+FAR = 0.6  # a candidate that gains this share of the wanted gain makes the reserve of episodes available
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -101,7 +102,7 @@ class Goal:
 
 
 class BudgetSpentError(Exception):
-    """The search has spent its budget of episodes."""
+    """Raised if the search has spent its budget of episodes."""
 
 
 def lost_nothing(_: Candidate) -> bool:
@@ -121,27 +122,24 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    reserve: int = 0  # extra episodes, added to the budget once a candidate has gained `FAR` ...
-    worth: Goal | None = None  # ... of the gain wanted by this goal
-    loses: Callable[[Candidate], bool] = (
-        lost_nothing  # whether a candidate loses the missions that rejected candidates lost
-    )
+    # extra episodes, added to the budget once a candidate has gained `FAR` of what `worth` wants
+    reserve: int = 0
+    worth: Goal | None = None  # the goal whose wanted gain releases `reserve`
+    # whether a candidate loses the missions that rejected candidates lost
+    loses: Callable[[Candidate], bool] = lost_nothing
     design: Callable[[int], Outcome] | None = None  # runs the unchanged program in the designed world
-    misses: Counter[int] = field(
-        default_factory=Counter
-    )  # seed → number of candidates that earned too little on it
+    # seed → number of candidates that earned too little on it
+    misses: Counter[int] = field(default_factory=Counter)
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    _course: dict[int, tuple[float, ...]] = field(
-        default_factory=dict
-    )  # rewards of designed missions, by seed
-    _short: list[dict[int, float]] = field(
-        default_factory=list
-    )  # totals of candidates that fell short, by seed
+    # rewards of designed missions, by seed
+    _course: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    # totals of candidates that fell short, by seed
+    _short: list[dict[int, float]] = field(default_factory=list)
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
-        """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""
+        """Return the outcome of one episode, from the cache if it has run. Raise BudgetSpentError and RepairError."""
         key = (candidate, seed)
         if key not in self._known:
             self._afford()
@@ -158,7 +156,7 @@ class Trials:
     def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
         """Return the mean deviation of a candidate's missions from the designed ones (see `course`), 0 if unknown.
 
-        Each designed mission that runs is charged to the budget once. Raises BudgetSpentError and RepairError.
+        Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
         """
         found = [deviation(self(candidate, seed).rewards, self._designed(seed)) for seed in seeds]
         return fmean(found) if self.design is not None else 0.0
@@ -172,7 +170,7 @@ class Trials:
         return self._course[seed]
 
     def charge(self) -> None:
-        """Count an episode that is about to run in the designed world. Raises BudgetSpentError."""
+        """Count an episode that is about to run in the designed world. Raise BudgetSpentError."""
         self._afford()
         self.beside += 1
 
@@ -222,7 +220,7 @@ class Trials:
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Return whether a candidate will probably earn too little, estimated from earlier candidates that did.
+        """Return whether a candidate will probably earn too little, judging by earlier candidates that did.
 
         The estimate uses an earlier candidate as a control variate: its mean total, plus the mean difference between
         the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
@@ -312,7 +310,7 @@ class Strategy(Protocol):
     """Interface of a search."""
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, best first. Raises BudgetSpentError."""
+        """Yield confirmed candidates, best first. Raise BudgetSpentError."""
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site id, the best gain found for each of its operands."""

@@ -34,26 +34,22 @@ if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
-LEADING = 3  # best units that get larger steps before the next guard is tried ...
-HINT = 0.005  # ... if they gained at least this share of the loss
-FLIP = -1.0  # flips the sign
+LEADING = 3  # number of best units that get larger steps before the next guard is tried
+HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
+FLIP = -1.0  # factor that flips the sign
 BETWEEN = (1.5, 0.65)
 FINER = (1.22, 0.82)
-FINE = (*FINER, 1.1, 0.91)  # for operands that change the reward but gain nothing with larger steps
-BETWEEN_FINE = (
-    1.16,
-    0.86,
-    1.05,
-    0.95,
-    1.35,
-    0.74,
-)  # for named constants, if the `FINE` steps gain nothing either
+FINE = (*FINER, 1.1, 0.91)  # factors for operands that change the reward but gain nothing with larger steps
+# factors for named constants, if the `FINE` steps gain nothing either
+BETWEEN_FINE = (1.16, 0.86, 1.05, 0.95, 1.35, 0.74)
 LAST = (10.0, 0.05)
-FLIPPED = 3  # number of units to try with the other sign, because a smaller value gained
-REFINEMENTS = 3  # consecutive refinements of one operand while it gains `PROMISING` ...
-REFINED = 8  # ... and maximum number of refining runs per operand
-PLAINER_ROUNDS = 2  # refinements of each constant whose change reads plainer than the candidate found ...
-PLAINER = 12  # ... and maximum number of runs for all of them
+# maximum number of units to try with the other sign, among those that gained with a smaller value
+FLIPPED = 3
+REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
+REFINED = 8  # maximum number of runs that refine one operand
+# number of refinements of each constant whose change reads plainer than the candidate found
+PLAINER_ROUNDS = 2
+PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
 SLACK = 0.1  # a smaller step may lose this share of the loss to repair before larger steps are skipped
 
 
@@ -192,7 +188,7 @@ class Sweep:
         yield from self._refine(pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try operands outside all data flows, such as the period of a timer."""
+        """Try operands that are in no data flow, such as the period of a timer."""
         new = [unit for unit in late if unit not in self.units]
         self.units = (*self.units, *new)
         for guard in guards if new else ():
@@ -275,9 +271,8 @@ class Sweep:
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
             if not self._gains.of(other, guard) and ALWAYS in self.guards:
-                held = (
-                    ALWAYS  # the condition cannot be written at this place, for example in a helper function
-                )
+                # the condition cannot be written at this place, for example in a helper function
+                held = ALWAYS
                 for factor in NEAR:
                     yield from self._try(other, held, factor, pair)
             yield from self._closer(other, held, before, pair)

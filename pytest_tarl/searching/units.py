@@ -43,7 +43,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add a unit on the chart after each unit whose constant has one; for a zero it replaces the plain unit."""
+    """Add, after each unit whose constant has a chart, a unit on that chart; for a zero, only the new unit stays."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])

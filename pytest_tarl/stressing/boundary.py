@@ -13,7 +13,7 @@ from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
 RESOLUTION = 0.02  # share of the declared range; bisection stops when the interval is this narrow
-NOISY = 0.04  # the same while the failing end is undecided: noise then hides a finer boundary
+NOISY = 0.04  # bisection stops at this width if the failing end is undecided, because noise then hides a finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
@@ -72,7 +72,8 @@ def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
         nearest = Model(curve.evidence, given.tolerance).failing(most, most_passed(given, most, share))
         chosen += [] if nearest is None else [max(nearest, curve.failing[0])]
         chosen += [t for t in decided if t in curve.ray.extra]  # the ends of the declared `must_hold` range
-    beyond = [t for t in decided if t > max(chosen)]  # fallbacks, since a few episodes may all fail by chance
+    # tried last, in case the few episodes at nearer values failed by chance
+    beyond = [t for t in decided if t > max(chosen)]
     return [*sorted(set(chosen)), *dict.fromkeys([*beyond[len(beyond) // 2 :][:1], *beyond[-1:]])]
 
 

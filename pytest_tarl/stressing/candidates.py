@@ -18,8 +18,10 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
 HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
-HOLDING = 3.0  # standard errors below the tolerated loss: a bound at 4 % then succeeds 4 times in 5
-FAILING = 4.0  # standard errors above the tolerated loss: a bound at 0.4 % then shows it 4 times in 5
+# standard errors of a loss below the tolerated one, so that a bound at 4 % shows it 4 times in 5
+HOLDING = 3.0
+# standard errors of a loss above the tolerated one, so that a bound at 0.4 % shows it 4 times in 5
+FAILING = 4.0
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
 CENTRES = np.linspace(0.0, 1.25, 251)  # values of t at which half of the episodes fail
 SCALES = np.geomspace(0.002, 0.3, 16)  # scales of the logistic distribution, in units of t

@@ -17,7 +17,7 @@ from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed,
 from pytest_tarl.stressing.nearest import EXPECTED, FIRM, NEAR, Nearest, Steps
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
-# share of the distance to each boundary at which pairs are tested; each direction alone holds there
+# pairs are tested at this share of the distance to each boundary, where each direction alone holds
 INSIDE = 0.9
 FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
 # share of the budget after which the search stops vetting its result, to keep episodes for confirmation
@@ -36,9 +36,8 @@ class Together:
     tried: int = 0
     margin_map: MarginMap | None = None
     tests: int = 0
-    expected: list[Failure] = field(
-        default_factory=list
-    )  # drifts that fail according to the model but are not confirmed
+    # drifts that fail according to the model but are not confirmed
+    expected: list[Failure] = field(default_factory=list)
 
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
         """Test drifts in order on fresh seeds until one is confirmed; the k-th test overall has risk / (k(k + 1)).

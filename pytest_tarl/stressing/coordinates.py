@@ -1,6 +1,6 @@
 """Drifts as vectors: for each range, the difference from nominal in units of the declared range.
 
-Options of a choice have no coordinate; a base point fixes them.
+Options of a choice have no coordinate; they are those of a base point.
 """
 
 from __future__ import annotations

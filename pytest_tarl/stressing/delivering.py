@@ -1,4 +1,4 @@
-"""Run a stress test, write its files below `.tarl`, and report."""
+"""Run a stress test, write its files below `.tarl`, and report the result."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pytest_tarl.stressing.sobol_indices import affordable
 
 @dataclass(frozen=True)
 class Delivered:
-    """The lines for the terminal, why the test fails (or empty), and whether Ctrl-C ended the run."""
+    """The lines for the terminal, the reason why the test fails (or an empty text), and whether Ctrl-C was pressed."""
 
     lines: tuple[str, ...]
     problem: str
@@ -112,7 +112,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         jobs[memory] = lambda path: kept.write(found.failures, path)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
     lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
-    if report in failed:  # an existing page would be that of an earlier run
+    if report in failed:  # the page on disk, if any, is that of an earlier run
         return lines
     return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"]
 

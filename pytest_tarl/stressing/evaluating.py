@@ -23,18 +23,16 @@ from pytest_tarl.stressing.guarantee import (
 
 SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
-NEAREST = (
-    16,
-    32,
-    64,
-)  # the same for a combination: more episodes can confirm failures nearer to the boundary
+# numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
+# confirm failures nearer to the boundary
+NEAREST = (16, 32, 64)
 RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
 
 
 class BudgetSpentError(Exception):
-    """The remaining budget does not cover the next episodes."""
+    """Raised if the remaining budget does not cover the next episodes."""
 
 
 @dataclass
@@ -111,7 +109,8 @@ class Evaluator:
         return False
 
     def _evidence(self, point: Point, count: int) -> Evidence:
-        nominal = self.common(self.space.nominal, count)  # first: each outcome is paired with a nominal one
+        # run these first, because each outcome is paired with a nominal one
+        nominal = self.common(self.space.nominal, count)
         return examined(self.guarantee, self.common(point, count), nominal)
 
     def measured(self, point: Point) -> tuple[float, float]:

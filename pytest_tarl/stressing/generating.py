@@ -14,7 +14,7 @@ def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], floa
     """Call `margin` with up to `tries` generated drifts until it returns None. Re-raise what `margin` raises.
 
     Only booleans are drawn. For numbers, Hypothesis mixes in constants from imported modules, and these differ between
-    worker processes. Its database is off because it also makes runs differ.
+    worker processes. The database of Hypothesis is off because it also makes runs differ.
     """
     import hypothesis
     from hypothesis import strategies as st

@@ -20,11 +20,10 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
 LOWEST = -1.5  # lower limit of margins: how clearly a drift fails says little about where the boundary is
-LEAST = 8  # minimum episodes to count as holding; a drift that fails 1 in 12 passes all half of the time
+LEAST = 8  # minimum number of episodes to count as holding; if 1 in 12 fails, 8 episodes all pass half of the time
 HOPEFUL = 0.84  # one-sided confidence of a bound one standard error above the mean
-SEARCH_RISK = (
-    0.05  # approximate error probability of each decision of the search; only fresh seeds give a guarantee
-)
+# approximate error probability of each decision of the search; only fresh seeds give a guarantee
+SEARCH_RISK = 0.05
 
 Answer = Literal["fails", "holds", "open"]
 

@@ -1,9 +1,9 @@
 """Show on fresh seeds how far the guarantee holds: the near end of a boundary's interval.
 
-A search runs only a few episodes at each drift and can miss rare failures: a drift that fails 1 in 20 passes 8 episodes
-two times in three. Therefore the last value at which a search saw no failure is often too far from nominal. This module
-chooses two values from the search's episodes and tests them on fresh seeds. The risk is divided among all tests. If the
-margin never rises with the drift, the boundary lies beyond each value at which the guarantee holds.
+A search runs only a few episodes at each drift and can miss rare failures: if 1 in 20 episodes fails, 8 episodes all
+pass two times in three. Therefore the last value at which a search saw no failure is often too far from nominal. This
+module chooses two values from the search's episodes and tests them on fresh seeds. The risk is divided among all tests.
+If the margin never rises with the drift, the boundary lies beyond each value at which the guarantee holds.
 """
 
 from __future__ import annotations

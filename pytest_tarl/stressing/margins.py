@@ -1,4 +1,4 @@
-"""The margins of a test, how far each direction may change, in a small file below `.tarl/margins`.
+"""The margins of a test (how far each direction may change), stored in a small file below `.tarl/margins`.
 
 The file is meant to be committed.
 """

@@ -35,31 +35,35 @@ NEARER = 0.98  # the next failing drift must be nearer than this share of the be
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # a drift is not tried if the expected gain, in units of the best distance, is below this
-BOLD = (0.0, 1.0, 0.0, 0.5)  # a prediction may be optimistic by this many standard deviations, in turn
+# numbers of standard deviations by which the predictions may be optimistic, in turn
+BOLD = (0.0, 1.0, 0.0, 0.5)
 # a tried drift counts as failing if its excess is above -SURE times the depth that fresh episodes can show
 SURE = 0.5
-CLEAR = 4.0  # it also does if its margin is this many standard deviations below 0
+CLEAR = 4.0  # a tried drift also counts as failing if its margin is this many standard deviations below 0
 GENERATED = 24  # maximum number of drifts from Hypothesis
 ROUNDS, EXPLORED = 8, 8  # rounds of the first search, and drifts explored in each round
-AGAIN = 4  # rounds after the single directions were examined
+AGAIN = 4  # number of rounds of the search that follows the single directions
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before confirmation
 SAME = 0.02  # drifts whose relative difference is below this count as the same
 TRIES = 24  # CMA-ES stops after this many drifts in a row without a nearer failure
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
-# Steps to choose drifts by: the errors of the model to allow for, in standard deviations, and the excess over the
-# guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation, NEAR for the second, and
+# Steps to choose drifts by: the errors of the model to allow for, in standard deviations, and the excess over
+# the
+# guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation, NEAR for the
+# second, and
 # EXPECTED for drifts that are reported without confirmation.
 FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
 NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
 EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
 STANDARD = 4.1  # fresh episodes show a loss this many standard errors beyond the tolerated one 4 times in 5
-POWER, IMPOSSIBLE = 0.6, 0.99  # the same for the share of failing episodes, and the upper limit of that share
+# standard errors that a share of failing episodes needs to be shown; maximum share
+POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 TRIFLE = 0.15  # components below this share of the distance may be noise and are dropped before confirmation
 
-Steps = Sequence[tuple[float, float]]  # (errors of the model, excess) for each step, as above
+Steps = Sequence[tuple[float, float]]  # (errors of the model, excess) for each step of FIRM, NEAR or EXPECTED
 
 
 @dataclass
@@ -71,7 +75,7 @@ class Nearest:
     tried: list[Point] = field(default_factory=list)
     risk: float = 0.05  # error probability of the confirmation, to know what it can show
     _spread: Iterator[Vector] | None = None
-    _fitted: tuple[int, Prediction] | None = None  # the number of episodes it was fitted to, and the model
+    _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)
 
     def approach(self) -> None:
         """Try predicted drifts; if none fails so far, let Hypothesis explore first.
@@ -163,7 +167,8 @@ class Nearest:
     def _farther(self, limit: float) -> list[Point]:
         """Return up to three tried drifts that failed beyond a distance, in several directions, nearest first.
 
-        They are tested if no nearer candidate is confirmed, because the model or a few lucky episodes were wrong there.
+        They are tested if no nearer candidate is confirmed, because the model or a few lucky episodes were wrong about
+        it.
         """
         usual, coordinates = self.evaluator.space.nominal, self._nominal()
         found = [

@@ -21,16 +21,14 @@ from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covar
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
-ROUNDS, SPREAD = (
-    5,
-    0.15,
-)  # refinements around the best drift, each with half the step, and the initial standard deviation
+# refinements around the best drift, each with half the step, and the initial standard deviation
+ROUNDS, SPREAD = 5, 0.15
 STRETCHED = (0.9, 1.1)  # tried drifts are also compared at these multiples of their vectors
-RAREST = 0.007  # lower limit of the share of failing episodes assumed at nominal
-# candidates for the prior variance of the logit, relative to the loss; evidence selects
+RAREST = 0.007  # minimum share of failing episodes that the model assumes at nominal
+# possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
-LOGIT = 4.0  # this difference of logits counts as much as the whole tolerated loss
+LOGIT = 4.0  # a difference of logits that counts as much as the whole tolerated loss
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, widest first; all directions go the same share towards their ends."""
+    """Yield the regions beyond a failure, widest first; each covers the same share of every direction's rest."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []

@@ -35,7 +35,7 @@ class Risks:
 
 
 def divided(alpha: float, directions: int) -> Risks:
-    """Divide alpha among the claims; combinations get half, since the nearest failure is mostly one of them."""
+    """Divide alpha among the claims; combinations get half, since the nearest failure is usually a combination."""
     return Risks(min(alpha / 2 / (directions + 1), FAR_RISK), alpha / 2)
 
 
@@ -92,7 +92,7 @@ def stress(request: Request, *, combined: bool = True) -> Stress:
 
 
 def along(request: Request, ray: Ray) -> Curve:
-    """Return the evidence along one ray, with the budget of a whole run. Raise KeyboardInterrupt on Ctrl-C."""
+    """Return the evidence along one ray, which may use the whole budget. Raise KeyboardInterrupt on Ctrl-C."""
     space: Any = request.designation.drifts[request.drift].value
     curve = Curve(ray)
     evaluator = _evaluator(request, space)

@@ -39,7 +39,7 @@ def lines(stress: Stress) -> Iterator[str]:
 
 
 def ended_words(stress: Stress) -> Iterator[str]:
-    """Yield sentences about why the run ended early and whether it is reproducible."""
+    """Yield sentences about why the run ended early and whether the run is reproducible."""
     if stress.ended in ENDED:
         yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
     if stress.seconds is not None:
