@@ -192,7 +192,7 @@ def test_a_repair_by_hand_restores_a_task_of_the_fourth_set() -> None:
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-def test_worlds_of_the_fourth_set_are_deterministic() -> None:
+def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
     once, again = (worlds("drift_judging_4", "--episodes", "5") for _ in range(2))
     assert once == again
     assert len(once[0]) == 10

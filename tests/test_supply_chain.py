@@ -152,7 +152,7 @@ def test_a_release_is_reproducible_to_the_byte() -> None:
 @pytest.mark.parametrize(
     ("enabled", "refused"), [(None, False), (lambda: True, False), (lambda: False, True)]
 )
-def test_a_python_without_its_interpreter_lock_gives_one_sentence(
+def test_a_python_without_its_interpreter_lock_is_reported_in_one_sentence(
     enabled: object, refused: bool, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if enabled is None:

@@ -114,7 +114,9 @@ LAYOUT = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), LAYOUT)
-def test_an_edit_of_unread_code_only_moves_lines(tmp_path, analysed, name, before, after):
+def test_an_edit_of_code_that_the_analysis_did_not_read_only_moves_lines(
+    tmp_path, analysed, name, before, after
+):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -254,7 +256,7 @@ def edits(rng: random.Random, text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_random_edits_give_the_results_of_a_new_session(tmp_path, analysed, seed):
+def test_after_random_edits_the_results_equal_those_of_a_new_session(tmp_path, analysed, seed):
     rng = random.Random(seed)
     workspace = Workspace([tmp_path])
     workspace.lint({})
@@ -289,7 +291,7 @@ def test_reading_a_body_is_recorded():
     assert watched(observed).reading().unread == set(places.values())
 
 
-def test_questions_about_the_text_are_recorded():
+def test_queries_about_the_text_of_a_module_are_recorded():
     observed = watched(module("def f():\n    return 1\n"))
     assert observed.contains("return")
     assert not observed.contains("yield")

@@ -107,7 +107,7 @@ def test_data_is_found_at_any_depth_but_not_elsewhere(ctx):
     assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
 
 
-def test_an_empty_part_of_a_message_is_covered_by_the_whole(ctx):
+def test_the_data_of_a_message_includes_its_parts_without_data_of_their_own(ctx):
     message = recency.intern(ctx, "message", "m")
     message.info = 7
     message.sub("pose").sub("position")

@@ -122,13 +122,13 @@ def test_a_store_into_a_part_or_below_it_prevents_the_replay(store, obj):
     assert not same(store, reads)
 
 
-def test_a_change_of_an_objects_meaning_is_always_seen(store, obj):
+def test_a_change_in_the_description_of_an_object_is_always_seen(store, obj):
     reads = noted(store, obj)
     obj.describe("another thing")
     assert not same(store, reads)
 
 
-def test_a_call_can_be_replayed_only_if_nothing_of_its_objects_is_left(store):
+def test_a_call_can_be_replayed_only_if_no_reachable_object_refers_to_those_it_creates(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)

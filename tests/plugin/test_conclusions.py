@@ -99,7 +99,7 @@ def test_the_lost_part_of_the_reward_is_shown_with_its_region(drifting: pytest.P
     assert "Lost where" in page.read_text("utf-8")
 
 
-def test_holm_corrects_the_verdicts_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
+def test_verdicts_are_corrected_by_holm_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-holm", "-v")
     told.assert_outcomes(failed=1, passed=1, deselected=1)
     told.stdout.fnmatch_lines(["*clogged?*FAILED*", "*fine?*PASSED*", "*corrected for the 2 comparisons*"])

@@ -102,12 +102,12 @@ def test_the_seeds_of_an_episode_determine_the_environment() -> None:
 
 
 @pytest.mark.parametrize("answer", [float("nan"), [0.1, 0.2]])
-def test_an_action_that_is_none_is_refused(answer: Any) -> None:
+def test_the_action_none_is_refused(answer: Any) -> None:
     with pytest.raises(SettingsError, match="from /u is not in the environment's"):
         world(Episode([answer]), Environment()).step()
 
 
-def test_an_environment_without_a_time_step_needs_one() -> None:
+def test_an_environment_without_a_time_step_is_refused_unless_one_is_given() -> None:
     environment = Environment()
     environment.unwrapped = object()  # type: ignore[assignment]
     with pytest.raises(SettingsError, match="does not say how long a step is: pass dt"):

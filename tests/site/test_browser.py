@@ -127,7 +127,9 @@ def test_search_finds_rules_and_messages(site: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("page", "dark"), READ_PAGES)
-def test_pages_can_be_read_by_everybody(site: Path, axe: str, tmp_path: Path, page: str, dark: bool) -> None:
+def test_pages_are_accessible_to_readers_with_disabilities(
+    site: Path, axe: str, tmp_path: Path, page: str, dark: bool
+) -> None:
     text = json.dumps(axe).replace("</script>", "<\\/script>")
     script = f"document.head.append(Object.assign(document.createElement('script'), {{text: {text}}}));{READ}"
     found, console = opened(site, page, script, tmp_path, *[DARK] * dark)

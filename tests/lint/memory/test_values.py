@@ -97,7 +97,7 @@ def test_only_one_constant_without_objects_is_a_constant():
     assert const([]) is UNKNOWN
 
 
-def test_texts_leave_out_what_only_the_launch_determines():
+def test_a_value_has_no_texts_if_one_of_its_constants_depends_on_the_launch():
     assert constants("b", "a").texts() == ("a", "b")
     assert constants("a", 1).texts() == ()
     assert UNKNOWN.texts() == ()

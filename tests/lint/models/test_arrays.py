@@ -44,7 +44,7 @@ def test_an_array_computed_from_data_keeps_the_data_and_the_operand_does_not_rec
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_is_filled_through_a_keyword_and_by_the_object_of_the_method():
+def test_a_call_fills_an_array_from_its_arguments_or_from_the_object_of_the_method():
     body = """
         array, other = np.zeros(4), np.zeros(4)
         lib.evaluate(msg.data, into=array)

@@ -337,7 +337,7 @@ def test_repeating_the_command_completes_an_interrupted_one(command: str, capsys
         assert ("node.py was already changed" in told) == (command == "apply")
 
 
-def test_a_patch_without_a_digest_applies_to_its_exact_text_only(capsys: Printed) -> None:
+def test_a_patch_without_a_digest_applies_only_to_the_exact_text_it_was_made_for(capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(re.sub(rb"# " + SEAL.encode() + rb".*\n", b"", PATCH))
         assert main(["apply", str(place)]) == 0

@@ -39,12 +39,14 @@ def ints(*values: int) -> Ints:
         (-inf, inf, "too few robots"),
     ],
 )
-def test_a_repair_helps_only_if_its_whole_interval_does(low: float, high: float, verdict: str) -> None:
+def test_a_repair_helps_only_if_the_whole_interval_of_its_effect_is_above_zero(
+    low: float, high: float, verdict: str
+) -> None:
     assert repaired(reward_bound=bound(low, high)).verdict == verdict
     assert repaired(reward_bound=bound(low, high), strata=0).verdict == "not comparable"
 
 
-def test_strata_without_one_of_the_arms_are_left_out() -> None:
+def test_strata_that_lack_one_of_the_arms_are_left_out() -> None:
     robot_, stratum = ints(7, 7, 7, 8, 8, 9), ints(0, 0, 2, 2, 2, 1)
     treated, passed = ints(0, 1, 0, 1, 1, 0), ints(1, 0, 1, 1, 0, 1)
     total = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
@@ -284,7 +286,7 @@ def test_significant_cells_are_corrected_for_the_number_of_cells() -> None:
     assert clusters._standing_out(mean, variance, 2.9 * p).tolist() == [3]
 
 
-def test_complete_linkage_joins_the_nearest_until_they_differ() -> None:
+def test_complete_linkage_joins_the_nearest_clusters_until_they_differ() -> None:
     apart = np.array([[inf, 1.0, 3.0, 9.0], [1.0, inf, 2.0, 9.0], [3.0, 2.0, inf, 9.0], [9.0, 9.0, 9.0, inf]])
     p = erfc(3.0 / sqrt(2.0)) * 5 * 6  # five cells, six pairs
     assert clusters._linked(apart, 5, 0.9 * p) == [[0, 1, 2], [3]]

@@ -58,7 +58,7 @@ def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: 
     assert 1 <= len(ran) <= engine.WINDOW * workers
 
 
-def test_a_task_has_its_arguments_whatever_they_look_like() -> None:
+def test_arguments_that_look_like_keys_of_the_task_graph_reach_the_task_unchanged() -> None:
     odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
     with engine.local(1) as some:
         assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd

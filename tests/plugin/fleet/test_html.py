@@ -152,7 +152,7 @@ def test_the_map_shows_each_group_and_the_chosen_one_in_words(seen: Seen) -> Non
     assert any("2 robots" in one for one in seen.found["cells"])
 
 
-def test_ten_thousand_robots_have_a_square_each_and_can_be_found(seen: Seen) -> None:
+def test_each_of_ten_thousand_robots_has_a_square_and_can_be_found(seen: Seen) -> None:
     assert seen.found["rows"][:2] in (["<b>200", "<b>201"], ["<b>201", "<b>200"])
     assert len(seen.found["rows"]) == 20
     assert seen.found["searched"] == ["<b>201"]

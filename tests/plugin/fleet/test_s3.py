@@ -121,7 +121,7 @@ def test_a_failing_request_ends_ingest_with_one_sentence_and_the_next_run_comple
     assert said() == expected
 
 
-def test_a_question_to_a_store_that_refuses_is_one_sentence(
+def test_a_refusal_by_the_store_is_reported_in_one_sentence(
     s3: Faults, fleet: tuple[Order, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     order, expected = fleet
@@ -153,7 +153,7 @@ def test_files_missing_from_a_stale_listing_are_counted_once(
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_random_failures_lose_nothing_and_count_nothing_twice(
+def test_after_random_failures_no_mission_is_lost_or_counted_twice(
     s3: Faults, fleet: tuple[Order, str], seed: int
 ) -> None:
     order, expected = fleet

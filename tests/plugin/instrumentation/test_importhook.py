@@ -293,7 +293,7 @@ def test_compiler_warnings_are_suppressed(project):
         assert node.run_script(project / "node.py").x
 
 
-def test_a_warning_names_a_file_imported_before_by_the_test(project, monkeypatch):
+def test_a_warning_names_a_file_that_the_test_imported_before_the_episode(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     gains = __import__("gains")
     try:
@@ -309,7 +309,7 @@ def test_a_warning_names_a_file_imported_before_by_the_test(project, monkeypatch
         del sys.modules["gains"]
 
 
-def test_no_warning_if_the_script_runs_even_if_the_test_imported_it(project, monkeypatch):
+def test_a_script_that_the_test_imported_and_then_runs_gives_no_warning(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     node_module = __import__("node")
     plan = {project / "node.py": SITES}

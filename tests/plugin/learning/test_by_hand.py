@@ -87,14 +87,14 @@ def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
     assert (second.p_loss, second.p_drift, second.result) == (0.3, 0.04, "drifted")
 
 
-def test_five_percent_of_the_reward_are_tolerated_or_more_if_stated() -> None:
+def test_the_tolerated_loss_is_five_percent_of_the_reward_unless_a_larger_one_is_stated() -> None:
     sample = episodes([(0,)] * 2, [(0,)] * 4, reward=-2.0)  # totals -4 and -8
     assert tolerated(sample, None) == pytest.approx(0.3)
     assert tolerated(sample, 0.2) == pytest.approx(0.3)
     assert tolerated(sample, 0.4) == 0.4
 
 
-def test_the_region_of_the_paper_needs_half_of_the_largest_difference() -> None:
+def test_the_region_of_the_paper_has_the_cells_with_half_of_the_largest_difference() -> None:
     offline = np.array([[1.0, 1.0], [1.0, nan], [0.0, 0.0], [5.0, 5.0]])
     online = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 0.0], [nan, nan]])
     assert paper_region(offline, online).tolist() == [0, 1]
@@ -102,7 +102,7 @@ def test_the_region_of_the_paper_needs_half_of_the_largest_difference() -> None:
     assert paper_region(np.empty((0, 2)), np.empty((0, 2))).tolist() == []
 
 
-def test_slabs_are_the_bins_of_each_of_several_sensors_and_all_cells() -> None:
+def test_slabs_are_each_bin_of_each_sensor_and_the_set_of_all_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0, 5), (0, 6), (1, 5)])] == [
         [0, 1],
         [2],
@@ -234,7 +234,7 @@ def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_check_is_decisive_only_with_a_loss_and_its_region(
+def test_a_check_is_decisive_only_if_it_finds_a_loss_and_its_region(
     result: Any, region: Region, expected: bool
 ) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
@@ -267,7 +267,7 @@ def test_a_recording_states_bounds_on_success_mean_and_quantile() -> None:
 GOOD, BAD, UNKNOWN = Judged("g", 0.5), Judged("g", -0.25, 3.5), Judged("g", nan)
 
 
-def test_formulas_over_episodes_count_those_that_judged_them() -> None:
+def test_a_formula_counts_only_the_episodes_that_judged_it() -> None:
     several = stacked([[GOOD], [BAD], [UNKNOWN], [], [Judged("g", -0.75, 2.5), Judged("a", 1.0)]])
     assert several is not None
     assert several.formulas == ("a", "g")
@@ -288,7 +288,7 @@ def test_formulas_over_episodes_count_those_that_judged_them() -> None:
     assert stacked([[], []]) is None
 
 
-def test_rows_are_in_the_given_order_then_by_name() -> None:
+def test_formulas_have_the_given_order_and_further_ones_are_sorted_by_name() -> None:
     one = judgements([GOOD, Judged("b", 1.0), Judged("a", 1.0)])
     found = rows(["g", "never"], {"offline": None, "online": one})
     assert [row.formula for row in found] == ["g", "never", "a", "b"]
@@ -396,7 +396,7 @@ def effect(size: float, code: str = "x") -> OperandEffect:
     return OperandEffect(code, 1.0, 2.0, size)
 
 
-def test_culprits_are_ranked_by_simulation_and_the_repaired_first() -> None:
+def test_repaired_culprits_come_first_and_others_are_ranked_by_their_gain_in_simulation() -> None:
     ranked = [(A, 1.0), (B, 0.5), (C, 0.25), (D, 0.0)]
     effects = {"A": [effect(1.0), effect(3.0, "y")], "B": [effect(9.0)], "C": []}
     found = culprits(ranked, effects, ["A"], 6.0)

@@ -159,7 +159,7 @@ def twice() -> bytes:
 
 
 @pytest.mark.parametrize("kind", DAMAGED)
-def test_known_kinds_of_damage_give_one_sentence(kind: str) -> None:
+def test_known_kinds_of_damage_are_reported_in_one_sentence(kind: str) -> None:
     assert not survived(DAMAGED[kind]())
 
 

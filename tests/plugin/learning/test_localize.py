@@ -177,7 +177,7 @@ def reported(culprits: tuple[Culprit, ...], sites: list[list[Slice]]) -> None:
 
 @given(LISTS, st.frozensets(SITES))
 @settings(max_examples=TIMES, deadline=None)
-def test_changeable_sites_come_first_and_ranks_follow_scores(
+def test_sites_that_can_be_changed_come_first_and_ranks_follow_scores(
     lists: list[dict[int, tuple[float, float]]], changeable: frozenset[int]
 ) -> None:
     per_list = [
@@ -200,7 +200,7 @@ EFFECTS = st.dictionaries(SITES, st.floats(-5, 5), max_size=6)
 
 @given(LISTS, st.frozensets(SITES), EFFECTS, st.frozensets(SITES), st.just(0.0) | st.floats(-1, 4))
 @settings(max_examples=TIMES, deadline=None)
-def test_a_repaired_line_comes_first_after_the_search(
+def test_after_the_search_a_repaired_line_is_ranked_first(
     lists: list[dict[int, tuple[float, float]]],
     changeable: frozenset[int],
     gained: dict[int, float],

@@ -86,7 +86,7 @@ def test_a_state_with_another_recording_alpha_or_seed_is_refused(world: Path, tm
 
 @settings(max_examples=60)
 @given(data=st.data())
-def test_a_damaged_state_gives_one_sentence(world: Path, data: st.DataObject) -> None:
+def test_a_damaged_state_is_reported_in_one_sentence(world: Path, data: st.DataObject) -> None:
     path = world / "damaged.npz"
     path.unlink(missing_ok=True)
     whole = bytearray(

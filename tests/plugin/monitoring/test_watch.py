@@ -93,7 +93,7 @@ def test_logs_of_other_worlds_are_reported_and_the_rest_is_counted(
         (["--once", "--json", "f.npz/s"], "f.npz/s cannot be written"),
     ],
 )
-def test_invalid_arguments_give_one_sentence(
+def test_invalid_arguments_are_reported_in_one_sentence(
     root: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], says: str
 ) -> None:
     log(root / "m.log", walks(5, 2))

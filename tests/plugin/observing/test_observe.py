@@ -123,7 +123,7 @@ def test_without_a_reward_topic_the_judge_of_the_marker_gives_rewards(
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
-def test_a_node_that_cannot_be_observed_gives_one_sentence(
+def test_a_node_that_cannot_be_observed_is_reported_in_one_sentence(
     recorded: Path, changes: dict[str, object], says: str
 ) -> None:
     ros = Ros()

@@ -99,7 +99,7 @@ def main():
         ("print(); subscribe('/a'); print()", "print()", False),
     ],
 )
-def test_the_subscription_is_added_beside_a_registration_that_always_runs_once(
+def test_the_subscription_is_added_beside_another_one_that_runs_exactly_once(
     code: str, statement: str, after: bool
 ) -> None:
     source = document("pilot.py", BESIDE.format(code))

@@ -28,7 +28,7 @@ SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
 NONE = Refused(None, "no operand helps")
 
 
-def test_any_refused_candidate_is_reported_rather_than_none() -> None:
+def test_a_refused_candidate_is_reported_if_no_other_is_left() -> None:
     refused = Refused(SOME, "gain too small")
     assert furthest(NONE, refused) is refused
     assert furthest(refused, NONE) is refused
@@ -346,7 +346,9 @@ def test_a_candidate_within_a_few_percent_of_an_examined_one_is_not_examined(
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_operand_uses_up_the_tests_and_no_candidate_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_operand_takes_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds

@@ -99,7 +99,7 @@ def test_a_hard_mission_is_compared_with_its_own_designed_reward() -> None:
     assert goal.enough_on([seed]) < goal.enough_on([easy]) == goal.enough
 
 
-def test_nothing_runs_if_most_missions_lose_or_none_does() -> None:
+def test_no_extra_episode_runs_if_most_missions_lose_reward_or_none_does() -> None:
     for share in (0.0, 0.9):
         road: Any = Road(share)
         assert enriched(road, Trials(never, 300)) == road.order.goal

@@ -97,7 +97,7 @@ def test_the_first_episodes_run_if_the_recording_lacks_the_sensor() -> None:
 
 
 @pytest.mark.parametrize(("change", "lost"), [(-0.5, False), (-0.51, True), (3.0, False)])
-def test_a_mission_loses_if_it_earns_less_than_recorded_by_more_than_the_margin(
+def test_a_mission_is_lost_if_it_earns_less_than_recorded_by_more_than_the_margin(
     change: float, lost: bool
 ) -> None:
     found = beside(Mutants([neighbour()], change), guard(7.0, 8.0))  # type: ignore[arg-type]
@@ -139,7 +139,7 @@ def test_losses_in_the_old_world_of_other_tests_are_allowed_under_a_permanent_dr
     assert under.lost
 
 
-def test_tests_of_other_nodes_are_left_alone() -> None:
+def test_tests_of_other_nodes_are_not_run() -> None:
     mutants = Mutants([neighbour(nodes=(Path("/project/other.py"),))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == 0  # type: ignore[arg-type]
     assert mutants.ran == []

@@ -130,7 +130,7 @@ def test_the_ledger_finds_alike_candidates_and_counts_tests_of_the_same_operands
         (scaled(3.0), scaled(2.0, of=OTHER), False),
     ],
 )
-def test_a_candidate_goes_further_in_the_same_direction(
+def test_a_candidate_is_further_if_it_changes_the_same_constants_more_in_the_same_direction(
     one: Candidate, other: Candidate, expected: bool
 ) -> None:
     assert further(one, other) is expected
@@ -158,7 +158,7 @@ def factors(of: Candidate | None) -> list[float]:
     return [factor(one) or math.nan for one in of.mutations]
 
 
-def test_a_bisection_halves_the_exponents_until_a_result_says_nothing() -> None:
+def test_a_bisection_halves_the_exponents_until_a_result_gives_no_direction() -> None:
     both = Candidate((*scaled(16.0).mutations, *scaled(1 / 16.0, of=OTHER).mutations), ALWAYS)
     between = Between(both, mutations)
     assert factors(between.middle()) == pytest.approx([4.0, 0.25], rel=0.01)
@@ -179,7 +179,7 @@ def test_a_bisection_begins_at_the_furthest_candidate_that_is_too_weak() -> None
     assert factors(between.middle()) == pytest.approx([8.0], rel=0.01)
 
 
-def test_neither_a_sign_nor_a_small_step_is_bisected() -> None:
+def test_a_change_of_sign_and_a_small_step_are_not_bisected() -> None:
     assert Between(scaled(-2.0), mutations).middle() is None
     assert Between(scaled(1.04), mutations).middle() is None
     assert Between(scaled(1 / 1.04), mutations).middle() is None
@@ -299,7 +299,7 @@ def test_a_candidate_improves_on_a_refused_one_if_it_passes_all_of_its_lost_miss
 
 
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=40))
-def test_missions_at_equal_ranks_stand_for_the_test(losses: list[int]) -> None:
+def test_the_missions_that_represent_a_test_are_evenly_spaced_by_rank_of_loss(losses: list[int]) -> None:
     found = _spread(acceptance(dict(enumerate(map(float, losses)))))
     assert len(found) == min(5, len(losses))
     told = [one.loss for one in found]
@@ -441,7 +441,7 @@ def test_a_repair_over_a_range_reports_the_drift_sizes_of_its_acceptance_test() 
     assert found.of == {"online": (1.0,), "repaired": (0.5, 1.5)}
 
 
-def test_the_goal_of_a_search_is_the_designed_reward_less_tolerance_and_spread() -> None:
+def test_the_goal_of_a_search_is_the_designed_reward_minus_tolerance_and_spread() -> None:
     online = [Pair(1, 5.0), Pair(2, 8.5), Pair(3, 6.0), Pair(4, 10.0)]
     reference = Reference([9.0, 11.0], 0.95, 1.5, 0.0)
     found = goal(online, reference, 20.0)

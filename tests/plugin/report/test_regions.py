@@ -51,7 +51,7 @@ def test_boxes_of_an_angle_that_meet_at_its_ends_are_one(cells):
     assert not [box for box in joined if box[1][0] == 0 and (box[0], box[2]) in ends]
 
 
-def test_the_joined_box_of_an_angle_exceeds_the_range_by_what_lies_behind_its_end():
+def test_the_joined_box_of_an_angle_extends_beyond_the_range_by_its_part_behind_the_end():
     assert closed((((4, 4), (0, 1)), ((4, 4), (6, 7))), 1, 8) == (((4, 4), (6, 9)),)
 
 

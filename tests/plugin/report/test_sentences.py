@@ -167,14 +167,14 @@ def test_a_region_names_known_new_and_avoided_cells(varied: Varied) -> None:
     assert words.paper_region_words(varied(paper_region=((12, 1),))) == "x 5.0-5.4 m, terrain true"
 
 
-def test_a_place_is_relative_to_the_root_if_it_is_below() -> None:
+def test_a_path_is_relative_to_the_root_if_it_is_below_the_root() -> None:
     root = Path("/project")
     assert words.place("/project/src/a.py", 3, root) == "src/a.py:3"
     assert words.place("/other/a.py", 3, root) == "/other/a.py:3"
     assert words.place("src/a.py", 3, root) == "src/a.py:3"
 
 
-def test_code_is_cut_only_beyond_the_width() -> None:
+def test_code_is_cut_only_if_it_is_longer_than_the_width() -> None:
     assert words.one_line("x" * 20, 20) == "x" * 20
     assert words.one_line("x" * 18 + " yz", 20) == "x" * 18 + "…"
 
@@ -199,7 +199,7 @@ def test_after_three_texts_the_others_are_only_counted() -> None:
     assert [*terminal._some(["a", "b", "c", "d", "e"])] == ["a", "b", "c", "(and 2 more)"]
 
 
-def test_attempts_before_an_accepted_repair_are_counted_others_listed(
+def test_attempts_before_an_accepted_repair_are_counted_and_other_attempts_are_listed(
     varied: Varied, shuttle: Comparison
 ) -> None:
     history = tuple(Attempt(f"c{n}", "not confirmed", 1.0, 0, True) for n in range(5))

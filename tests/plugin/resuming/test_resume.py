@@ -150,7 +150,9 @@ def test_without_kept_episodes_all_are_run(stopping: pytest.Pytester) -> None:
 
 
 @pytest.mark.parametrize("flags", [[], ["--tarl-online", "--tarl-log=a.log"]])
-def test_resuming_needs_episodes_that_are_simulated(tank: pytest.Pytester, flags: list[str]) -> None:
+def test_resuming_is_refused_for_episodes_that_are_not_simulated(
+    tank: pytest.Pytester, flags: list[str]
+) -> None:
     refused = tank.runpytest(RESUME, *flags)
     assert refused.ret == pytest.ExitCode.USAGE_ERROR
     refused.stderr.fnmatch_lines(["*--tarl-resume *"])

@@ -202,7 +202,7 @@ def test_a_function_of_the_test_replaces_a_node_under_its_names(tarl: Tarl) -> N
     assert heard == [(0.0, 300.0), (0.2, 300.0), (0.4, 300.0)]
 
 
-def test_a_function_can_replace_a_python_node_and_its_errors_are_the_tests_own(tarl: Tarl) -> None:
+def test_a_function_can_replace_a_python_node_and_its_errors_are_errors_of_the_test(tarl: Tarl) -> None:
     def second(node: Any) -> None:
         node.every(1.0, lambda: 1 / 0)
 
@@ -255,12 +255,14 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("empty.launch.xml", {}, r"empty\.launch\.xml starts no node with these arguments"),
     ],
 )  # fmt: skip
-def test_user_mistakes_give_one_sentence(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
+def test_user_mistakes_are_reported_in_one_sentence(
+    tarl: Tarl, file: str, options: dict[str, Any], said: str
+) -> None:
     with pytest.raises(SettingsError, match=said):
         tarl.launch(file, **options)
 
 
-def test_an_import_without_a_package_gives_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
+def test_an_import_without_a_package_is_reported_in_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
     with pytest.raises(
         NodeError, match=r"No module named 'controllers' .*The package controllers is in the works"
     ):

@@ -72,7 +72,7 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
     assert both.without(A).parts == ((B, 3.0),)
 
 
-def test_joining_a_constant_begins_with_its_better_small_factor() -> None:
+def test_adding_a_constant_to_a_combination_starts_with_its_better_small_factor() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
     added = [one.parts[-1] for one in chosen._with_another(joint((A, 2.2)))]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
@@ -91,7 +91,7 @@ def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_sla
     assert all(len(label.split(",")) <= 2 for label in little.trials.labels)  # no third part
 
 
-def test_a_combination_that_holds_is_yielded_once_without_parts_that_it_does_not_need() -> None:
+def test_a_combination_that_holds_is_yielded_once_without_its_unneeded_parts() -> None:
     chosen = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, gain = finished(chosen.gain(joint((A, 2.2), (B, 2.2), (C, 2.2))))
     assert (found, gain) == ([{"A": 2.2, "B": 2.2}], 10.0)
@@ -272,7 +272,7 @@ def greedy(totals: Mapping[str, float], seeds: int, budget: int = 999) -> Epsilo
     return EpsilonGreedy(operands, mutations, (ALWAYS,), Trials(run, budget), goal, range(seeds), generator)
 
 
-def test_epsilon_greedy_yields_what_reaches_the_goal_and_reports_mean_gains() -> None:
+def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_gains() -> None:
     search = greedy({"A": 10.0, "B": 4.0}, 60)
     found = [factors(one) for one in search.candidates()]
     assert {name for one in found for name in one} == {"A"}

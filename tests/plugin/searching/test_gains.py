@@ -186,7 +186,7 @@ def test_gravity_and_pi_are_recognised_by_name_and_value(value: float | None, ex
     assert of_nature(constant(7, "G", value)) is expected
 
 
-def test_a_constant_of_nature_with_its_sign_flipped_stays_one() -> None:
+def test_a_constant_of_nature_with_a_flipped_sign_is_still_a_constant_of_nature() -> None:
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
@@ -311,7 +311,7 @@ def test_an_arm_counts_as_worse_only_after_three_common_seeds(
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_confidence_interval_of_a_lead_is_that_of_student() -> None:
+def test_the_confidence_interval_of_a_lead_is_students_t_interval() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 
@@ -357,7 +357,7 @@ def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
     assert _hull(some, 0, ANGLE) == arc
 
 
-def test_an_interval_spans_everything_if_it_covers_all_visited_bins() -> None:
+def test_an_interval_is_unrestricted_if_it_covers_all_visited_bins() -> None:
     assert _spans((2, 4), {2, 4}, LINE)
     assert not _spans((2, 4), {2, 5}, LINE)
     assert _spans((7, 9), {0, 1, 7}, ANGLE)

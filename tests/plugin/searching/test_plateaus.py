@@ -33,7 +33,7 @@ def searched(low: float, high: float, steps: int | None) -> tuple[Candidate | No
     return found, trials.spent
 
 
-def test_a_constant_that_changes_failed_missions_gets_small_steps_before_those_that_do_not() -> None:
+def test_constants_that_change_failed_missions_get_small_steps_before_other_constants() -> None:
     found, spent = searched(1.4, 1.8, STEPS)
     blind, more = searched(1.4, 1.8, None)
     assert found is not None

@@ -209,7 +209,7 @@ def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing
     assert ran.spent == 0
 
 
-def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None:
+def test_designed_missions_run_to_compute_the_deviation_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
     assert (ran.spent, ran.beside) == (2, 0)
@@ -219,7 +219,7 @@ def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None
     assert (ran.spent, ran.beside) == (6, 2)
 
 
-def test_the_label_and_the_effect_of_a_change() -> None:
+def test_a_change_has_a_label_and_an_effective_value_and_an_effect() -> None:
     literal = mutations(operand(3, "2.0", 2.0), 2.2)
     name = replace(operand(4, "KP", 3.0), definition=operand(1, "3.0", 3.0).span)
     factor = mutations(name, 2.2)

@@ -174,7 +174,7 @@ def test_attempted_repairs_are_listed_in_text_json_and_page() -> None:
     assert "nothing was repaired" in page.render(replace(found, repairs=()))
 
 
-def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
+def test_a_repair_that_loses_reward_elsewhere_is_withheld() -> None:
     wide, narrow = Margin("mud", 1.0, 0.0, 0.2, 0.1), Margin("mud", 1.0, 0.0, 0.5, 0.3)
     row = Row("t[world]", wide, wide)
     fine = tuple(Outcome(True, 9.0 + n / 100) for n in range(60))
@@ -190,7 +190,7 @@ def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
 @pytest.mark.parametrize(
     ("stopped", "kept", "told"), [(True, True, "interrupted before"), (False, False, "withheld")]
 )
-def test_a_patch_stays_after_ctrl_c_and_goes_if_it_loses(
+def test_a_patch_is_kept_after_ctrl_c_and_removed_if_it_loses_reward(
     stopped: bool, kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.patch").write_text("patch")

@@ -53,7 +53,7 @@ UNIT = ((tornado_figure.WIDTH - tornado_figure.LABEL) / 2 - tornado_figure.END) 
 MIDDLE = tornado_figure.LABEL + (tornado_figure.WIDTH - tornado_figure.LABEL) / 2
 
 
-def test_bars_reach_to_the_margin_lost_on_the_side_of_their_end() -> None:
+def test_a_bar_is_as_long_as_the_margin_lost_towards_its_end() -> None:
     drawn = tornado(stress(*LOST))
     bars = [(float(one["x"]), float(one["width"]), float(one["y"])) for one in elements(drawn, "rect")]
     step = tornado_figure.BAR + tornado_figure.GAP
@@ -242,7 +242,7 @@ def test_the_line_of_a_direction_passes_nominal_with_the_designed_margin() -> No
     assert [one["text"] for one in elements(drawn, "text")][:3] == ["-1", "0", "1"]
 
 
-def test_the_spread_of_a_margin_with_failures_is_half_of_its_interval() -> None:
+def test_the_standard_deviation_of_a_margin_with_failures_is_half_of_its_interval() -> None:
     one = replace(GIVEN, rate=0.5, share=1.0)
     outcomes = [Outcome(True, 10.0)] * 15 + [Outcome(False, 10.0)]
     margin, deviation = margin_of(one, outcomes, [Outcome(True, 10.0)] * 16)

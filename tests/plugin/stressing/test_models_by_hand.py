@@ -33,7 +33,7 @@ from tests.plugin.stressing.test_words_by_hand import (
 )
 
 
-def test_the_chance_that_few_of_some_episodes_fail_is_binomial() -> None:
+def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> None:
     model = Model({0.5: seen(1.0)}, 0.5)
     weights = np.zeros((len(CENTRES), len(SCALES)))
     weights[100, -1] = 1.0  # an episode fails beyond 0.5, in half of the cases there
@@ -124,7 +124,7 @@ def test_a_prediction_returns_the_losses_where_drifts_were_tried_and_less_on_the
     assert found.deeper(2.0).excess(np.array([[-0.6, 0.0]])) == pytest.approx([0.0], abs=0.03)
 
 
-def test_the_shortest_failing_vector_is_where_the_loss_can_just_be_shown() -> None:
+def test_the_shortest_failing_vector_is_the_one_whose_loss_is_just_detectable() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     vector = found.shortest(0.0, 2.0, np.random.default_rng(0))
     assert vector is not None
@@ -137,7 +137,7 @@ def test_the_shortest_failing_vector_is_where_the_loss_can_just_be_shown() -> No
     assert np.linalg.norm(cautious) > np.linalg.norm(vector)
 
 
-def test_failing_episodes_make_a_drift_fail_whatever_it_earns() -> None:
+def test_a_drift_with_failing_episodes_fails_for_any_reward() -> None:
     vectors = np.array([[-0.4, 0.0]])
     assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
     assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9

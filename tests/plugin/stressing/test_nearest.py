@@ -78,7 +78,7 @@ def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
     assert np.linalg.norm(deeper) > 1.05 * np.linalg.norm(shortest)
 
 
-def test_the_prediction_finds_the_nearest_failure_without_a_sign_in_the_reward() -> None:
+def test_the_prediction_finds_the_nearest_failure_even_if_rewards_do_not_indicate_it() -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.8, 1.0), space)
     coordinates = Coordinates(space, space.nominal)
@@ -145,7 +145,7 @@ def test_evolution_leaves_the_global_generator_alone() -> None:
     assert min(reached[0]) < 0.05
 
 
-def test_two_directions_that_multiply_fail_near_their_true_boundary() -> None:
+def test_the_search_finds_the_boundary_of_two_directions_whose_effects_multiply() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return True, 10.0 - 0.5 * 4.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.1))
 
@@ -154,13 +154,13 @@ def test_two_directions_that_multiply_fail_near_their_true_boundary() -> None:
     assert nearest.distance < 1.1 * sqrt(0.5)  # 4 a b = 1 at a = b = 0.5
 
 
-def test_without_the_extra_the_message_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_about_a_missing_extra_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     assert extras.missing_stress("--tarl-stress") is None
     monkeypatch.setattr(extras, "STRESS", ("cma", "no_such_package"))
     assert "--tarl-stress needs no_such_package" in str(extras.missing_stress("--tarl-stress"))
 
 
-def test_clearly_failing_drifts_are_candidates_where_the_model_misled_nearby() -> None:
+def test_clearly_failing_drifts_are_candidates_if_the_model_was_wrong_nearby() -> None:
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.9, 1.0), space)
     points = [{"a": 0.1 * number, "b": 0.1 * number} for number in range(1, 10)]

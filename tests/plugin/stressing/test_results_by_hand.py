@@ -128,7 +128,7 @@ def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() ->
         (0.8, 0.0, -1.0),
     ],
 )
-def test_the_margin_is_the_lesser_of_both_shares(passed: float, loss: float, expected: float) -> None:
+def test_the_margin_is_the_smaller_one_of_the_two_shares(passed: float, loss: float, expected: float) -> None:
     assert GIVEN.margin(passed, loss) == pytest.approx(expected)
 
 
@@ -257,7 +257,7 @@ def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
     assert undecided.bracket == (0.5, 0.53125)
 
 
-def test_directions_that_hold_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
+def test_directions_that_do_not_fail_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
     harmless = [curve(MUD, {1.0: 1.0}), curve(LEFT, {1.0: 1.0})]
     failing = [curve(FLAT, GOOD), curve(STEEP, {0.25: -1.0}), curve(DOWN, {1.0: -1.0})]
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]

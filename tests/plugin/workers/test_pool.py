@@ -161,7 +161,7 @@ class Idle:
         self.said.append("ended")
 
 
-def test_a_closed_pool_has_waited_for_idle_workers_and_ended_busy_ones() -> None:
+def test_closing_a_pool_waits_for_idle_workers_and_ends_busy_ones() -> None:
     workers: list[Any] = [Idle() for _ in range(4)]
     one = Pool()
     one._idle = {POST: workers[:2], Post("/x", "", b""): workers[2:3]}
@@ -194,7 +194,7 @@ class Dying:
 
 
 @pytest.mark.parametrize("deaths", [0, 2, 3])
-def test_a_request_is_tried_three_times_each_on_a_new_worker(
+def test_a_request_is_tried_three_times_and_each_time_on_a_new_worker(
     deaths: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kind = type("Kind", (Dying,), {"deaths": deaths, "made": 0})

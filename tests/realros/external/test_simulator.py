@@ -92,7 +92,7 @@ def test_a_stepped_simulator_is_reproducible_even_if_it_is_slow_or_late(tmp_path
         assert run.ros.scheduler.time - began == 600_000_000
 
 
-def test_nodes_are_held_to_the_clock_of_a_simulator_in_its_own_time(
+def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}) as run:
@@ -103,7 +103,7 @@ def test_nodes_are_held_to_the_clock_of_a_simulator_in_its_own_time(
     assert "filling" in capsys.readouterr().out
 
 
-def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
+def test_a_reset_keeps_the_process_and_restarts_the_simulation(tmp_path: Path) -> None:
     found, lock = [], tmp_path / "held"
     for _ in range(2):
         with Run(tmp_path, {"HELD": str(lock)}, reset="/reset", **STEPPED) as run:
@@ -137,7 +137,7 @@ def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_simulator_that_fails_is_described(
+def test_the_error_describes_how_a_simulator_failed(
     tmp_path: Path, fault: str, more: dict[str, Any], error: type[Exception], said: str
 ) -> None:
     lock = tmp_path / "held"
@@ -149,7 +149,7 @@ def test_a_simulator_that_fails_is_described(
     assert comes_free(lock)
 
 
-def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
+def test_the_error_describes_a_stepped_simulator_that_hangs(tmp_path: Path) -> None:
     lock = tmp_path / "held"
     with Run(tmp_path, {"FAULT": "hang 3", "HELD": str(lock)}, **STEPPED) as run:
         run.steps(2)
@@ -163,7 +163,7 @@ def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
     ("fault", "patience", "said"),
     [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 300.0, "went back from")],
 )
-def test_a_followed_simulator_that_stops_or_jumps_is_described(
+def test_the_error_describes_a_simulator_whose_own_clock_stops_or_jumps(
     tmp_path: Path, fault: str, patience: float, said: str
 ) -> None:
     with (
@@ -173,7 +173,7 @@ def test_a_followed_simulator_that_stops_or_jumps_is_described(
         run.steps(50)
 
 
-def test_a_missing_program_is_described(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_simulator_program(tmp_path: Path) -> None:
     with (
         pytest.raises(SimulatorError, match=r"cannot be started \(No such file or directory\)"),
         Run(tmp_path, command="no-such-simulator --world 3"),

@@ -74,7 +74,7 @@ def test_a_reset_keeps_the_process_for_the_next_episode(tmp_path: Path) -> None:
         assert second.simulator._client is client
 
 
-def test_a_simulator_in_its_own_time_is_followed(tmp_path: Path) -> None:
+def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(tmp_path: Path) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}, command=COMMAND) as run:
         before = run.simulator.clock
         run.steps(5)
