@@ -29,7 +29,7 @@ OTHERS = ("KD * change", "self.speed * (", "CAUTION * abs", "min(MAX_TURN,")
 
 
 class Wires:
-    """A bus without nodes: stores the world's messages and sends it one command."""
+    """A bus without nodes, which stores the messages of the world and sends one command to the world."""
 
     def __init__(self, speed: float = 0.0, turn: float = 0.0) -> None:
         self.said: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""The world of the quadrotor: as designed, with a payload, and in a gust."""
+"""The world of the quadrotor as designed, with a payload and in a gust."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ EVERYWHERE = {VEL: "vel = 12.0 * delta"}
 
 
 class Wires:
-    """A bus without nodes: stores the world's messages and sends it one command."""
+    """A bus without nodes, which stores the messages of the world and sends one command to the world."""
 
     def __init__(self, velocity: float) -> None:
         self.said: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Hazards: reported code and lines, and similar code that is correct."""
+"""Code and lines that are reported as hazards, and similar code that is correct."""
 
 import json
 from textwrap import dedent

@@ -1,4 +1,4 @@
-"""A launch file may name packages that a marker hides: they are read with a note, and nothing else hidden is."""
+"""Packages that a marker hides are read, with a note, only if a launch file names them."""
 
 from __future__ import annotations
 

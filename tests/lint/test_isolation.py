@@ -28,7 +28,7 @@ ARGUMENTS = ["--no-cache", "--format", "json", "--exit-zero"]
 
 
 def bait(directory: Path) -> None:
-    """Write a file for every name; if it runs, it leaves a mark and then fails."""
+    """Write a file for every name; a file that is executed creates a marker file and then fails."""
     marks = directory / "ran"
     marks.mkdir(parents=True)
     for name in (*(f"{name}.py" for name in NAMES if name.isidentifier()), *CONFIGURATION):
@@ -49,7 +49,7 @@ def run(command: list[str], directory: Path, **environment: str) -> subprocess.C
 
 @pytest.fixture
 def nodes(tmp_path: Path) -> Path:
-    """Write two independent nodes, so that two processes have work."""
+    """Write two independent nodes, so that two processes are used."""
     directory = tmp_path / "nodes"
     for name in ("a", "b"):
         (directory / name).mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""Interfaces of programs are kept from run to run, and never outlive what they depend on."""
+"""Interfaces of programs are kept between runs until a file that they depend on changes."""
 
 from __future__ import annotations
 

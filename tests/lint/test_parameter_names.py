@@ -1,4 +1,4 @@
-"""Topics whose names come from parameters: followed through a program, and known per launched node."""
+"""Topic names from parameters are followed through a program and known for each launched node."""
 
 from __future__ import annotations
 

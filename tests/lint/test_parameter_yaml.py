@@ -1,4 +1,4 @@
-"""The YAML of launch files: which parameters a node gets, and what is said if it cannot be read."""
+"""The YAML of launch files: the parameters that a node gets, and the message if the YAML cannot be read."""
 
 from __future__ import annotations
 

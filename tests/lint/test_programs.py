@@ -1,4 +1,4 @@
-"""Programs that share modules are analysed apart, unless a flow may begin or end in a shared one."""
+"""Programs that share modules are analysed separately, unless a flow may begin or end in a shared module."""
 
 from __future__ import annotations
 

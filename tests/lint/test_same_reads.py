@@ -1,4 +1,4 @@
-"""What of an object's changes can be told where a call begins, and where loops and carriers begin again."""
+"""Which changes of an object a call detects before a replay, and where loops and carriers resume."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def same(store: Store, reads: Reads) -> bool:
 
 
 def noted(store: Store, *objects: Obj) -> Reads:
-    """Return reads of a call that looked at objects as they are."""
+    """Return the reads of a call that read these objects in their present state."""
     reads = Reads()
     for obj in objects:
         reads.look(obj)
@@ -66,7 +66,7 @@ def noted(store: Store, *objects: Obj) -> Reads:
 
 
 def hidden(store: Store, obj: Obj, name: str, value: Value) -> None:
-    """Store a field on a path that is left again."""
+    """Store a field on a path that is then left."""
     store.push()
     store.put((obj, name), value)
     store.pop()

@@ -1,4 +1,4 @@
-"""Calls that share a context: no flow is missed, and long programs are analysed completely."""
+"""If calls share a context, no flow is missed and long programs are analysed completely."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of a program is executed once a budget is spent, with limits small enough to be reached at once."""
+"""How many statements of a program are executed after its budget is spent, with very small limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads and stores of fields and elements, joins, copies, and what stays reachable."""
+"""Reads and stores of fields and elements, joins, copies, and the reachability of objects."""
 
 from __future__ import annotations
 
