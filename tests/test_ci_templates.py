@@ -1,4 +1,4 @@
-"""The GitHub action and the GitLab template: their steps are run here, with stubs for what only these services have."""
+"""Run the steps of the GitHub action and the GitLab template, with stubs for parts that only these services have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The documentation says what is true: messages exist, links lead somewhere, commands have their flags."""
+"""The messages, links and flags in the documentation exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tasks of the drift benchmark have one form: answers that name what is in the node, and one drift."""
+"""Each task of the drift benchmark has one drift, and its answer names sensors and statements that exist."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WRITTEN_BY_HAND = [task for task in TASKS if task.parent.name in JUDGING]
 
 
 def answer(task: Path) -> dict[str, Any]:
-    """Return the known facts of a task."""
+    """Return the answer of a task."""
     found: dict[str, Any] = json.loads((task / "answer.json").read_text())
     return found
 

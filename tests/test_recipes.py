@@ -1,4 +1,4 @@
-"""The recipes for contributors work: the code on each page does what the page says, at the place that it names."""
+"""The code in each recipe for contributors does what the recipe says, in the file that it names."""
 
 from __future__ import annotations
 

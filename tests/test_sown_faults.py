@@ -1,4 +1,4 @@
-"""The faults of `make mutants`: each kind is found wherever its code stands; only a failing test catches one."""
+"""The faults of `make mutants`: each kind is located anywhere in a file, and only a failing test catches a fault."""
 
 from __future__ import annotations
 

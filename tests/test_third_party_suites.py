@@ -1,4 +1,4 @@
-"""Which outcomes of other projects' tests count as changed by recording."""
+"""The outcomes of tests of other projects that count as changed by recording."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def test_the_kind_of_a_chain_is_that_of_its_weakest_hop():
 
 
 class Texts:
-    """Source files whose text at a span is the first four numbers of that span."""
+    """Source files in which the text of a span consists of the first four numbers of that span."""
 
     def __getitem__(self, path: str) -> Texts:
         self.path = path

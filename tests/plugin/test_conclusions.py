@@ -1,4 +1,4 @@
-"""Results besides the verdict: output for CI, several drifts, parts of the reward."""
+"""Results other than the verdict: output for CI, several drifts, parts of the reward."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers in markers: which ones a drift, a schedule and a fault take."""
+"""The numbers that a drift, a schedule and a fault accept in a marker."""
 
 from __future__ import annotations
 

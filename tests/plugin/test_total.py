@@ -69,7 +69,7 @@ def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_did_not_ne
 def test_a_shared_comparison_equals_one_that_runs_alone_with_as_many_episodes(
     sharing: pytest.Pytester,
 ) -> None:
-    """The command in the output repeats the comparison; its episodes are the same, so is what they lost."""
+    """The command in the output repeats the comparison, with the same episodes and the same loss."""
     sharing.runpytest("--tarl-online", "--tarl-total=80")
     shared = results(sharing)
     for drift, one in shared.items():

@@ -1,4 +1,4 @@
-"""A Gymnasium environment as the world of a test: by an environment of our own, and by real ones where installed."""
+"""Gymnasium environments as worlds of tests: a small one defined here, and installed real ones."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Environment:
 
 
 class Episode:
-    """The part of the fixture `tarl` that a world uses; `answers` are what the node publishes in each step."""
+    """The part of the fixture `tarl` that a world uses; the node publishes one of `answers` in each step."""
 
     def __init__(self, answers: list[Any], seed: int = 0) -> None:
         self.seed, self.answers, self.ends, self.heard, self.time = seed, answers, [], [], 0.0

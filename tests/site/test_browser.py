@@ -1,4 +1,4 @@
-"""The site in a real browser, from the disk and without a network: it searches, draws, and is easy to read."""
+"""The site in a real browser, from disk and without a network: search, figures and accessibility."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ if os.environ.get("TARL_SLOW") or os.environ.get("TARL_SITE"):
 def opened(
     site: Path, page: str, script: str, directory: Path, *flags: str, at: str = ""
 ) -> tuple[dict[str, Any], list[str]]:
-    """Return what a script finds on a page, and the lines of the console."""
+    """Return the result of a script on a page, and the lines of the console."""
     if BROWSER is None:
         pytest.skip("no browser is installed, so the site was not opened")
     body = f"const found = {{}};{WAIT}{script}\ndocument.body.dataset.found = JSON.stringify(found);"

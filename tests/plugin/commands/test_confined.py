@@ -1,4 +1,4 @@
-"""For any patch, `tarl apply` writes only tested text, only inside the project, and all files or none."""
+"""For any patch, `tarl apply` writes only tested text and only inside the project, and changes all files or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No process of a simulator outlives its test: whoever is killed, whatever the simulator does, without any ROS."""
+"""No process of a simulator outlives its test, whichever process is killed and whatever the simulator does (no ROS)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A server that speaks S3 (moto), with failures that a test orders."""
+"""An S3 server (moto) with failures that a test requests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The arithmetic of a fleet on a few missions, worked out by hand: repairs, residual maps, orders of missions."""
+"""Computations of `tarl fleet` on a few missions, checked by hand: repairs, residual maps, orders of missions."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_an_interval_needs_four_robots_in_each_arm(without: int) -> None:
 
 
 def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
-    """Each robot has a mission in both arms, so its pseudo value is its own difference."""
+    """Each robot has one mission in each arm, so its jackknife pseudo-value is the difference of the two."""
     number, gain = np.repeat(np.arange(6), 2), np.array([0.0, 1.0, 2.0, 3.0, 4.0, 8.0])
     arm = np.tile([0, 1], 6)
     total = np.where(arm == 1, gain[number], 0.0)

@@ -1,4 +1,4 @@
-"""`tarl ingest` of bags: replayed through the nodes of the recorded test, each once."""
+"""`tarl ingest` replays each bag once through the nodes of the recorded test."""
 
 from __future__ import annotations
 

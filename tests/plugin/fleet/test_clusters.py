@@ -1,4 +1,4 @@
-"""Robots whose drifts are alike form a cluster with their common cells; noise alone does not divide them."""
+"""Robots with similar drifts form a cluster with their common cells; noise alone does not split a cluster."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CELLS = tuple((n,) for n in range(12))
 
 
 def maps(seed: int, kinds: list[dict[int, float]], each: int) -> list[ResidualMap]:
-    """Draw maps of robots; the robots of one kind have the same true residuals, at different noise."""
+    """Draw residual maps of robots; robots of one kind have the same true residuals, with different noise."""
     rng = np.random.default_rng(seed)
     found = []
     for kind, true in enumerate(kinds):

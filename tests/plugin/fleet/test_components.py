@@ -1,4 +1,4 @@
-"""Variance components: known ones are found, with intervals that cover them."""
+"""Known variance components are estimated with intervals that contain them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIZES = (3, 8, 5)
 
 
 def missions(seed: int, robots: int, each: int, scale: float) -> tuple[Ints, Ints, Floats, list[float]]:
-    """Draw a fleet with a roll-out in stages; return robot, levels and reward of each mission, and its components."""
+    """Draw a fleet with a staged rollout; return robot, levels and reward of each mission, and the true components."""
     rng = np.random.default_rng(seed)
     effects = [_effects(rng, size, scale * s) for size, s in zip(SIZES, (0.3, 0.4, 0.2), strict=True)]
     robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
@@ -47,7 +47,7 @@ def found(seed: int, robots: int, each: int, scale: float) -> tuple[tuple[Compon
 
 
 def coverage(runs: int, robots: int, each: int, scale: float) -> tuple[Floats, Floats, Floats]:
-    """Return the share of intervals that hold the truth, and the mean and standard deviation of the errors."""
+    """Return the share of intervals that contain the true value, and the mean and standard deviation of the errors."""
     held, away = [], []
     for seed in range(runs):
         every, truth = found(seed, robots, each, scale)

@@ -1,4 +1,4 @@
-"""Tasks run in order, a window at a time, each with one thread for its linear algebra."""
+"""Tasks run in order and a limited number at a time; each uses one thread for its linear algebra."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.fleet import engine
 
 
 def linear_algebra_threads() -> set[int]:
-    """Return the numbers of threads that libraries of linear algebra take now."""
+    """Return the numbers of threads that the linear algebra libraries currently use."""
     assert np.eye(2).shape == (2, 2)  # numpy brings such a library
     return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
 

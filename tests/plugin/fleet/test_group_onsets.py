@@ -1,4 +1,4 @@
-"""The onset of groups: the evidence of a watch over all missions of a group in the order of their times."""
+"""The onset of a group comes from a watch over all missions of the group in the order of their times."""
 
 from __future__ import annotations
 

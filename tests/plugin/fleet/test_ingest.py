@@ -1,4 +1,4 @@
-"""`tarl ingest`: each mission is in the data set once, whatever is repeated, interrupted or copied."""
+"""After `tarl ingest`, each mission is in the data set once, even if commands or logs are repeated or interrupted."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_the_metadata_of_a_file_names_its_schema_and_its_recording(tmp_path: Pat
 
 
 class Killed(BaseException):
-    """Stands for a process that ends between two files."""
+    """Simulates a process that ends between writing two files."""
 
 
 @given(
@@ -295,7 +295,7 @@ FORMULA = "always (gap > 0.3)"
 
 
 def judged_log(folder: Path, gaps: list[float]) -> Path:
-    """Write a log whose missions follow a signal that falls to each of the gaps."""
+    """Write a log of missions in which a signal falls to each of the values `gaps`."""
     path = folder / "r0" / "missions.log"
     file = missions.LogFile(path)
     file.append(missions.start())

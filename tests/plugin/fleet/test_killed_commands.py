@@ -1,4 +1,4 @@
-"""Real `tarl ingest` and `tarl fleet` commands end at random moments, by `kill -9` or Ctrl-C.
+"""Real `tarl ingest` and `tarl fleet` commands are ended at random moments, by `kill -9` or Ctrl-C.
 
 Whatever was interrupted, running the command again leaves each mission in the data set once, and the answer is that of
 a data set that was never interrupted, to the last bit. TARL_SLOW=1 takes many moments instead of a few.

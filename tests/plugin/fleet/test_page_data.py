@@ -1,4 +1,4 @@
-"""What the page of a fleet holds: the variables of its template and the data of its script, for answers by hand."""
+"""The variables of the template of the fleet page and the data of its script, for answers written by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tarl fleet`: the method for one robot, applied to groups and robots; the same bits however the rows are stored."""
+"""`tarl fleet` applies the method for one robot to groups and robots, bitwise equally for any storage of the rows."""
 
 from __future__ import annotations
 
@@ -361,7 +361,7 @@ def test_a_cluster_gives_the_same_bits_even_if_a_worker_dies(
 
 
 def dying(marker: str, *arguments: object) -> object:
-    """Lose the first worker that compares, with its task."""
+    """End the first worker that runs a comparison, together with its task."""
     from distributed import get_worker
 
     if not Path(marker).exists():
@@ -396,7 +396,7 @@ def test_the_answer_is_bitwise_equal_for_any_number_of_workers(
 def test_two_runs_that_add_the_same_missions_at_once_count_them_once(
     folder: Path, found: Answer, tmp_path: Path
 ) -> None:
-    """Let other runs add missions while a run, which has read what is there, writes its first file."""
+    """Let other runs add missions after a run has read the existing ones and before it writes its first file."""
     write, to = Store.write, tmp_path / "data"
     path = tmp_path / "r0" / "missions.log"
     log = missions.log(path, walks(0)[:30], 20_000 * DAY, apart=DAY / 4)  # before it grew

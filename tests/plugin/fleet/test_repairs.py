@@ -1,4 +1,4 @@
-"""The effect of a repair in a staged roll-out: seasons and sites do not count, and the interval covers the truth."""
+"""The estimated effect of a repair in a staged rollout is not biased by seasons or sites."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WEEK = 7 * 86_400.0
 
 
 def rolled_out(seed: int, true: float, robots: int = 24, each: int = 40) -> Effect:
-    """Draw a roll-out: sites begin at different times, half of their robots first, and seasons go on at all sites."""
+    """Draw a rollout: each site starts at another time with half of its robots; seasons change rewards at all sites."""
     rng = np.random.default_rng(seed)
     robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
     site, week = robot % 4, number * 8 // each

@@ -1,4 +1,4 @@
-"""A data set on a server that speaks S3: whatever fails, nothing is lost, and nothing counts twice."""
+"""A data set on an S3 server: no failure loses a mission or makes one count twice."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def s3(server: tuple[Faults, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[
 
 @pytest.fixture(scope="module")
 def fleet(tmp_path_factory: pytest.TempPathFactory) -> tuple[Order, str]:
-    """Return how logs are ingested, and what their data set on this machine says."""
+    """Return the order that ingests the logs, and the answer from their data set on this machine."""
     folder = tmp_path_factory.mktemp("fleet")
     test, logs = world(folder)
     order = Order(tuple(logs), str(folder / "local"), test, "{folder}", "1.2", "north")

@@ -62,7 +62,7 @@ def samples(world: oracle.World, apart: int = 1) -> dict[str, Samples]:
 
 
 def read(tree: oracle.Tree, unit: str = "ns", size: float = 1) -> Formula | None:
-    """Parse a formula; None if it can never be judged, which other tests cover."""
+    """Parse a formula; return None if no episode can judge it (other tests cover this case)."""
     try:
         return formula("here", oracle.text(tree, unit, size), NAMES)
     except SettingsError as problem:

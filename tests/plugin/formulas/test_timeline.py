@@ -1,4 +1,4 @@
-"""The course of signals, as formulas see it: a step function of the last value given at each instant."""
+"""Signals over time, as formulas read them: step functions that keep the last given value."""
 
 from __future__ import annotations
 

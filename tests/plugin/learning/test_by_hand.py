@@ -351,7 +351,7 @@ def test_parts_of_the_reward_are_averaged_per_episode_in_both_worlds() -> None:
 
 
 def test_cells_where_a_part_is_lost_are_named_by_part() -> None:
-    """Part b earns minus the number of the cell: in cell 3 it loses 3, in cell 2 it gains."""
+    """In each cell, part b earns minus the number of that cell: the part loses 3 in cell 3 and gains in cell 2."""
     usual = [episodes([(0,), (1,)], [(0,), (1,)], cells=((2,), (3,))) for _ in range(8)]
     moved = [episodes([(0,), (3,)], [(0,), (3,)], cells=((1,), (2,))) for _ in range(8)]
     one, two = (

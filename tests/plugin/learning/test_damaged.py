@@ -45,7 +45,7 @@ def parts(content: bytes = WHOLE) -> tuple[dict[str, Any], Arrays]:
 
 
 def forged(header: dict[str, Any], columns: Arrays) -> bytes:
-    """Return a file of these parts with a valid digest."""
+    """Return a recording file with this header and these columns and a valid digest."""
     header = {key: value for key, value in header.items() if key != "digest"}
     header["digest"] = fixtures._digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)

@@ -39,7 +39,7 @@ TIMES = 200 if SLOW else 25  # number of random worlds and of random reports
 
 
 def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:
-    """Walk through some cells with an irrelevant mode; one cell may be harmful and another one avoided."""
+    """Walk through some cells in an irrelevant mode; one cell may cost reward and another one may be avoided."""
     draws = np.random.default_rng(seed)
     path = [place for place in range(LENGTH) for _ in range(int(draws.integers(1, 3))) if place != avoid]
     cells = tuple((place, mode) for place in range(LENGTH))

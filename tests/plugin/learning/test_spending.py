@@ -1,4 +1,4 @@
-"""Sharing a number of episodes among comparisons: the looks, the choice of the next one, and false alarms."""
+"""Comparisons that share a number of episodes: their checks, the choice of the next one, and false alarms."""
 
 from __future__ import annotations
 

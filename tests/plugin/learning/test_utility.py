@@ -1,4 +1,4 @@
-"""Utility against Markov chains whose values are known."""
+"""The learned utility equals the known values of Markov chains."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def test_ranks_computed_at_once_equal_ranks_computed_one_by_one(
 def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
     scores: tuple[int, ...],
 ) -> None:
-    """Given an order, each rank is uniform on an interval; over all orders, the boxes of three ranks fill the cube."""
+    """For each order of three scores, their ranks are uniform in a box; the boxes of all orders fill the unit cube."""
     offline, parts = 3, 60  # 60 is a multiple of 4, 5 and 6, so bins of sixtieths cover all their intervals
     density = np.zeros((parts,) * 3)
     orders = list(permutations(scores))

@@ -1,4 +1,4 @@
-"""What a watch says and how it concludes it, for evidence and processes written down by hand."""
+"""The conclusions of a watch and the text that states them, for evidence and processes written by hand."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def _other_modules_stay() -> Iterator[None]:
 
 
 def drive(order: Order, runs: list[float], pause: float = 0.0) -> None:
-    """Fill a tank once per entry, the share of the flow that its valve passes; `pause` is wall time per step in s."""
+    """Fill a tank once for each given share of flow that the valve passes; `pause` is the wall time per step in s."""
     ros = Ros()
     with ros.installed():
         ros.start(lambda: observe(order) and None, name="observe")

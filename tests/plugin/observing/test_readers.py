@@ -1,4 +1,4 @@
-"""The short ways to read and bin a sensor's values give what the general ones give."""
+"""The fast functions that read and bin the values of a sensor give the results of the general ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draining a recorder while it records loses no event and keeps their order."""
+"""Draining a recorder while it records loses no event and keeps the order of events."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where another subscription can be made in nodes that have none which can be used."""
+"""Places for a new subscription in nodes without a subscription beside which it could be made."""
 
 from __future__ import annotations
 

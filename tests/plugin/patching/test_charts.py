@@ -1,4 +1,4 @@
-"""Scales on which constants move: what a share leaves to 1, and what is added to an offset."""
+"""Scales on which constants are changed: the distance of a share from 1, and a term added to an offset."""
 
 from __future__ import annotations
 

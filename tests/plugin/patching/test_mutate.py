@@ -391,7 +391,7 @@ statements = st.sampled_from(
 
 
 class Log(list[float]):
-    """Log every value that it is called with, to compare order and number of evaluations."""
+    """Log the argument of every call, to compare the order and number of evaluations."""
 
     def __call__(self, value: float) -> float:
         self.append(value)
@@ -428,7 +428,7 @@ def test_a_rewritten_program_is_the_original_unless_the_guard_holds(
 
 
 class Replace(ast.NodeTransformer):
-    """Replace 5 by 7.5."""
+    """Replace the constant 5 by 7.5."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
         return ast.Constant(7.5) if node.value == 5 and isinstance(node.value, int) else node

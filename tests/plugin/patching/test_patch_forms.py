@@ -80,7 +80,7 @@ def node(kind: str, form: str) -> str:
 
 
 def repaired(kind: str, text: str) -> str:
-    """Analyse a file decoded as Python does, and change its 5 in mud."""
+    """Decode a file as Python does, analyse it, and change its constant 5 under the condition `mud`."""
     sources = {"node.py": text.replace("\r\n", "\n")}
     analysis = HandMade(sources, subscribing(sources, "node.py", *NODES[kind][2:]))
     return rewrite(analysis, [Mutation(analysis.operand("5", 5, "5 *"), 12.0)], MUD, TOPICS)["node.py"]

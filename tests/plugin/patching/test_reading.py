@@ -1,4 +1,4 @@
-"""A patch that was written is read back as it is, whatever its lines and endings; suggestions keep to its lines."""
+"""A written patch is read back unchanged for any lines and line endings; suggestions replace only changed lines."""
 
 from __future__ import annotations
 

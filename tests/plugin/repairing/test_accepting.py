@@ -111,7 +111,7 @@ class Field:
         return Outcome(LOT[kind](seed, drift is not None), passed=True)
 
     def mutate(self, operand: object, factor: float) -> None:
-        """Return None: there is no candidate in between."""
+        """Return None, as if no candidate lay between the two."""
 
     def foresee(self, wanted: object, drift: str | None) -> None:
         pass
@@ -196,7 +196,7 @@ def accepted_factor(field: Any, factors: Sequence[float]) -> float:
 def test_bisection_finds_a_repair_between_too_weak_and_harmful_values(
     low: float, share: float, further: float
 ) -> None:
-    """Windows of at least 30 %, approached from above; candidates beyond a harmful one do not run."""
+    """Windows of at least 30 % are approached from above; candidates beyond a harmful one do not run."""
     high = low * (1.3 + share)
     field: Any = Window(low, high)
     assert low <= accepted_factor(field, (high * 1.2, high * 1.2 * further * 1.1)) <= high
@@ -239,7 +239,7 @@ def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: f
 
 
 class Costly(Window):
-    """One operand that suffices from a factor on; the further it is moved, the less a mission earns."""
+    """One operand that suffices above a factor; the larger the factor, the less a mission earns."""
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         if candidate == ORIGINAL or drift is None:
@@ -409,7 +409,7 @@ def test_a_candidate_that_acts_like_a_rejected_one_is_not_tested_again(
 
 
 class TwoSided(Narrow):
-    """A limit that has to grow for some missions, and with which others fail if it grows too much."""
+    """A limit that must be raised for some missions, and with which other missions fail if it is raised too far."""
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         if candidate == ORIGINAL or drift is None:

@@ -96,7 +96,7 @@ def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
 
 
 def powered(power: float, usual: float) -> Candidate:
-    """Return a scale by a power of a sensor, by factors of its two parameters."""
+    """Return a candidate that scales a constant by a power of a sensor, given factors of its two parameters."""
     made = template(SHIPPED / "power.toml")
     power_of = operand(6, "gap * gain, power", -1.0)
     both = power_of, replace(operand(6, "gap * gain, usual", 4.0), site=power_of.site)

@@ -1,4 +1,4 @@
-"""Rare failures: missions that are hard for a reason and occur rarely in the drifted world."""
+"""Rare failures: missions that fail for a detectable reason that is rare in the drifted world."""
 
 from __future__ import annotations
 

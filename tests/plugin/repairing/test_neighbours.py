@@ -1,4 +1,4 @@
-"""Regression tests: which missions of other tests run again under a candidate, and when they lose."""
+"""Regression tests: which missions of other tests are run with a candidate, and when they count as lost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def neighbour(
 
 
 class Mutants:
-    """Log all runs; a mission earns its episode's number plus `change`."""
+    """Log all runs; a mission earns the number of its episode plus `change`."""
 
     def __init__(
         self, neighbours: list[Any], change: float = 0.0, *, permanent: bool = False, fails: int = -1

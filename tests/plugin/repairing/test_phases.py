@@ -1,4 +1,4 @@
-"""What a repair does in its phases and says at its end, with searches that do as they are told here."""
+"""The phases of a repair and its final report, with searches whose results are fixed here."""
 
 from __future__ import annotations
 

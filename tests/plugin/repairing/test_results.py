@@ -1,4 +1,4 @@
-"""What a repair keeps of its candidates and concludes from it: on candidates and missions written down by hand."""
+"""The results that a repair stores on its candidates, and its conclusions from them, for values written by hand."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ MARGIN = Reference([10.0, 10.0], 1.0, 1.0, 0.0)
 def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
     by: float, expected: float
 ) -> None:
-    """A mission earns 10 less 0.8 for each doubling between the factor and 3.4; below 1 it fails."""
+    """A mission earns 10 minus 0.8 times |log2(factor / 3.4)|, and fails if the factor is below 1."""
 
     def run(one: Candidate, seed: int) -> Outcome:
         value = factors(one)[0]
@@ -250,7 +250,7 @@ def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
 
 
 def acceptance(losses: dict[int, float], failed: Sequence[int] = (), **changes: Any) -> Acceptance:
-    """Return a test in which designed missions earn 10 and the candidate loses so much on each seed."""
+    """Return a test in which designed missions earn 10 and the candidate loses `losses[seed]` on each seed."""
     drifted = tuple(Outcome(10.0 - lost, seed not in failed) for seed, lost in losses.items())
     one = Acceptance(False, "not shown", drifted, (), seeds=(*losses,), designed=(10.0,) * len(losses))
     return replace(one, **changes)
@@ -367,7 +367,7 @@ def ranged(part: str = "") -> Any:
 
 @pytest.fixture
 def drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each seed draw a tenth of itself."""
+    """Let each seed draw a drift size of a tenth of the seed."""
     monkeypatch.setattr(
         ranges, "_drawn", lambda order, seed: dict.fromkeys(order.comparison.sizes, seed / 10)
     )

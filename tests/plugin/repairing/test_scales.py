@@ -1,4 +1,4 @@
-"""Which constants move on a scale of their own."""
+"""Which constants are changed on a second scale besides factors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sensors that tell a drift, and the places at which their templates are tried."""
+"""Sensors that distinguish the drifted world, and the places at which their templates are tried."""
 
 from __future__ import annotations
 

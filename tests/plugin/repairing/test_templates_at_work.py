@@ -85,7 +85,7 @@ def delayed() -> Command:
 
 
 def delayed_by_travel() -> Command:
-    """Return a command that sends each value once the second sensor has summed up to 6 since."""
+    """Return a command that sends each value after the second sensor has accumulated 6 since it arrived."""
     values: list[tuple[float, float]] = []
 
     def command(value: float, speed: float) -> float:

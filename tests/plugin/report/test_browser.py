@@ -71,7 +71,7 @@ document.body.dataset.found = JSON.stringify({
 
 @dataclass(frozen=True)
 class Seen:
-    """The results of the script in the page, and the lines of the browser's console."""
+    """The results of a script that ran in the page, and the lines of the browser's console."""
 
     found: dict[str, Any]
     console: list[str]
@@ -115,7 +115,7 @@ def shuttle_seen(browser, shuttle, tmp_path_factory) -> Seen:
 
 @pytest.fixture(scope="session")
 def follower_seen(browser, two_lists, tmp_path_factory) -> Seen:
-    """The page of two lists in dark mode, on a screen too narrow for three panels."""
+    """The page of a comparison with two taint lists, in dark mode, on a screen too narrow for three panels."""
     return opened(browser, render(two_lists), tmp_path_factory.mktemp("follower"), 500, DARK)
 
 

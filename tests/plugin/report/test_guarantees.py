@@ -1,4 +1,4 @@
-"""Bounds in sentences: every number is the bound's own, and rounding never promises more."""
+"""Sentences on bounds state the numbers of the bound, rounded so that they never promise more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The file of kept episodes: whatever an interruption leaves of it, all whole episodes can be taken."""
+"""From the file of kept episodes, all complete episodes can be read after any interruption."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ STOPPING = """\
 
 @pytest.fixture
 def stopping(tank: pytest.Pytester) -> pytest.Pytester:
-    """A tank whose test counts its episodes, and stops in the one that the environment names."""
+    """A tank whose test counts its episodes and stops in the episode that an environment variable names."""
     changed(tank, "test_tank", "    draws = ", STOPPING)
     return tank
 

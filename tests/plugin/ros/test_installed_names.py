@@ -1,4 +1,4 @@
-"""Names, types and variables that a ROS installation has beside the client libraries."""
+"""Names, types and environment variables of a ROS installation other than those of the client libraries."""
 
 from __future__ import annotations
 

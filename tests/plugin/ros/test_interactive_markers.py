@@ -1,4 +1,4 @@
-"""Nodes with interactive markers: the test plays the user, by feedback messages."""
+"""Nodes with interactive markers; the test sends the feedback messages of a user."""
 
 from __future__ import annotations
 

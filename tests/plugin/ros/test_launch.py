@@ -1,4 +1,4 @@
-"""Whole launch files under test: names, parameters, nodes that are not Python, and mistakes as sentences."""
+"""Tests of whole launch files: names, parameters, nodes that are not Python, and messages for mistakes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A loop that asks for the time, or whether ROS is up, without a pause lets virtual time pass."""
+"""Virtual time passes in a loop that polls the clock or the state of ROS without a pause."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ def test_failed_missions_count_even_if_the_reward_is_right() -> None:
 def test_a_candidate_that_fails_in_an_early_mission_is_refused_without_spending_risk(
     drifted: bool, reason: str
 ) -> None:
-    """The bet would be sized by that failure, so no test could be won with it."""
+    """If the stake of the bet were computed from the failed mission, no test could be won."""
 
     def run(episode: int) -> Outcome:
         failed = episode == seeds(0)[3]

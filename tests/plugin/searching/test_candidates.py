@@ -1,4 +1,4 @@
-"""Candidate guards: proposals from region and novelty, and how often each holds."""
+"""Candidate guards are proposed from the region and from new cells; how often each guard holds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Of repairs that earn the same, the one with which missions run as designed comes first."""
+"""Of repairs with equal reward, the one whose missions are most like designed ones comes first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Combined repairs and joint searches, step by step, in worlds whose rewards are written down here."""
+"""Combined repairs and joint searches, step by step, in worlds with given rewards."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Earned = Callable[[Mapping[str, float]], float]
 
 
 def selection(earned: Earned, units: tuple[Unit, ...] = (A, B, C), **gains: Mapping[float, float]) -> Any:
-    """Return a selection in a world where a combination earns by the factors of its constants."""
+    """Return a forward selection in a world where factors of constants determine the reward."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(earned({one.operand.code: float(one.value) for one in candidate.mutations}), True)
@@ -50,7 +50,7 @@ def factors(candidate: Candidate) -> dict[str, float]:
 
 
 def finished(steps: Iterable[Candidate]) -> tuple[list[dict[str, float]], Any]:
-    """Return what a generator yields and returns."""
+    """Return the yielded values and the return value of a generator."""
     found: list[dict[str, float]] = []
     ended: list[Any] = []
 

@@ -1,4 +1,4 @@
-"""The table of gains, and the small questions that searches ask it, on values written down by hand."""
+"""The table of gains and its queries, on values written by hand."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WET = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
 
 
 def constant(line: int, code: str, value: float | None = 2.0) -> Operand:
-    """Return a use of a named constant; each statement is a site of its own."""
+    """Return a use of a named constant; each statement is a separate site."""
     made = operand(line, code, 2.0)
     return replace(
         made,
@@ -46,7 +46,7 @@ A, B, C = (Unit((constant(n, name),)) for n, name in enumerate(("A", "B", "C"), 
 
 
 def gains(slack: float = 0.5) -> Gains:
-    """A gains 4 with 2.2 and 5 with 5.0, B loses both ways and gains 1 where it is wet, C changes nothing."""
+    """A gains 4 with 2.2 and 5 with 5.0; B loses with either factor but gains 1 under WET; C has no effect."""
     found = Gains(slack)
     for unit, guard, factor, gain in (
         (A, ALWAYS, 2.2, 4.0),

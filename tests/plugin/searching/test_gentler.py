@@ -1,4 +1,4 @@
-"""Where a repair makes missions go in another way than designed, constants that restore the design come first."""
+"""If a repair changes the course of missions, constants that restore the designed course come first."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ REACTION = named(8, "REACTION", 0.15)
 def searched(
     operands: Sequence[Operand], windows: Mapping[Operand, Range], steps: Mapping[Operand, int] | None = None
 ) -> Sweep:
-    """A world that any of some operands restores, by a factor in its window; `steps` are the missions' lengths then."""
+    """A world that each operand restores by a factor in its window; `steps` are the lengths of the missions then."""
     lengths = steps or {}
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -29,7 +29,7 @@ WANTED = 12.0  # what both constants at their best gain
 
 
 def swing(candidate: Candidate, seed: int) -> Outcome:
-    """A ridge: both constants must grow, by 3 and by 6.5, and each alone gains a part at most."""
+    """A ridge: the constants must be multiplied by 3 and by 6.5; one alone restores at most a part of the reward."""
     moved = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
     if min(moved.values(), default=1.0) < 0:
         return Outcome(-9.0, False)

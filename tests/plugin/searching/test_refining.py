@@ -1,4 +1,4 @@
-"""Where the next values of a constant lie, and which constants need none."""
+"""The next values of a constant in a search, and the constants that need no further values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Searches on a small made-up world: the drift makes one gain too weak; others do nothing or harm."""
+"""Searches in a small world: the drift makes one gain too weak; changes of other gains have no effect or do harm."""
 
 from __future__ import annotations
 
@@ -246,7 +246,7 @@ NARROW = 1.2  # right factor; a result up to 7 % smaller also holds
 
 
 def run_narrow(candidate: Candidate, seed: int) -> Outcome:
-    """Missions fail sooner or later, except within a narrow window of one constant."""
+    """Missions fail early or late, except within a narrow window of one constant."""
     (mutation,) = candidate.mutations
     factor = float(mutation.value) / float(mutation.operand.value or 1)
     if mutation.operand == GAIN and NARROW / 1.07 < factor < NARROW * 1.07:

@@ -1,4 +1,4 @@
-"""Goals, the budget of episodes and the outcomes kept, with episodes that earn what is written down here."""
+"""Goals, the budget of episodes and the stored outcomes, for episodes with given rewards."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def test_the_repair_of_a_combination_reports_its_distance_before_and_after() -> None:
-    """Without the repair, the margin is lost where a · b = 1 / 6; with it, nowhere up to the end of the ray."""
+    """Without the repair, the margin is 0 at a · b = 1 / 6; the repair keeps it positive up to the end of the ray."""
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     failed = failure(space, {"a": 0.45, "b": 0.45})
     designation = Designation((), (), drifts={"world": Drift(space)}, min_success=0.95, tolerance=0.5)

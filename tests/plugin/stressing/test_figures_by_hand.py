@@ -32,7 +32,7 @@ SLOPE, DEPTH = SPACE.extents["slope"], SPACE.extents["mud"]
 
 
 def elements(drawn: str, kind: str) -> list[dict[str, str]]:
-    """Return the attributes of the elements of a kind; a text has its own as `text`."""
+    """Return the attributes of the elements of a kind; the content of a text element has the key `text`."""
     root = ElementTree.fromstring(drawn)
     return [{**one.attrib, "text": one.text or ""} for one in root.findall(f".//{{*}}{kind}")]
 
@@ -106,7 +106,7 @@ def test_directions_are_ranked_by_the_largest_margin_that_they_lose() -> None:
 
 
 class Model:
-    """A prediction whose margin is 10 times the first coordinate plus the second, and whose spread is the second."""
+    """A prediction with margin 10 x + y and standard deviation y, for coordinates x and y."""
 
     def moments(self, vectors: Any) -> tuple[Any, Any]:
         return 10 * vectors[:, 0] + vectors[:, 1], vectors[:, 1]

@@ -1,4 +1,4 @@
-"""Intervals of boundaries contain the true boundary at the stated confidence, in worlds in which it is known."""
+"""In worlds with known boundaries, intervals contain the boundary at the stated confidence."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def at(point: Point, draws: np.random.Generator) -> np.random.Generator:
 
 
 def rare_failures(edge: float, scale: float) -> World:
-    """Return a world in which 5 % of episodes fail at the edge; each point has noise of its own."""
+    """Return a world in which 5 % of the episodes fail at the edge; the noise of each point is independent."""
     centre = edge + scale * log(GUARANTEED / (1.0 - GUARANTEED))
 
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
@@ -47,7 +47,7 @@ def rare_failures(edge: float, scale: float) -> World:
 
 
 def own_limits(edge: float, scale: float) -> World:
-    """Return a world in which each seed fails beyond a drift of its own, 5 % of them before the edge."""
+    """Return a world in which each seed fails beyond its own drift size, 5 % of the seeds before the edge."""
     return lambda point, draws: (bool(point["size"] < edge + scale * (draws.gumbel() + log(-log(0.05)))), 1.0)
 
 

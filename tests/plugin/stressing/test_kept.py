@@ -36,7 +36,7 @@ def cliff(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def check(content: bytes, folder: Path) -> None:
-    """Whatever is read can be printed and simulated: numbers inside the space, and not its nominal point."""
+    """All points that are read lie inside the space and differ from its nominal point."""
     path = folder / "failing.json"
     path.write_bytes(content)
     for point in kept.read(path, SPACE):

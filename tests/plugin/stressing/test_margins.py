@@ -1,4 +1,4 @@
-"""Files of margins: written by stress runs, compared between revisions, told in comments."""
+"""Files of margins: written by stress runs, compared between revisions, reported in comments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The models that choose drifts to test, on few values worked out by hand."""
+"""The models that choose the drifts to test, on a few values checked by hand."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_the_prior_covariance_of_two_drifts_equals_the_formula() -> None:
     one, other = np.array([[0.3, 0.0]]), np.array([[0.1, -0.2], [0.3, 0.0]])
 
     def smooth(a: float, b: float, squares: float) -> float:
-        """Return what two squared distances from nominal and that between the drifts leave of a unit variance."""
+        """Return a term of the prior covariance of two drifts, from squared distances to nominal and to each other."""
         return float(np.exp(-squares / (2 * 0.3**2)) - np.exp(-(a + b) / (2 * 0.3**2)))
 
     far = (

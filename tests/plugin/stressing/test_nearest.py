@@ -46,7 +46,7 @@ def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, ca
 
 
 def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, int]:
-    """Return the mean loss, the standard deviation of that, and how many of how many episodes failed."""
+    """Return the mean loss, its standard deviation, the number of failed episodes and the number of episodes."""
     losses, failed = evaluator.losses(point)
     return fmean(losses), 0.05, failed, len(losses)
 
@@ -127,7 +127,7 @@ def test_an_exception_under_a_generated_drift_is_raised_once() -> None:
 
 
 def test_evolution_leaves_the_global_generator_alone() -> None:
-    """Nodes may draw from it in the process of the search, but not in workers."""
+    """Nodes may draw from the global generator in the process of the search, but not in workers."""
     reached: list[list[float]] = []
     for state in (1, 2):
         np.random.seed(state)

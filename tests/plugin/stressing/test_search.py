@@ -1,4 +1,4 @@
-"""Boundaries and combinations in worlds in which they are known."""
+"""The search finds the known boundaries and failing combinations of small worlds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Gaussian processes of the stress search, against closed forms, other solvers and data that they should follow."""
+"""The Gaussian processes of the stress search agree with closed forms, other solvers and generated data."""
 
 from __future__ import annotations
 

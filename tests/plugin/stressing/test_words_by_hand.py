@@ -37,7 +37,7 @@ MUD, FLAT, STEEP, DOWN, LEFT = rays(SPACE, {})
 
 
 def seen(margin: float, result: Any = None, episodes: int = 8) -> Evidence:
-    """Return evidence; without a result, clear one."""
+    """Return evidence with this result, by default a clear one."""
     told = result or ("fails" if margin < 0 else "holds")
     return Evidence(told, margin, episodes, episodes, 0.0, 0.0)
 

@@ -16,7 +16,7 @@ POST = Post("/", "{}", b"first")
 
 
 class Process:
-    """A process that answers with given bytes and notes how it is ended."""
+    """A process that answers with the given bytes and stores how it is ended."""
 
     def __init__(self, *answers: bytes) -> None:
         self.stdin, self.stdout = io.BytesIO(), io.BytesIO()
@@ -65,7 +65,7 @@ def test_two_threads_may_end_a_worker_at_once() -> None:
 
 
 class Checks(threading.Event):
-    """The checks of a listener, one after the other, without waiting."""
+    """Run the checks of a listener one after the other, without waiting."""
 
     def __init__(self, *before: Any) -> None:
         super().__init__()

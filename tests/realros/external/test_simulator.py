@@ -1,4 +1,4 @@
-"""A simulator in a process of its own: started, stepped, followed, reset, and ended, however it misbehaves."""
+"""A simulator in a separate process is started, stepped, followed, reset and ended, even if it is faulty."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def guarded() -> Iterator[None]:
 
 
 class Run:
-    """An episode without nodes, whose test opens the valve by GAIN times what is missing."""
+    """An episode without nodes, whose test opens the valve by GAIN times the missing level."""
 
     def __init__(self, folder: Path, environment: dict[str, str] | None = None, **more: Any) -> None:
         self.ros = Ros()
