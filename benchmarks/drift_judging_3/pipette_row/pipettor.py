@@ -9,7 +9,7 @@ from std_msgs.msg import Float64, Float64MultiArray, Int16, String
 SAFE_Z = 20.0  # mm above the deck
 TROUGH_Z = 2.0
 WELL_Z = 5.0
-TROUGH = -1  # position of the trough, wells count from 0
+TROUGH = -1  # position of the trough; wells are counted from 0
 
 
 class Pipettor(object):

@@ -18,7 +18,7 @@ G = 9.81
 class Track:
     """What a wagon meets behind the retarder."""
 
-    rolling_resistance: float = 0.0022  # share of the weight, bearings at summer temperature
+    rolling_resistance: float = 0.0022  # share of the weight, for bearings at summer temperature
     gradient: float = 0.0006  # the yard falls a little
     coupling_speed: float = 1.1  # m/s, buffers touch and the coupler closes
 

@@ -39,7 +39,7 @@ class Room:
         return min(along, across)
 
     def publish(self, bus):
-        """Publish what scanner and scales measure."""
+        """Publish the measurements of scanner and scales."""
         bus.publish("/load", Float32(data=self.load))
         bus.publish("/scan", LaserScan(ranges=[self.ray(a) + self.rng.normal(0.0, 0.01) for a in RAYS]))
 
