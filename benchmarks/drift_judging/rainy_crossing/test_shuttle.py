@@ -24,7 +24,7 @@ class Road:
         self.wet = grip < 1.0
         self.x, self.speed = 0.0, 0.0
         self.person = rng.uniform(14.0, 26.0) if rng.random() < CROSSING else None
-        self.steps_out = rng.uniform(6.5, 11.0)  # distance ahead of the shuttle at which the person steps out, m
+        self.steps_out = rng.uniform(6.5, 11.0)  # distance at which the person steps out, m
         self.crossing = 6.0  # s
         self.time = 0.0
         self.gained = 0.0
