@@ -1,6 +1,6 @@
-"""A boat is lifted in a lock.
+"""A boat is raised in a lock.
 
-In a flood the fall is higher, and the same opening of the sluice strains the boat's lines.
+In a flood the fall is higher, and the same opening of the sluice puts more load on the boat's lines.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Biscuits are picked near their middle. With a rubber sleeve on the encoder wheel, the belt travels further per tick."""
+"""Biscuits are picked near their middle. With a rubber sleeve on the encoder wheel, a tick stands for more belt."""
 
 import pytest
 
