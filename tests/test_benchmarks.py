@@ -20,7 +20,7 @@ SCRIPTS = sorted(
     for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")]
     if 'if __name__ == "__main__"' in path.read_text()
 )
-ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable within a node only
+ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable only within a node
 # Arguments with which each script does as little as possible; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],

@@ -121,7 +121,7 @@ def test_the_third_set_has_every_kind_of_defect_and_states_where_drifts_occur() 
     assert all(known["practice"] for known in third)
 
 
-KINDS = {  # of the tasks of each set
+KINDS = {  # kinds of defects in the tasks of each set
     "drift_judging_4": [
         "helper",
         "narrow window",

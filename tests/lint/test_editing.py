@@ -138,7 +138,7 @@ READ = [
         "    return total",
         "    yield total",
     ),  # "yield" changes how the file's names are collected
-    ("helper.py", "    return total", "    return total + idle"),  # reads what may be the unused publisher
+    ("helper.py", "    return total", "    return total + idle"),  # may read the unused publisher
     ("helper.py", "class Filter:", "import os\n\nclass Filter:"),
     (
         "helper.py",
@@ -201,7 +201,7 @@ def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, 
     analysed.clear()
     buffers = edited(tmp_path, "helper.py", "return total", "return total - 1")
     assert workspace.lint(buffers) == Workspace([tmp_path]).lint(buffers)
-    assert analysed == ["node.py"]  # of the new session
+    assert analysed == ["node.py"]  # analysed by the new session
 
 
 def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_path, analysed):

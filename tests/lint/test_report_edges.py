@@ -37,7 +37,7 @@ def test_the_cuts_of_a_report_become_smaller_until_nothing_is_left(results, smal
 def test_a_report_of_exactly_the_maximum_size_is_accepted(monkeypatch):
     monkeypatch.setattr(upload_limits, "MOST_BYTES", 1000)
     assert taken("x" * 1000)
-    assert taken("x" * 1001)  # compressed, it is smaller
+    assert taken("x" * 1001)  # the compressed text is smaller
     noise = random.Random(0).choices("abcdefghijklmnop", k=4000)
     assert not taken("".join(noise))
 

@@ -136,7 +136,7 @@ def test_a_call_can_be_replayed_only_if_no_reachable_object_refers_to_those_it_c
     hidden(store, holder, "x", pointer(obj))
     assert same(store, reads)
     store.put((holder, "x"), pointer(obj))
-    assert not same(store, reads)  # making it would first move what is held to the older ones
+    assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
 def test_only_visible_holders_of_an_object_count(store, obj):

@@ -300,7 +300,7 @@ message_filters.TimeSynchronizer(fs=subs, queue_size=10).registerCallback(each)
         ("subs = [left, right]\nsubs.append(state)", "left a, right b, state c"),
         ("subs = [left, right]\nif rospy.get_param('~c'): subs.append(state)", "left a, right b, state c"),
         ("subs = []\nsubs.append(left)", "left a"),
-        (  # the first one may be missing
+        (  # the first subscriber may be missing
             "subs = [left]\nif rospy.get_param('~c'): subs.append(right)\nsubs.append(state)",
             "left a, right b, state b, state c",
         ),

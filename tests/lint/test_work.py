@@ -19,7 +19,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.settings.config import Config
 
-MOST = 2.5 * PROGRAM_LIMIT  # statements, limit for any program
+MOST = 2.5 * PROGRAM_LIMIT  # maximum number of statements of any program
 
 
 def work(text: str, *others: str, thorough: bool = False) -> Linker:
@@ -297,4 +297,4 @@ def test_a_library_does_not_pass_an_instance_that_it_calls_to_itself():
     body = "\n".join(f"        x = self.conv{n}(x)" for n in range(8))
     machine = work(NET.replace("LAYERS", layers).replace("BODY", body))
     called = [frame for frame in machine.frames.values() if frame.function.name == "__call__"]
-    assert len(called) == 2  # by `on`, and by the library
+    assert len(called) == 2  # called by `on` and by the library

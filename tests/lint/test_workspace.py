@@ -288,7 +288,7 @@ def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Pat
     found = workspace(tmp_path)
     assert [(one.package.name, one.marker) for one in found.hidden] == [
         ("old", tmp_path / "ws/src/old/COLCON_IGNORE")
-    ]  # build output has no marker of a person
+    ]  # markers in build output are not written by a person
     assert "old" not in {one.name for one in found.packages}
     for old in (found.package("old"), found.package_of(tmp_path / "ws/src/old/scripts/drive.py")):
         assert old is not None

@@ -118,7 +118,7 @@ def test_a_loss_that_is_significant_alone_may_not_be_after_correction(drifting: 
     short = (
         "--tarl-online",
         "--tarl-episodes=2",
-    )  # so few permutations that the smallest p-value is far from 0
+    )  # few permutations, so that the smallest possible p-value is far from 0
     drifting.runpytest(*short, "--tarl-drift=clogged", "--tarl-looks=1").assert_outcomes(
         failed=1, deselected=1
     )

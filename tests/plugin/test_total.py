@@ -97,7 +97,7 @@ def test_no_episode_runs_twice_and_no_finished_episodes_are_kept(sharing: pytest
     sharing.runpytest("--tarl-online", "--tarl-total=80")
     assert len(file.read_text()) == sum(ran(sharing).values())
     before = len(file.read_text())
-    sharing.runpytest("--tarl-online", "--tarl-total=80", "--tarl-resume")  # nothing to resume: all run again
+    sharing.runpytest("--tarl-online", "--tarl-total=80", "--tarl-resume")  # no kept episodes: all run again
     assert len(file.read_text()) == 2 * before
 
 

@@ -54,5 +54,5 @@ def test_no_function_is_entered_after_a_run_has_reached_its_statement_limit(monk
 def test_functions_are_entered_up_to_a_maximum_call_depth(monkeypatch, depth):
     whole = executed("out.publish(deep_0(msg.data))", CHAIN)
     monkeypatch.setattr(context_selection, "MAX_CALLS", depth)
-    entered = 21 - (whole - executed("out.publish(deep_0(msg.data))", CHAIN))  # each has one statement
+    entered = 21 - (whole - executed("out.publish(deep_0(msg.data))", CHAIN))  # one statement each
     assert entered == depth - 2  # below the root and the callback

@@ -94,7 +94,7 @@ def test_postdominators_are_on_every_path_to_the_exit(seed):
         n: {str(way): chance.choice([EXIT, *range(1, size)]) for way in range(chance.randint(1, 2))}
         for n in range(1, size)
     }
-    for node in edges:  # each statement ends somehow
+    for node in edges:  # make each statement reach the exit
         if not ends_without(edges, node, -1):
             edges[node]["end"] = EXIT
     nearest = postdominators(edges, list(edges))

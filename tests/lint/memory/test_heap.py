@@ -232,7 +232,7 @@ def test_an_unknown_index_of_a_library_object_reads_a_part_of_it(ctx):
     first = obj.sub("[0]")
     assert heap.read_any(ctx, obj).pts == {first, obj.sub("[]")}
     ctx.store.put((obj, ANY), ONE)
-    assert heap.read_any(ctx, obj).deps == frozenset()  # the parts have the data of the whole
+    assert heap.read_any(ctx, obj).deps == frozenset()  # the parts have the data of the whole object
     assert reachable_data.deep(ctx, heap.read_any(ctx, obj).pts) == {1}
 
 

@@ -106,8 +106,8 @@ PLACES = st.integers(0, len(PATCH) - 1)
 @given(st.lists(st.tuples(PLACES, st.integers(0, 255)), min_size=1, max_size=3), st.booleans(), st.booleans())
 @example(
     [(PATCH.index(b"missing") + 3, ord("D"))], True, False
-)  # once, `misDing = …` was applied with exit code 0
-@example([(BODY, 0)], True, False)  # a file that was not distinguished from the header
+)  # a former error: `misDing = …` was applied with exit code 0
+@example([(BODY, 0)], True, False)  # a former error: the file was taken for a part of the header
 @example([(PATCH.index(b"-    return") + 1, ord("\\"))], True, False)
 def test_patches_with_changed_bytes_are_refused_or_harmless(
     changes: list[tuple[int, int]], resealed: bool, forced: bool

@@ -133,7 +133,7 @@ def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> No
     found = residual_maps._map("r1", own, doubled)
     known = ~np.isnan(found.mean)
     assert found.robot == "r1"
-    assert found.mean.size == len(recorded.sample.cells)  # without that of all other cells
+    assert found.mean.size == len(recorded.sample.cells)  # without the row of all other cells
     assert known.any()
     assert found.variance[known] == pytest.approx(4.0 * world.variance[:-1][known])
     halved = residual_maps._map("r1", own, replace(world, of_visit=0.25 * world.of_visit))

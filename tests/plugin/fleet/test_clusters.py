@@ -41,7 +41,7 @@ def test_robots_with_the_same_drift_form_a_cluster_with_its_cells(seed: int) -> 
     assert sorted({name[1] for one in large for name in one.robots}) == ["0", "1", "2"]
     for one in found.found:
         assert len({name[1] for name in one.robots}) == 1
-    assert len(found.found) <= 4  # six noisy robots of a kind rarely divide
+    assert len(found.found) <= 4  # six noisy robots of one kind rarely form several clusters
     for one in large:
         kind = kinds[int(one.robots[0][1])]
         told = dict(zip(one.cells, one.residuals, strict=True))

@@ -18,7 +18,7 @@ from pytest_tarl.fleet import engine
 
 def linear_algebra_threads() -> set[int]:
     """Return the numbers of threads that the linear algebra libraries currently use."""
-    assert np.eye(2).shape == (2, 2)  # numpy brings such a library
+    assert np.eye(2).shape == (2, 2)  # numpy loads a linear algebra library
     return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
 
 

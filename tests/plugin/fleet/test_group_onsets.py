@@ -34,7 +34,7 @@ def test_a_change_too_small_for_each_robot_is_found_in_its_site_with_its_onset(d
     assert not found.meets("robot")
     evidence = found.onsets.every[1].status.world  # type: ignore[union-attr]
     assert evidence.since is not None
-    assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # a mission of each robot a second
+    assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # one mission per robot and second
 
 
 def test_a_group_of_one_robot_has_the_evidence_of_the_robot(

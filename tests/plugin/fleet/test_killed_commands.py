@@ -49,7 +49,7 @@ def interrupted(folder: Path, after: float, how: signal.Signals, *arguments: str
     assert one.returncode in (0, CTRL_C, -signal.SIGINT, -signal.SIGKILL)
     importing = (
         one.returncode == -signal.SIGINT or b"_get_module_lock" in err
-    )  # Python may drop the signal there
+    )  # Python may lose a signal during an import
     assert importing or b"Traceback" not in err
 
 

@@ -34,7 +34,7 @@ def nested(inner: st.SearchStrategy[oracle.Tree]) -> st.SearchStrategy[oracle.Tr
 
 
 trees = st.recursive(comparisons, nested, max_leaves=5)
-# the left side of `since` and timed `until` counts to the exact nanosecond
+# the left sides of `since` and of timed `until` must hold to the exact nanosecond
 untied = trees.filter(
     lambda tree: not {"since", "until["} & set(re.findall(r"since|until\[", oracle.text(tree, "")))
 )

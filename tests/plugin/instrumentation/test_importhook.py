@@ -212,7 +212,7 @@ def test_functions_classes_and_instances_can_be_pickled(project, monkeypatch):
             assert pickle.loads(pickle.dumps(module.Pose.Part(3.0), protocol)).n == 1.5
         in_recorded = pickle.dumps([module.Pose(1.5), module.Pair(1.0), module.half])
     assert len(recorder.finish().site) > 10
-    plain = importlib.import_module("numbers_of_a_robot")  # the unmodified program loads the stored objects
+    plain = importlib.import_module("numbers_of_a_robot")  # the plain program loads the stored objects
     try:
         assert pickle.loads(in_recorded) == [plain.Pose(1.5), plain.Pair(1.0), plain.half]
     finally:

@@ -146,7 +146,7 @@ def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None
     assert bet(1.0, -1.0, [0.5, -0.5]).stakes == pytest.approx((wanted,))
     assert bet(1.0, -1.0, [-9.0, -9.0]).stakes == pytest.approx(
         (1.0 / 0.25,)
-    )  # a quarter of the margin at least
+    )  # at least a quarter of the margin
     assert bet(1.0, -1.0, [0.5]).stakes == pytest.approx((1.0 / 1.5,))
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 

@@ -89,7 +89,7 @@ def test_an_avoided_cell_is_significant_after_correction_for_the_missing_cells(o
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
-    ]  # all episodes visit cell 0, and only these the others
+    ]  # all episodes visit cell 0; only the listed episodes visit other cells
     chance = 1 / comb(
         everyone, online
     )  # probability that none of the four deployed episodes is among the eight

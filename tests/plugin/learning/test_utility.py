@@ -46,7 +46,7 @@ def walk_trace(seed: int) -> Trace:
 def test_the_fixed_point_is_the_exact_solution_of_the_random_walk() -> None:
     state = np.repeat(np.arange(WALK), 2)
     following = np.array([END, 1, 0, 2, 1, 3, 2, 4, 3, END])
-    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # half of the last state's two exits earns 1
+    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # one of the two exits of the last state earns 1
     values = fixed_point(state, following, np.ones(10, np.int64), reward, gamma=1.0)
     assert values == pytest.approx(np.arange(1, 6) / 6)
 

@@ -90,7 +90,7 @@ def test_bins_are_ordered_and_rounding_changes_no_bin(values: list[float], unit:
     assert found.shape == (BINS - 1,)
     assert (np.diff(found[np.isfinite(found)]) > 0).all()
     for value in values:
-        # Values closer to each other than CLOSE count as equal; the bin edges lie half of CLOSE beside the value.
+        # Values that differ by less than CLOSE count as equal; the bin edges are at the value ± CLOSE / 2.
         on_grid = round(value / (conformal.CLOSE * unit)) * (conformal.CLOSE * unit)
         shaken = np.searchsorted(found, [on_grid - 1e-5 * unit, on_grid + 1e-5 * unit])
         assert shaken[0] == shaken[1]

@@ -98,7 +98,7 @@ def test_a_damaged_state_is_reported_in_one_sentence(world: Path, data: st.DataO
     if len(damaged) == len(whole):
         damaged[place] ^= data.draw(st.integers(1, 255))
     path.write_bytes(bytes(damaged))
-    with suppress(TarlError):  # any other exception fails; bytes without a meaning may change
+    with suppress(TarlError):  # other exceptions fail the test; unused bytes may change without an error
         begun(world, path).close()
 
 

@@ -62,4 +62,4 @@ def test_a_counter_without_a_written_header_is_not_read_as_a_piece() -> None:
     writer._counters[0] = 7
     assert reader.read() is None
     writer._counters[0] = 8
-    assert reader.read() == b""  # a head of zeros: no bytes, and their checksum
+    assert reader.read() == b""  # a header of zeros is valid: no bytes, with checksum 0

@@ -15,7 +15,7 @@ from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odomet
 from tests.plugin.patching.test_patch import patched, repository, run, shell
 from tests.plugin.patching.test_subscriptions import NODES
 
-# statements on a value and a publish method, with the published result for 1.0 as designed and in mud
+# statements that publish a value, with the results for an input of 1.0 as designed and in mud
 FORMS = {
     "call": ("{publish}(5 * {value})", 5.0, 12.0),
     "condition": ("if 5 * {value} > 8.0:\n    {publish}(1.0)\nelse:\n    {publish}(0.0)", 0.0, 1.0),

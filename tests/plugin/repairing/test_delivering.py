@@ -12,7 +12,7 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from tests.plugin.searching.test_search import operand
 
-NO_ORDER: Any = None  # edits of constants need none
+NO_ORDER: Any = None  # edits of constants need no order
 
 
 def test_uses_of_one_definition_share_the_edit_of_that_definition() -> None:

@@ -83,7 +83,7 @@ def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: f
     assert all(road.hard(pair.seed) for pair in goal.pairs)
     assert (
         trials.spent == len(road.ran) <= ENOUGH
-    )  # each run finds a hard mission or gives its designed reward
+    )  # each run either finds a hard mission or measures its designed reward
     assert len(goal.controls) == CONTROLS
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 

@@ -41,7 +41,7 @@ def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tu
     trials = Trials(run, 50)
     others = Others(mutants, ledger, missed)
     proposed = [factor(one.mutations[0]) or 1.0 for one in others.inward(FOUND, trials)]
-    assert list(others.inward(FOUND, trials)) == []  # once for the same operands
+    assert list(others.inward(FOUND, trials)) == []  # the same operands are proposed only once
     return proposed, trials.spent
 
 

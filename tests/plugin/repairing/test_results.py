@@ -57,7 +57,7 @@ def test_the_best_candidate_so_far_counts_little_with_few_runs() -> None:
     one, two = scaled(2.0), scaled(3.0)
     found = watch((one, 0, 4.0), (two, 0, 3.0))
     assert found.best == one
-    found.saw(two, 1, Outcome(4.0, True))  # a gain of 3 in two runs counts 2, one of 4 in one run as well
+    found.saw(two, 1, Outcome(4.0, True))  # a gain counts runs / (runs + 1): 3·2/3 = 4·1/2
     assert found.best == one
     found.saw(two, 2, Outcome(5.5, True))
     assert found.best == two
@@ -273,8 +273,8 @@ def test_missions_of_a_test_are_lost_beyond_the_slack_of_the_search() -> None:
     )
     few = Missed()
     few.learn(one, little, GOAL, MARGIN)
-    assert few.seeds == [(2, 3.0)]  # a designed mission counts as earning the mean at most
-    assert few.poor == set()  # missions need not succeed here
+    assert few.seeds == [(2, 3.0)]  # a designed mission counts at most as the mean reward
+    assert few.poor == set()  # here, missions need not succeed
 
 
 @pytest.mark.parametrize(

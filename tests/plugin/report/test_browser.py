@@ -25,7 +25,7 @@ QUIET = (
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 DARK = "--blink-settings=preferredColorScheme=0"
 
-# This script acts like a reader once the page is drawn and stores what it finds.
+# After the page is drawn, this script clicks and hovers like a reader and stores the results.
 PROBE = """<script>(async () => {
 const found = {violations: []}, root = document.documentElement;
 addEventListener("securitypolicyviolation", event => found.violations.push(event.blockedURI));

@@ -110,7 +110,7 @@ def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(var
 
 KEPT = {
     "online": FormulaWorld(0.5, 0.25, 9, 0, None),
-    "offline": FormulaWorld(1e-300, 0.0, 9, 0, None),  # what a strict comparison gives at its limit
+    "offline": FormulaWorld(1e-300, 0.0, 9, 0, None),  # robustness of a strict comparison at its limit
 }
 BROKEN = {"online": FormulaWorld(-0.5, -1.0, 9, 3, 2.25), "repaired": FormulaWorld(2.0, 1.0, 4, 0, None)}
 FORMULAS = (FormulaRow("never", {}), FormulaRow("kept", KEPT), FormulaRow("broken", BROKEN))

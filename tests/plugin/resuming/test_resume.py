@@ -50,7 +50,7 @@ def kept(tank: pytest.Pytester) -> list[Path]:
 def test_a_killed_recording_continues_with_the_same_bytes(stopping: pytest.Pytester) -> None:
     stopping.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     whole = fixture_file(stopping).read_bytes()
-    assert ran(stopping) == 17  # the first one twice, to see whether it is reproducible
+    assert ran(stopping) == 17  # the first episode runs twice, to check that it is reproducible
     assert kept(stopping) == []
     fixture_file(stopping).unlink()
     interrupted(stopping, "9 SIGKILL", *RECORD)
@@ -58,7 +58,7 @@ def test_a_killed_recording_continues_with_the_same_bytes(stopping: pytest.Pytes
     found = stopping.runpytest(*RECORD, RESUME)
     found.assert_outcomes(passed=1, deselected=1)
     found.stdout.fnmatch_lines(["*9 finished episodes are kept from the interrupted run."])
-    assert ran(stopping) == 7 + 1  # the first kept one again, which counts as the second run of it
+    assert ran(stopping) == 7 + 1  # the first kept episode runs again, which is its second run
     assert fixture_file(stopping).read_bytes() == whole
     assert kept(stopping) == []
 

@@ -96,7 +96,7 @@ def test_each_node_has_its_own_keyboard(start: Start) -> None:
     ros.type("a\n", node="/other")
     ros.step(0.1)
     assert len(keys) == 1
-    assert len(ros.notes) == 1  # the other one still waits
+    assert len(ros.notes) == 1  # the other node still waits
     ros.type("b\n")
     ros.step(0.1)
     assert len(keys) == 3
@@ -134,7 +134,7 @@ def test_an_input_function_that_the_test_sets_is_not_replaced(
     )
     keys = heard(ros, "/keys")
     ros.step(1.0)
-    assert [one.data for one in keys] == ["1.5"]  # the first one was published before the test listened
+    assert [one.data for one in keys] == ["1.5"]  # the first message was published before the test subscribed
     assert not ros.notes
 
 

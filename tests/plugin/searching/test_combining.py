@@ -160,7 +160,7 @@ def test_a_candidate_is_confirmed_once() -> None:
 
 def test_the_covariance_equals_the_matern_kernel_of_order_five_halves() -> None:
     found = _kernel(np.array([[[0.0], [4.0]]]), np.array([2.0]))
-    scaled = sqrt(5.0)  # at a distance of one length
+    scaled = sqrt(5.0)  # at a distance of one length scale
     assert found == pytest.approx(np.array([[1.0, (1 + scaled + 5 / 3) * exp(-scaled)]]))
 
 
@@ -277,7 +277,7 @@ def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_g
     found = [factors(one) for one in search.candidates()]
     assert {name for one in found for name in one} == {"A"}
     effects = {name: one.effect for (one,) in search.effects().values() for name in [one.code]}
-    assert effects == {"A": 9.0, "B": 3.0}  # none for what cannot be written
+    assert effects == {"A": 9.0, "B": 3.0}  # a change that cannot be written has no effect
     assert search.refused
     assert len(found) <= EpsilonGreedy.CONFIRMED
 

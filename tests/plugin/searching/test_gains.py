@@ -102,9 +102,9 @@ def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
     assert found.moving([C, B, A]) == [B, A]
     one_way = Gains(0.5)
     one_way.enter((C, ALWAYS), 2.2, 0.0)
-    assert one_way.moving([C, A]) == [C, A]  # moved one way only, or never tried
+    assert one_way.moving([C, A]) == [C, A]  # moved in one direction only, or never tried
     one_way.enter((C, WET), 0.4, 0.0)
-    assert one_way.moving([C, A]) == [A]  # both ways, under any guard
+    assert one_way.moving([C, A]) == [A]  # moved in both directions, under any guard
 
 
 def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
@@ -114,9 +114,9 @@ def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     assert found.lost_both_ways(ALWAYS, [A, B], (2.2, 0.4, 5.0)) == []
     least = Gains(0.5)
     for unit, factor, gain, moved in (
-        (A, 2.2, -0.5, True),  # not more than the slack
+        (A, 2.2, -0.5, True),  # a gain not above the slack
         (A, 0.4, -9.0, True),
-        (B, 2.2, 0.0, True),  # a mission that already earned the least
+        (B, 2.2, 0.0, True),  # a mission that already earned the least possible reward
         (B, 0.4, -9.0, True),
         (C, 2.2, 0.0, False),
         (C, 0.4, -9.0, True),
@@ -321,7 +321,7 @@ def test_the_certainty_of_a_ranking_counts_sites_that_gain() -> None:
     ranking.race = race(
         {
             (A, 2.2): {0: 3.0, 1: 3.1, 2: 2.9},
-            (A, 5.0): {0: 9.0},  # one seed may be luck
+            (A, 5.0): {0: 9.0},  # a gain on one seed may be chance
             (B, 2.2): {0: 5.0, 1: 5.2, 2: 4.9},
             (C, 2.2): {0: 0.5, 1: 0.7},
         }

@@ -25,7 +25,7 @@ def operand(line: int, code: str, value: float = 2.0, path: str = "node.py") -> 
 
 STIFF, DAMPED = operand(3, "STIFF"), operand(4, "DAMPED")
 OTHERS = tuple(operand(line, f"OTHER_{line}") for line in range(5, 10))
-WANTED = 12.0  # what both constants at their best gain
+WANTED = 12.0  # gain of both constants at their best values
 
 
 def swing(candidate: Candidate, seed: int) -> Outcome:

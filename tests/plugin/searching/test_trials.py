@@ -110,7 +110,7 @@ def test_episodes_ahead_are_unknown_ones_that_the_budget_allows() -> None:
         ({ONE: {0: 4.5, 1: 5.5}}, True),  # gains 4.5 = 60 % of 7.5
         ({ONE: {0: 4.4, 1: 5.5}}, False),
         ({ONE: {0: 9.0}, TWO: {1: 9.0}}, False),  # one seed each
-        ({ONE: {0: 9.0, 7: 9.0}}, False),  # of which one lost nothing
+        ({ONE: {0: 9.0, 7: 9.0}}, False),  # one of these missions lost nothing
     ],
 )
 def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
@@ -180,8 +180,8 @@ def test_a_confirmation_begins_with_at_most_two_seeds_on_which_others_failed() -
     ("totals", "goal", "expected", "runs"),
     [
         ([9.0, 9.0, 9.0], GOAL, True, 3),
-        ([9.0, 8.9, 9.0], GOAL, False, 3),  # near everywhere, but too little on average
-        ([7.0, 10.0, 10.0], GOAL, True, 3),  # one seed may fall short
+        ([9.0, 8.9, 9.0], GOAL, False, 3),  # near the goal on all seeds, but too little on average
+        ([7.0, 10.0, 10.0], GOAL, True, 3),  # one seed may miss the goal
         ([7.0, 10.0, 7.0], GOAL, False, 3),
         ([7.0, 7.0, 10.0], GOAL, False, 2),
         ([10.0, 4.0, 10.0], replace(GOAL, passing=True), False, 2),

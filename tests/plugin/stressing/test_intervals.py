@@ -99,7 +99,7 @@ def test_intervals_contain_the_boundary_and_are_narrow(
     assert len(found) >= 0.9 * RUNS
     assert sum(contained) >= CONFIDENCE * len(found)
     assert fmean(one.far - (one.near or 0.0) for _, _, one in found) < narrow
-    if make is rare_failures:  # the search overlooks them, so that this test can fail
+    if make is rare_failures:  # the search misses these failures, so this test could fail
         assert sum(before) <= 0.75 * len(found)
 
 

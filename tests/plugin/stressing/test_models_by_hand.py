@@ -36,7 +36,7 @@ from tests.plugin.stressing.test_words_by_hand import (
 def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> None:
     model = Model({0.5: seen(1.0)}, 0.5)
     weights = np.zeros((len(CENTRES), len(SCALES)))
-    weights[100, -1] = 1.0  # an episode fails beyond 0.5, in half of the cases there
+    weights[100, -1] = 1.0  # an episode fails beyond 0.5, and in half of the cases at 0.5
     model.__dict__["_weights"] = weights
     assert CENTRES[100] == pytest.approx(0.5)
     assert model._passing(0.5, 3, 3) == pytest.approx(1 / 8)
@@ -85,10 +85,10 @@ def test_pairs_of_directions_farther_than_a_known_failure_are_not_tested() -> No
     together = Together(0.1, inside, [combined(mud=0.0, slope=1.0)])
     proposed: list[Any] = []
     pairs(evaluator, together, proposed)
-    assert (ran, proposed, together.tried) == ([], [], 0)  # the only pairs are as far as the one known
+    assert (ran, proposed, together.tried) == ([], [], 0)  # all pairs are as far as the known one
     free = Together(0.1, inside)
     pairs(evaluator, free, proposed)
-    assert free.tried == 2  # not both ends of one range
+    assert free.tried == 2  # pairs never combine both ends of one range
     assert {one["slope"] for one in ran if one["mud"] == 0.0} == {-1.0, 1.0}
     assert len(proposed) == 2
     assert all(one["mud"] > 3.8 for one in proposed)  # bisected towards nominal

@@ -173,7 +173,7 @@ def test_clearly_failing_drifts_are_candidates_if_the_model_was_wrong_nearby() -
 
 
 def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:
-    coordinates = Coordinates(SPACE, SPACE.nominal)  # a goes both ways, b only down
+    coordinates = Coordinates(SPACE, SPACE.nominal)  # a has both signs, b only the negative one
     vectors = np.array(list(islice(spread(coordinates, np.random.default_rng(0)), 200)))
     lengths = np.linalg.norm(vectors, axis=1)
     assert lengths.min() >= CLOSEST
@@ -197,7 +197,7 @@ def test_a_narrow_failing_region_near_nominal_is_found_beside_a_wide_one() -> No
         c=Drift.range(0.0, 1.0, nominal=0.0),
     )
     nearest = stressed(world, space, budget=600).failures[0]
-    assert nearest.distance < 0.4  # the narrow region begins at 0.27, the wide one at about 0.77
+    assert nearest.distance < 0.4  # the regions begin at distances of 0.27 and about 0.77
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])

@@ -285,7 +285,7 @@ def test_tests_of_combinations_divide_the_risk_and_skip_what_is_known() -> None:
     together.confirm(chain, evaluator)
     assert risks == pytest.approx([0.03, 0.01, 0.005])
     assert [one.point["mud"] for one in together.found] == [1.0]
-    together.confirm([combined(mud=0.5, slope=0.75).point], evaluator)  # beyond the one found
+    together.confirm([combined(mud=0.5, slope=0.75).point], evaluator)  # beyond the failure found
     together.confirm([SPACE.nominal], evaluator)
     assert together.tests == 3
     together.confirm([combined(mud=1.0).point], evaluator)

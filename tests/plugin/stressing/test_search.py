@@ -211,7 +211,7 @@ def test_one_failure_in_few_episodes_does_not_refute_the_guarantee() -> None:
     assert not refuted(given_, [fine] * 15 + [failed], [fine] * 16, 0.01)
     assert refuted(given_, [fine] * 4 + [failed] * 12, [fine] * 16, 0.01)
     assert refuted(given_, [Outcome(True, 9.0)] * 16, [fine] * 16, 0.01)
-    wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, but from a few episodes
+    wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, due to few episodes
     assert not refuted(given_, wild, [fine] * 16, 0.01)
 
 

@@ -61,7 +61,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     assert first[1].count(b"<svg") == 1
     assert not [
         *spaced.path.glob(".tarl/results/*")
-    ]  # which hold comparisons only, as `tarl summary` expects
+    ]  # folders that contain only comparisons, as `tarl summary` expects
     found = json.loads(first[0])
     jsonschema.validate(found, json_result.schema())
     (pump,) = found["directions"]

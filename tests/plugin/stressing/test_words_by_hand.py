@@ -183,7 +183,7 @@ def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_co
         (curve(MUD, {0.76: -1.0}), True),
         (curve(MUD, {1.0: 1.0}, swept=False), False),
         (curve(STEEP, {0.5: -1.0}), False),
-        (curve(FLAT, {0.5: -1.0}), True),  # the other side of the range
+        (curve(FLAT, {0.5: -1.0}), True),  # a failure on the other side of the range
         (curve(DOWN, {1.0: -1.0}), True),
     ],
 )

@@ -43,7 +43,7 @@ class Run:
             "step": None,
             "reset": None,
             "every_step": (),
-            "timeout": 600.0,  # only what never happens fails a test, however busy the machine is
+            "timeout": 600.0,  # s; long enough for a busy machine
             "patience": 300.0,
             **more,
         }
@@ -78,7 +78,7 @@ class Run:
 def expected(count: int, pump: float = 1.0) -> list[float]:
     level, valve, found = 0.1, 0.0, []
     for step in range(count):
-        valve = 2.0 * (1.0 - level) if step else 0.0  # the first command has no way yet
+        valve = 2.0 * (1.0 - level) if step else 0.0  # no connection yet for the first command
         level += 0.1 * pump * valve
         found.append(level)
     return found

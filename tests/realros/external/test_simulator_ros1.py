@@ -59,7 +59,7 @@ while not rospy.is_shutdown():
 
 
 def test_a_stepped_simulator_gives_the_same_levels_each_time(tmp_path: Path) -> None:
-    for _ in range(2):  # each has a master of its own
+    for _ in range(2):  # each run has its own master
         with Run(tmp_path, command=COMMAND, **STEPPED) as run:
             assert run.steps(5) == pytest.approx(expected(5))
             assert run.simulator.clock == pytest.approx(0.6)
