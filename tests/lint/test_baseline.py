@@ -56,7 +56,7 @@ def test_a_method_that_subscribes_belongs_to_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
 
-def test_if_more_flows_have_a_fingerprint_than_were_accepted_all_of_them_are_new(example):
+def test_a_fingerprint_with_more_flows_than_were_accepted_makes_all_its_flows_new(example):
     finding = replace(example.finding(), fingerprint="a")
     assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
     assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]

@@ -193,7 +193,7 @@ def test_an_undone_edit_needs_no_analysis(tmp_path, analysed):
     assert analysed == []
 
 
-def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, analysed):
+def test_an_edit_after_an_undone_edit_is_compared_with_the_original_text(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     workspace.lint(edited(tmp_path, "node.py", "value > 3", "value > 4"))
@@ -224,7 +224,7 @@ def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_
     assert whole == Workspace([tmp_path]).lint(buffers)
 
 
-def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
+def test_an_obsolete_run_stops_and_keeps_its_finished_analyses(tmp_path, analysed):
     Path(tmp_path, "other.py").write_text(NODE)
     workspace = Workspace([tmp_path])
     with pytest.raises(Superseded):
@@ -305,6 +305,6 @@ def test_queries_about_the_text_of_a_module_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_a_group_is_run_because_of_words_in_its_text():
+def test_words_in_the_text_of_a_group_cause_its_run():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

@@ -33,7 +33,7 @@ def parsed(text: str) -> object:
         ("/robot/ga.e", "/robot/gate", False),
     ],
 )
-def test_a_section_is_for_the_nodes_that_its_pattern_matches(pattern, node, holds):
+def test_a_section_applies_to_the_nodes_that_match_its_pattern(pattern, node, holds):
     assert matches(pattern, node) is holds
 
 

@@ -112,7 +112,7 @@ def test_a_narrow_frame_is_cropped_with_its_carets():
     assert framed("abcdefghij", Span("n", 1, 3, 1, 10), View(width=12)) == ["   1 │ abcd…", "     │   ^^^"]
 
 
-def test_a_picture_of_no_system_has_its_margins_only():
+def test_a_picture_without_nodes_has_only_margins():
     (start,) = (line for line in svg.report([]) if line.startswith("<svg"))
     assert f'width="{svg.MARGIN:.0f}" height="{svg.MARGIN:.0f}"' in start
 

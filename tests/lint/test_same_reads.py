@@ -97,7 +97,7 @@ def test_data_stored_on_another_path_is_not_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_data_inside_what_an_object_holds_is_seen(store, obj):
+def test_data_inside_a_held_object_is_seen(store, obj):
     inner = Obj("lib", "inner")
     store.put((obj, "x"), pointer(inner))
     reads = noted(store, obj)
@@ -128,7 +128,7 @@ def test_a_change_in_the_description_of_an_object_is_always_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_can_be_replayed_only_if_no_reachable_object_refers_to_those_it_creates(store):
+def test_a_call_is_replayed_only_if_no_reachable_object_refers_to_an_object_that_the_call_creates(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -216,7 +216,7 @@ def test_the_cache_of_arrivals_is_valid_until_a_carrier_passes_on_more():
     assert graph.through(frozenset([item]), frozenset([carried])) != first
 
 
-def test_a_cached_arrival_records_the_carriers_it_depends_on():
+def test_a_cached_arrival_records_the_carriers_on_which_it_depends():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]

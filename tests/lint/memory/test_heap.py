@@ -356,7 +356,7 @@ def test_a_variable_set_on_one_path_has_only_that_value_and_a_field_also_its_def
     assert both == {(frame, "v"): TWO, (obj, "x"): BOTH}
 
 
-def test_an_object_made_on_one_path_only_has_no_value_on_the_other(ctx):
+def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
     obj = recency.intern(ctx, "sequence", "new")
     ctx.store.push()
     ctx.store.put((obj, BORN), BOTTOM)

@@ -63,7 +63,7 @@ def test_an_absent_field_reads_as_unset(store, obj):
     assert not store.stored((obj, "y"))
 
 
-def test_the_stores_since_a_depth_are_those_of_the_layers_above_it(store, obj):
+def test_the_stores_since_a_depth_are_those_in_the_layers_above_that_depth(store, obj):
     first, second, third = ((obj, name) for name in "abc")
     store.put(first, ONE)
     store.push()
@@ -325,7 +325,7 @@ def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_stores_during_a_wait_are_those_of_other_roots(shared, obj):
+def test_the_stores_during_a_wait_are_those_that_other_roots_make(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)
@@ -388,7 +388,7 @@ def test_generations_count_the_ancestors_with_the_same_function(ctx):
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
-def test_a_path_that_did_not_make_an_object_joins_the_stores_of_others_without_reading_its_own(shared, store):
+def test_an_object_not_made_on_this_path_has_only_the_stores_of_other_roots(shared, store):
     obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -448,7 +448,7 @@ def test_a_read_of_a_local_variable_after_a_wait_does_not_subscribe_to_other_roo
     assert store.root.heeds == set()
 
 
-def test_keys_to_which_no_other_root_stores_are_left_out_at_a_wait(store, obj):
+def test_a_wait_skips_keys_to_which_no_other_root_stores(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 

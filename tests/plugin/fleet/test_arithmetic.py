@@ -166,7 +166,9 @@ def scores(count: int) -> Scores:
 
 
 @given(st.permutations(range(7)), st.integers(0, 7), st.integers(0, 7))
-def test_scores_keep_what_belongs_to_a_mission_in_any_order(order: list[int], one: int, other: int) -> None:
+def test_scores_of_a_mission_stay_together_in_any_order_of_missions(
+    order: list[int], one: int, other: int
+) -> None:
     begin, end = sorted((one, other))
     found = scores(7).ordered(ints(*order)).between(begin, end)
     some = order[begin:end]
@@ -317,7 +319,7 @@ def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() ->
     assert clusters.of(maps[3:], np.array([0.0]), ((3,),), 0.05).found == ()
 
 
-def test_a_singular_matrix_gets_its_pseudo_inverse_and_rank() -> None:
+def test_for_a_singular_matrix_the_pseudo_inverse_and_the_rank_are_returned() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))

@@ -44,7 +44,7 @@ def rows(tank: pytest.Pytester) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("more", ["", 'reward="robustness",'])
-def test_bags_are_judged_by_their_topics_and_by_what_the_monitor_observes(
+def test_bags_are_judged_by_their_topics_and_by_the_signals_that_the_monitor_observes(
     tank: pytest.Pytester, more: str
 ) -> None:
     required(tank, more)

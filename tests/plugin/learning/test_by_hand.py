@@ -151,7 +151,7 @@ def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 
 
-def test_a_betting_test_stops_once_no_further_episodes_can_decide_it() -> None:
+def test_a_betting_test_stops_once_further_episodes_cannot_decide_it() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     even = [0.5, -0.5] * 10
     best = 1.0  # the bound of the mean at 0.5 % lies well below it

@@ -17,7 +17,7 @@ LOOKS = (Look(10, 0.1), Look(20, 0.3), Look(40, 0.6))
 
 
 @given(st.integers(1, 12), st.integers(FEWEST, 300), st.integers(2, 5))
-def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_one(
+def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_check(
     comparisons: int, share: int, looks: int
 ) -> None:
     total = comparisons * share

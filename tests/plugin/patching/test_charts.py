@@ -34,7 +34,7 @@ def test_a_step_changes_a_constant_on_its_scale_and_can_be_recovered_from_the_ch
     assert chart.step(value, moved) == pytest.approx(step)
 
 
-def test_a_step_of_one_and_a_step_with_another_sign_are_not_applied() -> None:
+def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> None:
     for chart in (SHARE, offset(0.3)):
         assert stepped(operand(0.9), 1.0, chart, mutations) is None
         assert stepped(operand(0.9), -1.0, chart, mutations) is None

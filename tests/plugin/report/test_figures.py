@@ -130,7 +130,7 @@ def test_unknown_slices_have_a_row_without_a_value(shuttle):
 
 
 @pytest.mark.parametrize("values", [[-3.0, 8.0], [1e-7], [-1e6, -2e6], [], [0.0], [math.nan, 2.0]])
-def test_scales_include_zero_and_all_values_and_have_a_few_round_ticks(values):
+def test_scales_include_zero_and_all_values_and_have_few_ticks_at_round_numbers(values):
     made = scale(values)
     for value in [0.0, *(v for v in values if math.isfinite(v))]:
         assert 0 <= made.at(value) <= 100

@@ -42,7 +42,7 @@ RING = st.sets(st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 1)
 
 
 @given(RING)
-def test_boxes_of_an_angle_that_meet_at_its_ends_are_one(cells):
+def test_boxes_that_meet_at_the_ends_of_an_angle_are_joined_to_one_box(cells):
     cover = boxes(cells)
     joined = closed(cover, 1, 8)
     assert {(x, angle % 8, z) for x, angle, z in inside(joined)} == cells
