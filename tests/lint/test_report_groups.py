@@ -267,7 +267,7 @@ def test_new_findings_come_before_accepted_ones_and_severe_before_minor():
     assert keys == [(False, 0), (False, 1), (False, 2), (True, 0), (True, 2)]
 
 
-def test_a_wrapper_is_written_with_only_the_argument_positions_that_it_states():
+def test_a_wrapper_in_the_settings_is_written_with_only_its_stated_argument_positions():
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer")) == "rospy.Timer"
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer", topic=0, callback="on")) == {
         "like": "rospy.Timer",

@@ -27,7 +27,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(folder / "data")
 
 
-def test_a_change_too_small_for_each_robot_is_found_in_its_site_with_its_onset(data: str) -> None:
+def test_a_change_that_is_too_small_to_see_in_one_robot_is_found_in_the_site_of_the_robots(data: str) -> None:
     found = answer(Question(data, by=("site",)))
     assert {one.name for one in (*found.onsets.drifted, *found.onsets.below)} == {"south"}
     assert found.meets("changed")

@@ -299,7 +299,9 @@ def test_files_that_are_incomplete_or_foreign_are_named(folder: Path, tmp_path: 
             answer(Question(str(to)))
 
 
-def test_a_damaged_recording_of_the_data_set_is_named_by_its_place(folder: Path, tmp_path: Path) -> None:
+def test_the_error_about_a_damaged_recording_in_the_data_set_names_its_path(
+    folder: Path, tmp_path: Path
+) -> None:
     to = tmp_path / "data"
     add(folder, [0], to)
     recording = min((to / "recordings").glob("*.npz"))

@@ -324,7 +324,7 @@ def test_sensors_whose_values_are_all_new_are_left_out() -> None:
     assert not apart(episodes(KNOWN), episodes([*NEW, (0, 1)]))
 
 
-def test_cells_without_a_sensor_are_joined() -> None:
+def test_cells_that_differ_only_in_a_left_out_sensor_are_joined() -> None:
     found, row = groups([(0, 1), (0, 2), (3, 1)], [1])
     assert (found, row.tolist()) == (((0,), (3,)), [0, 0, 1])
     short = projected(episodes([(0, 1), (0, 2), (3, 1)]), [1])

@@ -183,7 +183,7 @@ def test_the_times_of_every_nth_mission_are_kept_for_any_portions_of_missions(
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_before_the_first_kept_mission_no_time_is_known() -> None:
+def test_missions_before_the_first_kept_mission_have_no_known_time() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 

@@ -140,7 +140,7 @@ def test_an_interval_is_unbounded_if_no_bin_was_seen_beyond_it() -> None:
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
 
-def test_novel_cells_propose_their_own_value() -> None:
+def test_new_cells_propose_a_guard_on_their_own_value() -> None:
     seen = evidence(Region(((2, 0), (3, 0)), ((5, 1),)), worlds=(drive(1, range(0)), ONLINE))
     guards = candidate_guards(seen)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards

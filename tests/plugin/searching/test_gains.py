@@ -125,7 +125,7 @@ def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     assert least.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
 
 
-def test_constants_are_sorted_by_their_gain_with_a_factor() -> None:
+def test_constants_are_sorted_by_the_gain_that_each_has_with_a_given_factor() -> None:
     found = gains()
     found.enter((B, ALWAYS), 5.0, 6.0)
     assert found.leading(5.0, ALWAYS, [A, B, C], 5.0) == [B, A]
