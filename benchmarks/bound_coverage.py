@@ -48,12 +48,12 @@ Held = tuple[bool, bool]
 
 
 def zero_inflated(draws: Generator, n: int) -> Floats:
-    """Return totals of which nine in ten are zero."""
+    """Return total rewards of which nine in ten are zero."""
     return np.clip(draws.exponential(2, n), 0, 20) * (draws.random(n) < 0.1)
 
 
 def bimodal(draws: Generator, n: int) -> Floats:
-    """Return totals of which one in twenty is far lower."""
+    """Return total rewards of which one in twenty is far lower."""
     return np.where(draws.random(n) < 0.05, -9.0, 5.0) + draws.uniform(-1, 1, n)
 
 
@@ -73,7 +73,7 @@ RATES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class World:
-    """A distribution of totals, and checks whether bounds from a sample hold."""
+    """A distribution of total rewards, with checks whether bounds computed from a sample hold."""
 
     name: str
 
@@ -143,7 +143,7 @@ def sequence_holds(p: float, draws: Generator, n: int) -> Held:
 
 @dataclass(frozen=True)
 class Row:
-    """How often a bound held for a distribution, by number of episodes."""
+    """The share of samples of a distribution in which a bound held, by number of episodes."""
 
     bound: str
     exact: bool

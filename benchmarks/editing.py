@@ -37,7 +37,7 @@ def main() -> None:
     workspace = Workspace([root])
 
     def timed(buffers: Mapping[Path, str], edited_path: str = "") -> tuple[float, float, Result]:
-        """Return the seconds until the edited file's findings are final, those of the whole run, and the result."""
+        """Return the seconds until the edited file's findings are final, the seconds of all files, and the result."""
         begun = time.process_time()
         finals: list[float] = []
 

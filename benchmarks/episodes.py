@@ -39,7 +39,7 @@ def test_empty(tarl):
 
 @dataclass
 class Stopwatch:
-    """A pytest plugin that times a test's episodes instead of running it once; milliseconds by name."""
+    """A pytest plugin that times the episodes of a test instead of running it once; milliseconds by name."""
 
     episodes: int
     found: dict[str, float] = field(default_factory=dict)

@@ -62,7 +62,7 @@ REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it has 
 
 @dataclass(frozen=True)
 class World:
-    """What differs from the recorded world in a mission."""
+    """The differences between a mission and the recorded world."""
 
     drift: bool = False
     release: bool = False
@@ -72,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and what truly changed for it. Missions are numbered from 0; -1 means never."""
+    """A robot and the true changes of its missions. Missions are numbered from 0; -1 means never."""
 
     number: int
     site: int
@@ -92,7 +92,7 @@ class Robot:
         return min((one for one in (self.onset, self.released, self.season) if one >= 0), default=-1)
 
     def world(self, mission: int) -> World:
-        """Return what differs in a mission."""
+        """Return the differences between a mission and the recorded world."""
         drift, release, season, repaired = (
             0 <= one <= mission for one in (self.onset, self.released, self.season, self.repaired)
         )
@@ -107,7 +107,7 @@ class Robot:
 
 
 def fleet(robots: int, missions: int, seed: int) -> list[Robot]:
-    """Draw what truly changes for each robot."""
+    """Draw the true changes of each robot."""
     rng = generator(seed, "fleet/truth")
     drifted = set(rng.choice(robots, max(1, robots // 100), replace=False).tolist())
     onsets = rng.integers(int(0.3 * missions), int(0.7 * missions), robots).tolist()
@@ -265,7 +265,7 @@ def peak() -> float:
 
 
 def found_robots(told: dict[str, Any], robots: list[Robot], z: dict[str, float]) -> None:
-    """Print which robots were named, by TARL and by their z-scores."""
+    """Print the robots that TARL named and those with an alarming z-score."""
     truth = {one.name: one for one in robots}
     named = {"e-BH, missions differ": {*told["drifted"]}, "e-BH, below a bound": {*told["below"]}}
     named["e-BH, either"] = named["e-BH, missions differ"] | named["e-BH, below a bound"]
@@ -322,7 +322,7 @@ def changes(by: str, robots: list[Robot], missions: int) -> dict[tuple[str, ...]
 
 
 def found_groups(by: str, told: dict[str, Any], recorded: Sample, robots: list[Robot], missions: int) -> None:
-    """Print which groups were found by verdict, by onset and by z-score, and the error of the onsets."""
+    """Print the changed groups found by verdict, by onset and by z-score, and the error of the onsets."""
     truth = changes(by, robots, missions)
     mean, spread = float(recorded.total.mean()), float(recorded.total.std(ddof=1))
     named = {*told["groups_drifted"], *told["groups_below"]}

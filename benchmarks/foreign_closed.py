@@ -46,7 +46,7 @@ def warm_up() -> None:
 
 
 def close_all_but(folder: Path) -> None:
-    """Raise PermissionError, from now on, for every operation of this process with effects outside a folder."""
+    """Make every operation of this process with effects outside a folder raise PermissionError from now on."""
     inside = (str(folder.resolve()) + os.sep, os.devnull)
     standard = {0, 1, 2}
 

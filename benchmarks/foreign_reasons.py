@@ -32,7 +32,7 @@ PYTHON_2 = re.compile(
 
 
 def why(fails: str) -> str:
-    """Return the missing feature that a failure names."""
+    """Return the missing feature that the message of a failure names."""
     for pattern, name in KINDS.items():
         found = re.search(pattern, fails)
         if found is not None:
@@ -41,7 +41,7 @@ def why(fails: str) -> str:
 
 
 def set_apart(fails: str, repository: Path) -> str:
-    """Return why a script is counted separately: it needs Python 2, a display, or a package that is not available."""
+    """Return the reason to count a script separately: it needs Python 2, a display, or an unavailable package."""
     old = PYTHON_2.search(fails)
     if old is not None:
         return f"Python 2 only ({old[1]})"

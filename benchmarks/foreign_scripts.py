@@ -49,7 +49,7 @@ class Script:
     def package(self) -> Path:
         """Return the folder of the script's ROS package or, without one, the folder around its Python package.
 
-        pytest imports the `__init__.py` of each folder that a test is in, before there is a ROS.
+        pytest imports the `__init__.py` of each folder above a test before the in-process ROS is installed.
         """
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
         outer = next((one for one in inside if not (one / "__init__.py").is_file()), self.repository)

@@ -49,7 +49,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Row:
-    """All repetitions for one world, one way to show its drift, and one size of it."""
+    """The repetitions for one world, one way to show its drift, and one size of the drift."""
 
     world: str
     mode: str

@@ -21,7 +21,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
 @dataclass(frozen=True)
 class Example:
-    """A test of the examples; its drift goes from 1 (as designed) down to the value in the marker."""
+    """A test of the examples; its drift ranges from 1 (as designed) down to the value in the marker."""
 
     test: str
     mode: Mode  # how the sensors of the example show the drift

@@ -32,7 +32,7 @@ class Pool:
 
 
 def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
-    """Run missions of one of the small worlds.
+    """Run missions of one of the small worlds, with the drift shown in one of three ways.
 
     The sensor that shows where the drift acts is hidden from the comparison, harmless (the same in both worlds), or
     novel (true only where something drifts).

@@ -92,7 +92,7 @@ def lane(rng: Generator, drift: float) -> Log:
 
 
 def gripper(rng: Generator, drift: float) -> Log:
-    """Lift twelve boxes by suction; on one kind in four, rough cardboard, the drift weakens the grip."""
+    """Lift twelve boxes by suction; the drift weakens the grip on rough cardboard, one of the four kinds of boxes."""
     log = Log()
     for _ in range(12):
         kind, tries = int(rng.integers(4)), 0

@@ -37,7 +37,7 @@ def test_node(tarl, monkeypatch, tmp_path):
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of a node: the number of its `sites` on `lists` taint lists, `missing` steps, or why it does not run."""
+    """Result of a node: the number of its `sites` on `lists` taint lists, `missing` steps, or its failure."""
 
     name: str
     api: str
@@ -122,7 +122,7 @@ def _heard(ran: str) -> str:
 
 
 def _why(output: str) -> str:
-    """Return the sentence below pytest's heading of the failed test."""
+    """Return the sentence below the heading of the failed test in the output of pytest."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     headline = next((i for i, line in enumerate(lines) if line.strip("_ ") == "test_node"), -2)
     return re.sub(r"/\S*/", "", lines[headline + 1] if lines else "?")[:220].replace("|", "/")

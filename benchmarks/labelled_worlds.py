@@ -91,7 +91,7 @@ def _drive(tarl: Any, steps: int, dt: float, feed: Callable[[int], None]) -> Non
 
 
 def absolute_move(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """Type goals in all directions at the prompt; the heading crosses ±180° both ways."""
+    """Type goals in all directions at the prompt; the heading crosses ±180° in both directions."""
     here = (-0.4, 0.3)
     goals = [
         (*here, 170.0),

@@ -34,7 +34,7 @@ ORACLES = Path(__file__).parent / "launch_oracles"
 COMMAND = "<what a command prints>"
 Fact = tuple[str, ...]  # kind and values
 _ENVIRONMENT = re.compile(r"\$\(env (\w+)\)")
-_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # what roslaunch and launch cannot know either
+_ROBOT = re.compile(r"ENV_\w|/absent/|/nonexistent")  # values that roslaunch and launch cannot know either
 
 
 def main() -> None:

@@ -34,7 +34,7 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
-EPISODE = 12_800  # bytes of the file for an episode of the case recording
+EPISODE = 12_800  # bytes per episode in the file of the case `recording`
 WORSE = 3.0  # allowed growth of time or memory per unit, from the second size to the last
 NODE = """
 import rospy

@@ -39,14 +39,14 @@ COMMENT = re.compile(
     r"(?P<how>MISSING:|SPURIOUS:)|flow=(?P<quote>[\"'])(?P<what>.*?)(?:, l:?(?P<offset>[-+]?\d+))? -> .*?(?P=quote)"
     r"|(?P<bare>\bflow\b(?!=))"
 )
-ANY = 0  # any line, for a source whose line the comment does not state
+ANY = 0  # stands for any line: the comment does not state the line of the source
 
 Pair = tuple[int, int]  # lines of source and sink
 
 
 @dataclass
 class Expected:
-    """Flows according to the comments of one file: found, missed and invented by CodeQL."""
+    """The flows in the comments of one file: those that CodeQL finds, misses and invents."""
 
     found: set[Pair] = field(default_factory=set)
     missed: set[Pair] = field(default_factory=set)
@@ -71,7 +71,7 @@ def expected(text: str) -> Expected:
                 into = result.missed if match["how"] == "MISSING:" else result.invented
                 continue
             if match["bare"] and told:
-                continue  # the same flow, on another of CodeQL's paths
+                continue  # CodeQL lists the same flow on another path
             source = ANY if match["bare"] else number + int(match["offset"] or 0)
             into.add((source, number))
             told.add((source, number))
@@ -146,7 +146,7 @@ def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) 
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file by lines, and those of them in which the value itself arrives.
+    """Return the explicit flows of a prepared file by lines, and those in which the value itself reaches the sink.
 
     The other flows pass a list or an object that contains the value. That is a flow for a publish call, but not for
     CodeQL's sinks.

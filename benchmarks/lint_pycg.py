@@ -55,7 +55,7 @@ class Calls(Linker):
         return {(self.name(f.caller), self.name(f)) for f in frames if f.caller is not None}
 
     def start_rest(self) -> None:
-        """Run functions that nothing calls, with unknown arguments, until none is left."""
+        """Run functions that nothing calls, with unknown arguments, until every function has run."""
         started: set[Obj] = set()
         while True:
             rest = [

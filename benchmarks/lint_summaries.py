@@ -32,7 +32,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import Key, Obj, Value
 
-NAMED = ("module", "class", "ext")  # kinds of objects that are the same in every call context
+NAMED = ("module", "class", "ext")  # kinds of objects that are identical in all call contexts
 KEYS = ("arguments", "reads", "aliases")
 
 
@@ -81,7 +81,7 @@ def kinds(value: Value) -> Hashable:
 
 
 def arguments_of(passed: Arguments, form: Callable[[Value], Hashable]) -> Hashable:
-    """Return the arguments of a call in some form."""
+    """Return the arguments of a call, each converted by `form`."""
     return tuple(map(form, passed[0])), tuple((name, form(passed[1][name])) for name in sorted(passed[1]))
 
 

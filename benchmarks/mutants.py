@@ -32,7 +32,7 @@ from sown_faults import Fault, faults
 
 ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
-ELSEWHERE = {"realros"}  # these tests need a real ROS: make test-ros1, make test-ros2
+ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
 BUDGET = 120.0  # seconds of tests per fault, as measured without the fault
 PATIENCE = 60.0  # seconds allowed beyond three times the duration of the tests without the fault

@@ -47,7 +47,7 @@ class Message:
 
 
 def node(folder: Path, hooks: Any = None) -> Any:
-    """Return the node's cycle, instrumented with the stream's hooks or plain."""
+    """Return the cycle of the node, either instrumented with the hooks of the stream or plain."""
     path = folder / "node.py"
     path.write_text(NODE)
     columns = {(number, 5): number - 2 for number in range(2, 22)}
@@ -97,7 +97,7 @@ def table(which: str, bare: Any, observed: Any) -> None:
 
 def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
     """Run a block of cycles and return their times in µs."""
-    if realtime:  # as `chrt -f 10 tarl observe node.py`
+    if realtime:  # the priority of `chrt -f 10 tarl observe node.py`
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"

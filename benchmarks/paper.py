@@ -91,7 +91,7 @@ class Study:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Function, nextitem: pytest.Item | None) -> bool:
-        """Study the test instead of running it once."""
+        """Run the experiments on the test instead of running it once."""
         marked = designated(item)
         assert marked is not None
         root = item.config.rootpath
@@ -169,7 +169,7 @@ def _quiet(done: int, total: int, what: str) -> None:
 
 
 def _watched_mud() -> list[bool]:
-    """Let the world record in every step whether the robot was on the mud when the step began."""
+    """Make the world record in every step whether the robot was on the mud at the start of the step."""
     world = sys.modules["world"].World
     seen: list[bool] = []
     publish = world.publish

@@ -1,4 +1,4 @@
-"""Which tests reach which lines, read from the contexts of coverage."""
+"""The tests that reach each line, read from the contexts of coverage."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def sample(root: Path, sentences: int, seed: int) -> list[tuple[str, str, str]]:
 
 
 def everything(root: Path) -> Iterator[tuple[str, str, str]]:
-    """Yield (kind, place, sentence) for everything that is read."""
+    """Yield (kind, place, sentence) for every sentence of the pool."""
     pages = [*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("examples/*.md")]
     for path in sorted(pages):
         kind = "rule page" if path.parent.name == "rules" else "docs"

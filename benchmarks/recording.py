@@ -39,9 +39,9 @@ from pytest_tarl.learning.statistics import sample
 
 os.environ["COVERAGE_CORE"] = "ctrace"  # newer versions of Python would use sys.monitoring
 TURNS = 60
-ROUNDS = 2_000  # about ten thousand events, as in an episode
+ROUNDS = 2_000  # rounds that record about ten thousand events, as in an episode
 STEPS = 200
-DISCS = 340  # a step then takes about 200 µs
+DISCS = 340  # number of discs with which a step takes about 200 µs
 RUNS = 12
 STARTS = 41  # starts of pytest, with and without the plugin
 
@@ -188,7 +188,7 @@ def control_step() -> tuple[float, float]:
 
 
 def called(control: Callable[[Any, float], float]) -> float:
-    """Return the microseconds per call of the controller alone; the noise of world steps would hide them."""
+    """Return the microseconds per call of the controller alone, since the noise of world steps would hide that cost."""
     node = SimpleNamespace(kp=0.4)
     start = time.process_time()
     for i in range(STEPS):
@@ -197,7 +197,7 @@ def called(control: Callable[[Any, float], float]) -> float:
 
 
 def stepped(control: Callable[[Any, float], float]) -> float:
-    """Return microseconds per step of a world of discs in a box, with one call of the controller in each."""
+    """Return microseconds per step of a world of discs in a box, with one call of the controller per step."""
     world = pymunk.Space()
     world.gravity = (0.0, -9.8)
     world.add(pymunk.Segment(world.static_body, (0, 0), (40, 0), 0.5))

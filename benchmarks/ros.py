@@ -111,7 +111,7 @@ def measured(
     path: list[float],
     seconds: float,
 ) -> tuple[float, float, bool]:
-    """Return episodes per CPU second and per second of wall time, and whether all episodes took this path."""
+    """Return episodes per CPU second and per second of wall time, and whether all episodes took the given path."""
     same, count, cpu, wall = True, 0, process_time(), perf_counter()
     while process_time() - cpu < seconds:
         same &= episode(program, odometry, make()) == path

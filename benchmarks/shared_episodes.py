@@ -40,14 +40,14 @@ Result = tuple[list[bool], int]  # whether each drift was found, and the number 
 
 @dataclass(frozen=True)
 class World:
-    """The recorded totals, and those of each drift, as many as any rule may run."""
+    """The recorded total rewards, and those of each drift, as many as any rule may run."""
 
     recorded: Floats
     drifts: Sequence[Floats]
     known: dict[tuple[int, int, int], float] = field(default_factory=dict)
 
     def p_value(self, drift: int, look: Look, looks: Sequence[Look]) -> float:
-        """Return the p-value of the loss at a look; the same number of episodes always has the same one."""
+        """Return the p-value of the loss at a look; equal numbers of episodes always give the same p-value."""
         permutations = permutations_for(ALPHA, int(np.ceil(1 / looks[0].share)))
         key = drift, look.episodes, permutations
         if key not in self.known:

@@ -50,7 +50,7 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # not every message needs a test
+_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # not every message needs a test, so no faults
 
 
 @dataclass(frozen=True, order=True)

@@ -41,7 +41,7 @@ from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 GRID, EPISODES = 41, 40  # number of values, and episodes at each of them
 RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
-NEAR = 0.05  # share of the range: how near the boundary must be to that of the grid
+NEAR = 0.05  # maximum distance of the boundary from that of the grid, as a share of the range
 RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, combinations, and nominal
 SIZE = "size"  # name of the only direction
 EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
@@ -207,7 +207,7 @@ def compare(stage: Stage, harmless: int, grids: Grids) -> Compared:
 
 
 def agrees(one: Compared) -> bool:
-    """Return whether both found boundaries that are near each other, or neither found one."""
+    """Return whether grid and stress run found boundaries that are near each other, or neither found one."""
     if one.grid is None or one.found is None:
         return one.grid is None and one.found is None
     return abs(one.grid - one.found) <= NEAR

@@ -7,7 +7,7 @@
 The worlds of stress_worlds.py, stress_worlds_2.py and stress_worlds_3.py are formulas; the last ones were not used in
 development. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the
 task, and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in
-every task. Each method may run BUDGET episodes. For each drift that it proposes, a peer is given a cost. If the
+every task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the
 guarantee fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the
 largest distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer
 its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that
@@ -136,7 +136,7 @@ def formula(name: str) -> Arena:
 
 
 def ours(one: Arena, seed: int) -> list[Point]:
-    """Return the failing drifts of a stress run, confirmed or only expected, the nearest first."""
+    """Return the failing drifts of a stress run, confirmed or only expected, those nearest to nominal first."""
     reported, together = searched(one, seed)
     expected = [failure.point for failure in together.expected]
     unique = {tuple(point.values()): point for point in [*reported, *expected]}
@@ -235,7 +235,7 @@ def placed(space: Space, numbers: Sequence[float]) -> Point:
 
 
 def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 600.0) -> list[Point]:
-    """Return the failing drifts of a peer's run, the nearest first, within a limit in seconds."""
+    """Run a peer for at most `seconds`; return its failing drifts, those nearest to nominal first."""
     evaluator = one.evaluator(seed, BUDGET)
     failing: dict[float, Point] = {}
     with optimiser(method, len(one.space.extents), seed, home, seconds) as peer:
@@ -262,14 +262,14 @@ def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
 
 
 def at_least_as_near(own: float | None, other: float | None) -> bool:
-    """Return whether our distance is not larger; two methods that find nothing are equally good."""
+    """Return whether our distance is at most the other one; two methods that find nothing are equally good."""
     if own is None or other is None:
         return other is None
     return own <= other * (1 + 1e-9)
 
 
 def offered(one: Arena, seed: int, method: str, home: Path, seconds: float) -> list[Point]:
-    """Return the failing drifts of a method, the nearest first."""
+    """Return the failing drifts of a method, those nearest to nominal first."""
     if method == "confirmed":
         return searched(one, seed)[0]
     return ours(one, seed) if method == "ours" else peer_run(one, seed, method, home, seconds)

@@ -32,13 +32,13 @@ def plane(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def product(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward where two directions change together, with a little from a third."""
+    """Lose reward if two directions change together; a third direction adds a little."""
     lost = 6.0 * x[0] * x[1] + 0.5 * abs(x[2])
     return True, 10.0 - TOLERANCE * float(lost) + draws.normal(0.0, NOISE)
 
 
 def corner(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Fail where the sum of three directions is large; the reward does not change before."""
+    """Fail if the sum of three directions is large; a smaller sum does not change the reward."""
     return bool(np.abs(x[:3]).sum() + draws.normal(0.0, 0.03) < 1.2), 1.0
 
 
@@ -56,7 +56,7 @@ def rare(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def island(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose reward only around one drift, where no single direction shows it."""
+    """Lose reward only around one drift, which no single direction approaches."""
     away = np.linalg.norm(x - [0.35, -0.35, 0.3, 0.0])
     return True, 10.0 - TOLERANCE * 2.0 * float(np.exp(-((away / 0.3) ** 2))) + draws.normal(0.0, NOISE)
 

@@ -47,10 +47,7 @@ def rotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def supplies(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Supply a load for 36 h from panel, turbine and battery; only large losses of several are too much.
-
-    A corner.
-    """
+    """Supply a load for 36 h from panel, turbine and battery; it fails only if several lose much. A corner."""
     sun, wind, battery = 1.0 - 1.6 * max(0.0, x[0]), 1.0 - 1.4 * max(0.0, x[1]), 1.0 - 0.55 * x[2]
     load, stored, dark = 0.30 + 0.02 * x[3], 3.5 * battery, 0.0
     for hour in range(36):

@@ -91,10 +91,10 @@ SUITES = {
             "jsonschema==4.24.0",
             "pytz==2025.2",
             "pytest-mock==3.14.1",
-            "pytest-benchmark==5.1.0",  # its options are in the settings of the suite
+            "pytest-benchmark==5.1.0",  # the settings of the suite contain options of this plugin
             "email-validator",
         ),
-        # its marks of tests that are not thread-safe are registered by a plugin that runs tests in threads
+        # a plugin that runs tests in threads registers the marks that its tests use
         options=(
             *("-W", "ignore::pytest.PytestUnknownMarkWarning"),
             *("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),

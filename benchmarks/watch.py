@@ -40,7 +40,7 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 ALPHA = 0.05
-LIFE = 1000  # missions of a stream without drift; also the maximum after a drift began
+LIFE = 1000  # missions of a stream without drift; also the maximum after the start of a drift
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
 DISTINCT = 5000  # distinct missions in the log of the speed test

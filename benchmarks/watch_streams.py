@@ -1,4 +1,4 @@
-"""Streams of missions drawn from pools: a new recording for each stream, then designed or drifting missions."""
+"""Streams of missions drawn from pools: each stream has a new recording, then designed or drifting missions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Generator = np.random.Generator
 
 
 def constant(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of fixed length with the same cost in every step."""
+    """Draw a mission with a fixed length and the same cost in every step."""
     return [(int(rng.integers(4)),) for _ in range(10)], [-0.1] * 10
 
 
@@ -43,7 +43,7 @@ def heavy(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
 
 
 def rare(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of one step; one in fifty loses much."""
+    """Draw a mission of one step; one of fifty missions loses much reward."""
     return [(0,)], [-100.0 if rng.random() < 0.02 else 1.0]
 
 

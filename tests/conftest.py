@@ -1,4 +1,4 @@
-"""Shared by all tests."""
+"""Fixtures and hooks for all tests."""
 
 import signal
 import sys
@@ -25,7 +25,7 @@ settings.load_profile("tarl")
 
 
 def pytest_configure() -> None:
-    """Heed Ctrl-C, and let the programs under test heed it, also where a script started us in the background."""
+    """Handle Ctrl-C, also in the programs under test, even if a script started pytest in the background."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -39,7 +39,7 @@ def _no_other_plugins() -> Iterator[None]:
 
 
 class _Imported:
-    """Notes the modules that a pytest run in this process has imported, before pytester forgets them."""
+    """Plugin that stores the modules imported by a pytest run in this process, before pytester removes them."""
 
     def __init__(self) -> None:
         self.modules: dict[str, ModuleType] = {}
@@ -52,7 +52,7 @@ class _Imported:
 def pytester(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> pytest.Pytester:
     """Run pytest without other plugins, and keep the libraries that a run in this process imports.
 
-    Imported again, the classes of these libraries would be others.
+    A second import would create other classes.
     """
     run = pytester.inline_run
 

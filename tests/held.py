@@ -8,7 +8,7 @@ from pathlib import Path
 
 # What a program runs to hold the lock; `lock` stays open in its children, if they are passed `lock.fileno()`
 HOLD = "import fcntl, os; lock = open(os.environ['HELD'], 'w'); fcntl.flock(lock, fcntl.LOCK_EX)\n"
-LONGEST = 60.0  # s: only what never ends fails a test, however busy the machine is
+LONGEST = 60.0  # s; long enough for a busy machine
 
 
 def held(path: Path) -> bool:

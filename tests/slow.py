@@ -1,4 +1,4 @@
-"""Tests and campaigns that take tens of seconds run with TARL_SLOW=1, each night."""
+"""Tests that take tens of seconds run only with TARL_SLOW=1, each night."""
 
 from __future__ import annotations
 

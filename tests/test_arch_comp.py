@@ -37,7 +37,7 @@ def _greatest(values: np.ndarray, first: int, last: int) -> list[float]:
     return [one.max() if one.size else -np.inf for one in windows]
 
 
-def test_full_throttle_shifts_through_all_gears_and_just_breaks_at1() -> None:
+def test_full_throttle_shifts_through_all_gears_and_narrowly_violates_requirement_at1() -> None:
     from arch_formulas import AUTOMATIC_TRANSMISSION
     from arch_models import AT_STEP, automatic_transmission
 

@@ -1,4 +1,4 @@
-"""The extra `bench` is enough for every script of benchmarks/: what it imports is declared, and it starts."""
+"""With the extra `bench`, every script of benchmarks/ starts, and every package that it imports is declared."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SCRIPTS = sorted(
     for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")]
     if 'if __name__ == "__main__"' in path.read_text()
 )
-ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable within a node only
+ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # importable only within a node
 # Arguments with which each script does as little as possible; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],
@@ -52,7 +52,7 @@ def imported(path: Path) -> Iterator[str]:
 
 
 def named(extras: set[str]) -> set[str]:
-    """Return the distributions that tarl and its extras name, by normalised name, without what those need."""
+    """Return the normalised names of the direct requirements of tarl and its extras."""
     names, wanted = set[str](), {*extras}
     for _ in range(3):  # an extra may include other extras
         for line in requires("tarl") or ():

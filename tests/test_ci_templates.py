@@ -1,4 +1,4 @@
-"""The GitHub action and the GitLab template: their steps are run here, with stubs for what only these services have."""
+"""Run the steps of the GitHub action and the GitLab template, with stubs for parts that only these services have."""
 
 from __future__ import annotations
 
@@ -100,12 +100,12 @@ def results(project: Path) -> None:
 @pytest.mark.parametrize(
     ("tests", "extras"), [("", "tarl @ file"), ("tests/sim", "tarl[pytest,ros,report] @ file")]
 )
-def test_it_installs_the_required_extras(project: Path, tests: str, extras: str) -> None:
+def test_the_github_action_installs_the_required_extras(project: Path, tests: str, extras: str) -> None:
     assert run("Install TARL", project, tests=tests).returncode == 0
     assert extras in (project / "python.txt").read_text()
 
 
-def test_it_annotates_and_writes_sarif(project: Path) -> None:
+def test_the_github_action_annotates_and_writes_sarif(project: Path) -> None:
     ended = run("Lint", project, paths="node.py", sarif="flows.sarif", arguments="--no-cache")
     assert ended.returncode == 1
     assert "file=node.py" in ended.stdout
@@ -116,7 +116,7 @@ def test_it_annotates_and_writes_sarif(project: Path) -> None:
 @pytest.mark.parametrize(
     ("repair", "flags"), [("false", "--tarl-online"), ("true", "--tarl-online --tarl-repair")]
 )
-def test_it_compares_and_keeps_the_status(project: Path, repair: str, flags: str) -> None:
+def test_the_github_action_compares_and_keeps_the_exit_status(project: Path, repair: str, flags: str) -> None:
     results(project)
     ended = run("Compare", project, tests="tests/sim -k delivers", repair=repair, status="1")
     assert ended.returncode == 1
@@ -124,7 +124,7 @@ def test_it_compares_and_keeps_the_status(project: Path, repair: str, flags: str
     assert "❌ degraded" in (project / "summary.md").read_text()
 
 
-def test_it_comments_once_and_later_edits_that_comment(project: Path) -> None:
+def test_the_github_action_writes_one_comment_and_later_edits_it(project: Path) -> None:
     assert run("Comment", project, tests="t").returncode == 0
     assert not (project / "gh.txt").exists()
     results(project)

@@ -1,4 +1,4 @@
-"""What contributors meet first can be read by the tools that it is for."""
+"""Configuration files for contributors are valid for the tools that read them."""
 
 from __future__ import annotations
 

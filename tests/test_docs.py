@@ -1,4 +1,4 @@
-"""The documentation says what is true: messages exist, links lead somewhere, commands have their flags."""
+"""The messages, links and flags in the documentation exist."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def anchors(page: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_anchors_are_headings_of_their_page(page: Path) -> None:
+def test_anchors_of_links_are_headings_of_the_linked_page(page: Path) -> None:
     links = re.findall(r"\]\(((?:[\w./-]+\.md)?)#([^)\s]+)\)", page.read_text("utf-8"))
     assert [
         f"{name}#{anchor}"
@@ -55,6 +55,6 @@ def test_every_mentioned_flag_exists() -> None:
     assert mentioned - {flag.name for flag in FLAGS} == set()
 
 
-def test_every_flag_is_in_the_guide() -> None:
+def test_the_guide_mentions_every_flag() -> None:
     guide = (ROOT / "docs" / "guide.md").read_text("utf-8")
     assert {flag.name for flag in FLAGS if flag.name not in guide} == set()

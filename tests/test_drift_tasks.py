@@ -1,4 +1,4 @@
-"""The tasks of the drift benchmark have one form: answers that name what is in the node, and one drift."""
+"""Each task of the drift benchmark has one drift, and its answer names sensors and statements that exist."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ WRITTEN_BY_HAND = [task for task in TASKS if task.parent.name in JUDGING]
 
 
 def answer(task: Path) -> dict[str, Any]:
-    """Return the known facts of a task."""
+    """Return the answer of a task."""
     found: dict[str, Any] = json.loads((task / "answer.json").read_text())
     return found
 
@@ -122,7 +122,7 @@ def test_the_third_set_has_every_kind_of_defect_and_states_where_drifts_occur() 
     assert all(known["practice"] for known in third)
 
 
-KINDS = {  # of the tasks of each set
+KINDS = {  # kinds of defects in the tasks of each set
     "drift_judging_4": [
         "helper",
         "narrow window",
@@ -204,7 +204,7 @@ def test_a_repair_by_hand_restores_a_task_of_the_fourth_set() -> None:
 
 
 @pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
-def test_worlds_of_the_fourth_set_are_deterministic() -> None:
+def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
     once, again = (worlds("drift_judging_4", "--episodes", "5") for _ in range(2))
     assert once == again
     assert len(once[0]) == 10

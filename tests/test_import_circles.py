@@ -1,4 +1,4 @@
-"""Modules that import each other: only where they mirror classes of rclpy that refer to each other."""
+"""Only modules that mirror classes of rclpy with mutual references import each other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MIRRORED = ("pytest_tarl.ros.rclpy", "pytest_tarl.ros.rclpy.action")
 
 
 def circles(imports: dict[str, set[str]]) -> Iterator[frozenset[str]]:
-    """Yield the sets of modules that reach each other (Tarjan 1972)."""
+    """Yield the sets of modules that import each other, directly or indirectly (Tarjan 1972)."""
     number: dict[str, int] = {}
     lowest: dict[str, int] = {}
     path: list[str] = []

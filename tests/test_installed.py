@@ -1,4 +1,4 @@
-"""The wheel in environments of its own: the linter alone, beside pytest alone, and with all that the plugin needs."""
+"""The wheel in new environments: with the linter only, with pytest only, and with all requirements of the plugin."""
 
 import os
 import subprocess
@@ -77,7 +77,7 @@ def environment(folder: Path, wheel: Path, beside: Path) -> Path:
 
 
 def runner(python: Path) -> Run:
-    """Return how to run a module of an environment, away from the settings of this run."""
+    """Return the command that runs a module of an environment without the settings of this run."""
 
     def run(module: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         command = [str(python), "-m", module, *arguments]

@@ -1,4 +1,4 @@
-"""The nightly jobs that install some packages of their own install all that their tests import."""
+"""Nightly jobs that install their own packages install all packages that their tests import."""
 
 from __future__ import annotations
 

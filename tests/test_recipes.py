@@ -1,4 +1,4 @@
-"""The recipes for contributors work: the code on each page does what the page says, at the place that it names."""
+"""The code in each recipe for contributors does what the recipe says, in the file that it names."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_the_recipe_of_a_ros_api_passes_its_own_test(start, monkeypatch: pytest.
     assert STANDINS["rospy.names"] == "rospy.node"
     written = made(function, this_node=rospy_node.this_node)
     monkeypatch.setitem(vars(rospy_node), "get_mappings", written.get_mappings)
-    monkeypatch.setattr(install, "_contents", install._contents.__wrapped__)  # read anew, not from the cache
+    monkeypatch.setattr(install, "_contents", install._contents.__wrapped__)  # bypass the cache
     made(test).test_get_mappings(start)
 
 

@@ -1,4 +1,4 @@
-"""The promises of SECURITY.md, watched by an audit hook that sees what the interpreter does."""
+"""The promises of SECURITY.md, checked with an audit hook that records events of the interpreter."""
 
 from __future__ import annotations
 

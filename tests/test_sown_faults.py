@@ -1,4 +1,4 @@
-"""The faults of `make mutants`: each kind is found wherever its code stands; only a failing test catches one."""
+"""The faults of `make mutants`: each kind is located anywhere in a file, and only a failing test catches a fault."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ TESTS = {
 
 
 @pytest.mark.parametrize(("tests", "word"), TESTS.items(), ids=range(len(TESTS)))
-def test_only_a_test_that_passes_without_the_fault_catches_it(
+def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
     mutants: Any, sown: Any, tmp_path: Path, tests: str, word: str
 ) -> None:
     file = tmp_path / "half.py"
@@ -102,7 +102,7 @@ def test_only_a_test_that_passes_without_the_fault_catches_it(
     assert file.read_text() == "def half(x):\n    return x / 2\n"
 
 
-def test_tests_that_do_not_end_without_the_fault_catch_nothing(
+def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
     mutants: Any, sown: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def tested(_copy: Path, tests: list[str], limit: float) -> tuple[int, str]:

@@ -1,4 +1,4 @@
-"""What is installed is pinned with digests, its licences are allowed, releases are the same bytes each time."""
+"""Requirements are pinned with digests, their licences are allowed, and releases are reproducible to the byte."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def load(name: str) -> ModuleType:
 
 
 def needed(extra: str) -> set[str]:
-    """Return what an extra installs here, with all that it needs in turn."""
+    """Return the distributions that an extra installs here, with their requirements in turn."""
     found: set[str] = set()
     seen: set[tuple[str, frozenset[str]]] = set()
     waiting = [Requirement(f"tarl[{extra}]")]
@@ -152,7 +152,7 @@ def test_a_release_is_reproducible_to_the_byte() -> None:
 @pytest.mark.parametrize(
     ("enabled", "refused"), [(None, False), (lambda: True, False), (lambda: False, True)]
 )
-def test_a_python_without_its_interpreter_lock_gives_one_sentence(
+def test_a_python_without_its_interpreter_lock_is_reported_in_one_sentence(
     enabled: object, refused: bool, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if enabled is None:

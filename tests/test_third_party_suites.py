@@ -1,4 +1,4 @@
-"""Which outcomes of other projects' tests count as changed by recording."""
+"""The outcomes of tests of other projects that count as changed by recording."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def different(suites: Any) -> Any:
     return suites.different
 
 
-def test_an_outcome_that_never_occurs_without_recording_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
+def test_an_outcome_that_occurs_only_with_recording_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
     passed, failed = ["call passed"], ["call failed"]
     plain = {"a": passed, "b": passed, "c": failed}
     assert different([plain], plain) == []
@@ -30,7 +30,7 @@ def test_an_outcome_that_never_occurs_without_recording_counts_as_a_change(diffe
     assert different([plain, {**plain, "b": failed}], {**plain, "b": failed}) == []
 
 
-def test_a_test_that_runs_only_with_or_without_recording_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
+def test_a_test_that_runs_only_with_recording_or_only_without_counts_as_a_change(different) -> None:  # type: ignore[no-untyped-def]
     plain = {"a": ["call passed"], "b": ["call passed"]}
     assert different([plain], {"a": plain["a"]}) == ["b"]
     assert different([{"a": plain["a"]}], plain) == ["b"]

@@ -16,12 +16,12 @@ Robustness = Callable[[Outputs], float]
 
 
 def always(values: Signal, low: float, high: float, step: float) -> Signal:
-    """Return at each time the least value from `low` to `high` s later, as far as the signal reaches."""
+    """Return, for each time, the least value between `low` and `high` s later, up to the end of the signal."""
     return -eventually(-values, low, high, step)
 
 
 def eventually(values: Signal, low: float, high: float, step: float) -> Signal:
-    """Return at each time the largest value from `low` to `high` s later, as far as the signal reaches."""
+    """Return, for each time, the largest value between `low` and `high` s later, up to the end of the signal."""
     first, count = round(low / step), round((high - low) / step) + 1
     size = len(values)
     padded = np.concatenate([values[first:], np.full(first + count, -np.inf)])
@@ -35,7 +35,7 @@ def eventually(values: Signal, low: float, high: float, step: float) -> Signal:
 
 
 def within(values: Signal, low: float, high: float, step: float) -> float:
-    """Return the least value from `low` to `high` s."""
+    """Return the least value between `low` and `high` s."""
     return float(values[round(low / step) : round(high / step) + 1].min())
 
 

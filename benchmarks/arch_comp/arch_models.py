@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 Signal = NDArray[np.float64]
 AT_STEP, CC_STEP, WT_STEP = 0.02, 0.02, 0.02  # s
 
-# Automatic transmission: engine torque in ft lb over throttle in % and speed in rpm
+# Automatic transmission: engine torque in ft lb as a function of throttle in % and speed in rpm
 ENGINE_THROTTLE = (0, 20, 30, 40, 50, 60, 70, 80, 90, 100)
 ENGINE_SPEED = (800, 1200, 1600, 2000, 2400, 2800, 3200, 3600, 4000, 4400, 4800)
 ENGINE_TORQUE = (
@@ -38,14 +38,14 @@ ENGINE_TORQUE = (
     (267, 301, 312, 319, 327, 327, 327, 327, 312, 293, 267),
     (267, 301, 312, 319, 327, 334, 334, 334, 319, 305, 275),
 )
-# speeds in mph at which the gears 1, 2, 3 shift up, and 2, 3, 4 shift down, over throttle in %
+# speeds in mph at which gears 1, 2, 3 shift up and gears 2, 3, 4 shift down, as functions of throttle in %
 UP_THROTTLE, UP = (
     (0, 25, 35, 50, 90, 100),
     ((10, 10, 15, 23, 40, 40), (30, 30, 30, 41, 70, 70), (50, 50, 50, 60, 100, 100)),
 )
 DOWN_THROTTLE = (0, 5, 40, 50, 90, 100)
 DOWN = ((5, 5, 5, 5, 30, 30), (20, 20, 25, 30, 50, 50), (35, 35, 40, 50, 80, 80))
-# torque converter over the speed ratio: capacity factor and torque ratio
+# torque converter: capacity factor and torque ratio as functions of the speed ratio
 RATIOS = (
     0,
     0.1,
@@ -80,7 +80,7 @@ TORQUE_RATIO = (
 GEARS = (2.393, 1.45, 1.0, 0.677)
 ENGINE_INERTIA, VEHICLE_INERTIA, FINAL_DRIVE = 0.021991488283555904, 12.0941, 3.23
 DRAG, ROLLING = 0.02, 40.0  # road load in ft lb: DRAG · mph² + ROLLING
-MPH = 2 * pi * 60 / 5280  # of a wheel of radius 1 ft, per rpm
+MPH = 2 * pi * 60 / 5280  # mph per rpm of a wheel with a radius of 1 ft
 SHIFT_DELAY = 0.08  # s
 
 
@@ -204,7 +204,7 @@ def coefficients(ratio: float, pitch: float) -> tuple[float, float]:
 
 
 def wanted_torque(speed: float, pitch: float) -> float:
-    """Return the generator torque in N m that the controller wants at a filtered generator speed in rad/s."""
+    """Return the generator torque in N m that the controller requests at a filtered generator speed in rad/s."""
     if speed >= RATED_99 or pitch >= REGION_3_PITCH:
         return POWER / speed
     if speed <= CUT_IN:

@@ -51,12 +51,12 @@ _NONE = np.zeros(0, np.int32)
 
 
 class FalsifiedError(Exception):
-    """Ends the search: the formula is violated, or the limit of the simulations is reached."""
+    """Raised to end the search: the formula is violated, or the limit of simulations is reached."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model with its inputs; an input has a number of values, a range, and a nominal value."""
+    """A model and its inputs, each with a number of values, a range, and a nominal value."""
 
     run: Callable[[Signal], Outputs]
     seconds: float

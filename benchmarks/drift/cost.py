@@ -26,14 +26,14 @@ from stage import HERE, Stage, visit
 
 from tarl_lint.api import analyse
 
-# task → file, the statement after which the padding is inserted, and the name that it changes
+# task → file, the statement after which the padding is inserted, and the variable that the padding changes
 PLACES = {
     "boat_in_current": ("boat.py", "course = -CROSS_GAIN * self.cross", "course"),
     "elbow_joint": ("elbow.py", "error = self.goal - angle", "error"),
     "pan_tracker": ("tracker.py", "pixels = msg.point.x - self.MIDDLE", "pixels"),
 }
 PADDING = ("{name} += 0.0004 * {name} / ({at}.7 + abs({name}))", "{name} = min({name}, 9{at}e4)")
-A_BLOCK = 3  # constants in it
+A_BLOCK = 3  # constants in a block of padding
 
 
 def padded(text: str, statement: str, name: str, blocks: int) -> str:

@@ -39,13 +39,13 @@ from tarl_lint.model import Operand
 FINE = tuple(percent / 100 for percent in range(5, 100, 5))
 FACTORS = (*sorted((*FINE, *(round(1 / factor, 3) for factor in FINE)), key=lambda f: abs(log(f))), 0.0, -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
-# after this many repairs of the same sites, the search for one that also keeps the nominal world ends
+# repairs of the same sites after which the search for one that also holds in the nominal world ends
 SHOWN = 8
 COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # factors for the pairs of all operands
 EPISODES = 24
 RESTORED = 0.95
-SCREENED = 3  # the first episodes, of which a candidate may lose none ...
-MOST_LOST = 2  # ... and the number of all episodes that it may lose
+SCREENED = 3  # number of first episodes, of which a candidate may lose none ...
+MOST_LOST = 2  # ... and the number of episodes that a candidate may lose in total
 
 Change = tuple[Mutation, ...]
 
@@ -61,7 +61,7 @@ class Found:
 
 
 class World:
-    """A task's two worlds, and the reward of the unchanged node in them."""
+    """The two worlds of a task, and the reward of the unchanged node in each."""
 
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
@@ -80,7 +80,7 @@ class World:
 
     @cached_property
     def guards(self) -> list[Guard]:
-        """Return the guards to try: none, and the one that is true where the drift acts."""
+        """Return the guards to try: no guard, and the guard that is true where the drift acts."""
         sensors = {sensor.name: sensor for sensor in self.stage.marked.sensors}
         where = [
             Conjunct(sensors[w["sensor"]], w.get("low", -float("inf")), w.get("high", float("inf")))
@@ -164,7 +164,7 @@ def pairs(world: World, operands: Sequence[Operand], factors: Sequence[float]) -
 
 
 def replaced(world: World, known: Change) -> Iterator[Change]:
-    """Yield a known repair in which each part in turn is replaced by every mutation of every other operand."""
+    """Yield variants of a known repair: each part in turn is replaced by every mutation of every other operand."""
     for part in known:
         rest = tuple(mutation for mutation in known if mutation != part)
         taken = {mutation.operand for mutation in rest}
@@ -183,7 +183,7 @@ def known(world: World) -> Change:
 
 
 def answered(stage: Stage) -> dict[str, Any]:
-    """Return a task's answer: what the task's author wrote, and what simulation found."""
+    """Return the answer of a task: the entries of its author, and those found by simulation."""
     world = World(stage)
     found = world.tried(chain(singles(world), of_one_site(world)))
     how = "one site"
@@ -226,7 +226,7 @@ def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Answer the given tasks, or all tasks, each in its own process."""
+    """Write the answers of the given tasks, or of all tasks, each in its own process."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--workers", type=int, default=2)

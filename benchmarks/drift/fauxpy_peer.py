@@ -1,7 +1,7 @@
 """FauxPy as a localiser: ranks by spectra (SBFL) and mutants (MBFL) of four designed and four drifted episodes.
 
-A site gets the score of the best of its lines. As usual, sites with the same score all get the middle one of their
-ranks. FauxPy proposes no repair. It needs a separate environment, since it pins plugins of pytest.
+A site gets the score of the best of its lines. Sites with the same score all get the mean of their ranks, as is
+usual. FauxPy proposes no repair. It needs a separate environment, since it pins plugins of pytest.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def pytest_runtest_setup(item):
 
 
 def localised(stage: Stage, seed: int, method: str, python: str | None) -> dict[str, Any]:
-    """Let FauxPy rank the task's lines; return for each metric the rank of the right sites, or why there is none."""
+    """Rank the lines of a task with FauxPy; return, for each metric, the rank of the right sites or the failure."""
     found: dict[str, Any] = {"ranks": {}, "accepted": False, "failed": "", "episodes": {}}
     if python is None:
         return found | {"failed": "not run: name the Python of its environment, --fauxpy PYTHON"}

@@ -22,7 +22,7 @@ from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds
 
-HELD_OUT = 30  # episodes of each world
+HELD_OUT = 30  # held-out episodes of each world
 JUDGED = 400  # held-out episodes of each world on which an accepted repair is judged
 RESTORED = 0.95
 Overlay = Mapping[Path, str]
@@ -37,7 +37,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    plugged = ":" in search  # the peers only change constants
+    plugged = ":" in search  # the peers change only constants
     options = Options(mode="repair", seed=seed, budget=budget, searches=(search,), structure=not plugged)
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
@@ -56,7 +56,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
 
 
 def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
-    """Repair the task; return the rank of the right sites, what was restored, and the cost."""
+    """Repair the task; return the rank of the right sites, the restored reward, and the cost."""
     order = prepared(stage, seed, search=search)
     slices = [culprit.site.id for culprit in order.comparison.culprits]
     outcome = repair(order)
@@ -81,7 +81,7 @@ def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Seen:
-    """Mean reward and pass rate over the held-out seeds of a world."""
+    """The mean reward and the pass rate over the held-out seeds of a world."""
 
     mean: float
     passed: float
@@ -110,7 +110,7 @@ def seen(order: Order, drift: str | None, overlay: Overlay, episodes: int) -> Se
 
 
 def _outcome(order: Order, episode: EpisodePlan) -> Outcome:
-    """Run one episode. If the node ends before the episode, it earns as little as the worst recorded episode."""
+    """Run one episode. If the node ends before the episode, the episode earns as little as the worst recorded one."""
     try:
         run = sound(order.rollout(episode))
     except TarlError:

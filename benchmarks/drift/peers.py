@@ -39,7 +39,7 @@ class Optimiser(Protocol):
 
 
 class Random:
-    """Half of the coordinates keep their values; the others are drawn at random."""
+    """Random search: half of the coordinates keep their values, and the others are drawn at random."""
 
     def __init__(self, size: int, generator: np.random.Generator) -> None:
         self.size, self.generator = size, generator
@@ -114,7 +114,7 @@ OPTIMISERS: dict[str, Callable[[int, np.random.Generator], Optimiser]] = {
 
 
 def peer(order: Order, seed: int, name: str, guarded: bool) -> dict[str, Any]:
-    """Search with another optimiser; return what it restored, and the cost."""
+    """Search with another optimiser; return the restored reward and the cost."""
     mutants = Mutants(order)
     guard = _first_guard(order) if guarded else candidates.ALWAYS
     trials = Trials(lambda candidate, at: mutants.run(candidate, at, order.drift), BUDGET)

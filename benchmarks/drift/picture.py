@@ -78,7 +78,7 @@ def alarm(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def where(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
-    """Show by how much each cell changed, and which cells were never visited before."""
+    """Show the change of each cell, and the cells that were never visited before."""
     chosen = found.sensors[:2]
     cells = {**dict.fromkeys(found.region.novel, -1.0), **found.changes}
     columns, rows = ([*sorted({cell[d] for cell in cells})] for d in (0, 1))
@@ -102,7 +102,7 @@ def where(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def lines(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
-    """Show slices beside what simulation found, by line."""
+    """Show the slices beside the results of simulation, by line."""
     slices: dict[str, float] = {}
     for cut in (cut for compared in found.lists for cut in compared.slices):
         slices[cut.site.id] = max(slices.get(cut.site.id, 0.0), abs(cut.difference))
@@ -126,7 +126,7 @@ def lines(found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def search(order: Order, found: Comparison, x: Axis, y: Axis) -> Iterator[str]:
-    """Show what the search tried, episode by episode."""
+    """Show the candidates of the search, episode by episode."""
     totals = found.searches[0].totals
     across = Axis(0, len(totals), x.start, x.end)
     yield level(order.goal.near, x, y, FAINT, "worth confirming")

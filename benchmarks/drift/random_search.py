@@ -13,7 +13,7 @@ REACH = math.log(10.0)  # largest absolute logarithm of a factor
 
 
 class Random:
-    """Half of the constants keep their values; the others are multiplied by a factor between 0.1 and 10."""
+    """Random search: half of the constants keep their values; factors for the others are between 0.1 and 10."""
 
     def __init__(self, constants: Sequence[Constant], seed: int) -> None:
         self.constants = constants

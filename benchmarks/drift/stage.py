@@ -1,4 +1,4 @@
-"""Open a task of the benchmark: its test, its analysis, and its episodes as the plugin itself would run them."""
+"""Open a task of the benchmark: its test, its analysis, and its episodes, which run as in the plugin."""
 
 from __future__ import annotations
 

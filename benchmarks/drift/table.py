@@ -52,7 +52,7 @@ def _head(columns: Sequence[str]) -> list[str]:
 
 
 def _rows(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
-    """Return a method's row, or a row for each metric of a localiser, and why runs did not complete."""
+    """Return the row of a method, or a row for each metric of a localiser, and the reasons for incomplete runs."""
     if not any("ranks" in result for _, result in found):
         return [_row(method, found, answers)]
     asked = [(task, result) for task, result in found if _repairable(answers[task])]
@@ -97,7 +97,7 @@ def _row(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> 
 
 
 def _slices(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
-    """Return the row of the slices, the ranking with which the paper ends."""
+    """Return the row of the slices, the final ranking of the paper's method."""
     ranked = [(task, result["slices"]) for task, result in found if _repairable(answers[task])]
     if not ranked:
         return []
@@ -138,7 +138,7 @@ def _example(seen: Sequence[Result]) -> str:
 
 
 def _right(known: Mapping[str, Any]) -> str:
-    """Return as text how many sets of how many sites are right."""
+    """Return, as text, the number of right sets of sites and the number of sites in each."""
     sets = known.get("right", [])
     return f"{len(sets)}" + (f" sets of {len(sets[0])}" if sets and len(sets[0]) > 1 else "")
 

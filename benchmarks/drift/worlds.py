@@ -1,4 +1,4 @@
-"""Check that the tasks are what the benchmark promises, without repairing anything.
+"""Check that the tasks have the properties stated for the benchmark, without repairing anything.
 
     python benchmarks/drift/worlds.py [TASK ...] [--episodes 100] [--folder benchmarks/drift] [--by-hand]
 

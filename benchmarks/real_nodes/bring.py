@@ -36,7 +36,7 @@ class Node:
     commit: str
     path: str
     blob: str
-    by_hand: list[list[str]]  # a text in the file, and the replacement that restores the reward
+    by_hand: list[list[str]]  # pairs of a text in the file and the replacement that restores the reward
 
 
 def nodes() -> list[Node]:

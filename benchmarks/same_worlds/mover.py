@@ -7,7 +7,7 @@ GAIN = 0.6
 
 
 class Mover:
-    """Answer every position with a speed."""
+    """Answer each position with a speed."""
 
     def __init__(self):
         self.speed = rospy.Publisher("/speed", Float64, queue_size=1)

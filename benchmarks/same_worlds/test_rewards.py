@@ -61,21 +61,21 @@ class Way:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE, LOADED])
 def test_constant_cost(tarl: Tarl) -> None:
-    """Every step costs a tenth."""
+    """Each step costs a reward of 0.1."""
     for _ in Way(tarl).steps_to_goal():
         tarl.reward(-0.1)
 
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE])
 def test_bonus_at_the_goal(tarl: Tarl) -> None:
-    """Every step costs, the goal pays."""
+    """Each step costs reward, and the goal gives reward."""
     for way in Way(tarl).steps_to_goal():
         tarl.reward(cost=-0.1, goal=10.0 if way.arrived else 0.0)
 
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE])
 def test_saturated_speed(tarl: Tarl) -> None:
-    """Speed pays, up to a limit that is reached most of the time."""
+    """Speed gives reward, up to a limit that is usually reached."""
     for way in Way(tarl).steps_to_goal():
         tarl.reward(min(0.13, way.place - way.before))
 
@@ -89,7 +89,7 @@ def test_whole_numbers(tarl: Tarl) -> None:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE])
 def test_one_off_damage(tarl: Tarl) -> None:
-    """One mission in thirty is damaged, once."""
+    """In one of thirty missions, the robot is damaged once."""
     unlucky = tarl.rng("damage").random() < 1 / 30
     for way in Way(tarl).steps_to_goal():
         tarl.reward(-100.0 if unlucky and way.done == 5 else 0.0)
@@ -114,7 +114,7 @@ def test_equal_lengths(tarl: Tarl) -> None:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[STILL])
 def test_a_sensor_that_never_moves(tarl: Tarl) -> None:
-    """There is one cell."""
+    """All steps are in one cell."""
     tarl.observe(still=0.5)
     for way in Way(tarl).steps_to_goal():
         tarl.reward(-0.1 if way.place < 2.5 else -0.3)
@@ -122,7 +122,7 @@ def test_a_sensor_that_never_moves(tarl: Tarl) -> None:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE, LOADED])
 def test_there_and_back(tarl: Tarl) -> None:
-    """Progress is paid and taken back, so that totals cancel out except for rounding."""
+    """Progress gives reward that is later taken back, so that totals cancel out except for rounding."""
     way = Way(tarl)
     gains = []
     for _ in range(10):

@@ -123,7 +123,9 @@ def typed(client: LanguageClient, where: str, text: str, version: int = 2) -> No
     )
 
 
-async def test_flows_are_diagnostics_with_their_statements(client: LanguageClient, tmp_path: Path) -> None:
+async def test_a_flow_is_a_diagnostic_that_lists_its_statements(
+    client: LanguageClient, tmp_path: Path
+) -> None:
     found = await diagnostics(client, uri(tmp_path), 2)
     assert [one.code for one in found] == ["TARL101", "TARL102"]
     assert found[0].range.start == lsp.Position(PUBLISH, 8)
@@ -132,7 +134,9 @@ async def test_flows_are_diagnostics_with_their_statements(client: LanguageClien
     assert not (tmp_path / "executed").exists()
 
 
-async def test_the_unsaved_buffer_counts(client: LanguageClient, tmp_path: Path) -> None:
+async def test_the_unsaved_buffer_is_linted_instead_of_the_file(
+    client: LanguageClient, tmp_path: Path
+) -> None:
     where = uri(tmp_path)
     await diagnostics(client, where, 2)
     opened(client, where, NODE)
@@ -147,7 +151,9 @@ async def test_the_unsaved_buffer_counts(client: LanguageClient, tmp_path: Path)
     assert error.severity == lsp.DiagnosticSeverity.Error
 
 
-async def test_all_programs_of_a_shared_file_follow_its_edit(client: LanguageClient, tmp_path: Path) -> None:
+async def test_an_edit_of_a_shared_file_updates_all_programs_that_use_it(
+    client: LanguageClient, tmp_path: Path
+) -> None:
     await diagnostics(client, uri(tmp_path), 2)
     node = "from shared import scaled\n" + NODE.replace("2 * message.data", "scaled(message.data)")
     node = node.replace("rospy.spin()", 'if __name__ == "__main__":\n    rospy.spin()')
@@ -165,7 +171,7 @@ async def test_all_programs_of_a_shared_file_follow_its_edit(client: LanguageCli
         assert left.code == "TARL102"
 
 
-async def test_columns_are_utf16_units(client: LanguageClient, tmp_path: Path) -> None:
+async def test_columns_count_utf16_units(client: LanguageClient, tmp_path: Path) -> None:
     where = uri(tmp_path)
     await diagnostics(client, where, 2)
     opened(client, where, NODE)
@@ -179,7 +185,9 @@ async def test_columns_are_utf16_units(client: LanguageClient, tmp_path: Path) -
     assert found[0].range.start == lsp.Position(PUBLISH, 16)
 
 
-async def test_lenses_say_whose_data_and_what_decides(client: LanguageClient, tmp_path: Path) -> None:
+async def test_code_lenses_name_the_topics_with_data_in_a_call_and_those_that_decide_on_it(
+    client: LanguageClient, tmp_path: Path
+) -> None:
     await diagnostics(client, uri(tmp_path), 2)
     (lens,) = (
         await client.text_document_code_lens_async(
@@ -192,7 +200,9 @@ async def test_lenses_say_whose_data_and_what_decides(client: LanguageClient, tm
     assert lens.range.start.line == PUBLISH
 
 
-async def test_hover_and_hints_have_the_recorded_figures(client: LanguageClient, tmp_path: Path) -> None:
+async def test_hovers_and_inlay_hints_show_the_recorded_figures(
+    client: LanguageClient, tmp_path: Path
+) -> None:
     where = lsp.TextDocumentIdentifier(uri(tmp_path))
     await diagnostics(client, where.uri, 2)
     hover = await client.text_document_hover_async(lsp.HoverParams(where, lsp.Position(SPEED, 6)))
@@ -254,7 +264,7 @@ async def test_a_finding_is_accepted_into_the_baseline(client: LanguageClient, t
     assert "Accept this TARL101 into the baseline" not in await actions(client, tmp_path)
 
 
-async def test_a_repair_that_does_not_fit_is_refused_in_a_sentence(
+async def test_a_repair_that_does_not_fit_the_file_is_refused_with_one_sentence(
     client: LanguageClient, tmp_path: Path
 ) -> None:
     await diagnostics(client, uri(tmp_path), 2)
@@ -263,7 +273,7 @@ async def test_a_repair_that_does_not_fit_is_refused_in_a_sentence(
     assert (tmp_path / "pilot.py").read_text("utf-8") == NODE
 
 
-async def test_wrong_settings_are_said_once(client: LanguageClient, tmp_path: Path) -> None:
+async def test_invalid_settings_are_reported_once(client: LanguageClient, tmp_path: Path) -> None:
     where = uri(tmp_path)
     await diagnostics(client, where, 2)
     (tmp_path / "pyproject.toml").write_text("[tool.tarl-lint]\nselct = []\n", "utf-8")

@@ -44,7 +44,7 @@ def test_an_example_passes_without_flags_in_its_own_folder(example: str, tests: 
     assert "TARL" not in run.stdout
 
 
-def test_the_swapped_node_differs_by_the_order_of_two_lines_only() -> None:
+def test_the_swapped_node_differs_only_in_the_order_of_two_lines() -> None:
     here, there = (
         (EXAMPLES / "shuttle" / f"{name}.py").read_text() for name in ("traveller", "traveller_swapped")
     )
@@ -53,7 +53,7 @@ def test_the_swapped_node_differs_by_the_order_of_two_lines_only() -> None:
     assert swapped == there
 
 
-def test_the_shuttle_has_limits(tmp_path: Path) -> None:
+def test_a_stress_run_finds_limits_of_the_shuttle(tmp_path: Path) -> None:
     copy = tmp_path / "shuttle"
     shutil.copytree(EXAMPLES / "shuttle", copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
     for flags in (("--tarl-record", "--tarl-episodes=10"), ("--tarl-stress", "--tarl-stress-budget=40")):
@@ -80,7 +80,7 @@ def ran(folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="half a minute of CPU time; set TARL_SLOW=1")
-def test_a_drift_of_a_whole_launch_file_is_repaired_in_the_package_that_needs_it(tmp_path: Path) -> None:
+def test_a_drift_of_a_launched_system_is_repaired_in_the_package_at_fault(tmp_path: Path) -> None:
     copy = tmp_path / "workspace"
     shutil.copytree(EXAMPLES / "workspace", copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
     recorded = ran(copy, "--tarl-record", "--tarl-episodes=30")

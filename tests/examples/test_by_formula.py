@@ -1,4 +1,4 @@
-"""The examples with formulas: each drift of an example violates its formulas."""
+"""Each drift of an example with formulas violates a formula."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ OTHERS = ("KD * change", "self.speed * (", "CAUTION * abs", "min(MAX_TURN,")
 
 
 class Wires:
-    """A bus without nodes: stores the world's messages and sends it one command."""
+    """A bus without nodes, which stores the messages of the world and sends one command to the world."""
 
     def __init__(self, speed: float = 0.0, turn: float = 0.0) -> None:
         self.said: dict[str, Any] = {}
@@ -63,7 +63,7 @@ def test_the_robot_loses_the_line_in_the_first_bend_at_dusk() -> None:
         assert LINE.LAMP < world.along < 1.6
 
 
-def test_dusk_dims_light_and_contrast_equally_and_only_beyond_the_lamp() -> None:
+def test_beyond_the_lamp_dusk_dims_light_and_contrast_equally() -> None:
     day, dusk = LINE.World(random(1)), LINE.World(random(1), dusk=DUSK)
     assert day.light == dusk.light
     day.along = dusk.along = LINE.LAMP + 0.1
@@ -95,7 +95,7 @@ def test_no_other_constant_suffices_at_dusk(operand: str, factor: float) -> None
     assert not all(run(seed, dusk=DUSK, edits=edits).finished for seed in SEEDS)
 
 
-def test_the_declared_speed_can_be_set_from_outside() -> None:
+def test_the_caller_can_set_the_speed_of_the_robot() -> None:
     assert run(0, speed=0.45).time > run(0).time
     assert run(0, speed=0.1).failure == "too slow"
 

@@ -1,4 +1,4 @@
-"""The world of the quadrotor: as designed, with a payload, and in a gust."""
+"""The world of the quadrotor as designed, with a payload and in a gust."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ def test_the_mission_is_flown_as_designed() -> None:
         assert sum(world.parts.values()) > 14.0
 
 
-def test_a_payload_keeps_it_below_the_altitude_band_near_the_start() -> None:
+def test_a_payload_keeps_the_quadrotor_below_the_altitude_band_near_the_start() -> None:
     world = fly(1, PAYLOAD)
     assert world.failure == "too slow"
     assert abs(world.body.position.x) < 0.5
     assert world.parts["altitude"] < -5.0
 
 
-def test_a_gust_stops_it_at_the_right_altitude() -> None:
+def test_a_gust_stops_the_quadrotor_at_the_right_altitude() -> None:
     world = fly(1, GUST)
     assert world.failure == "too slow"
     assert QUADROTOR.GUST[0] <= world.body.position.x <= QUADROTOR.GUST[1]

@@ -27,7 +27,7 @@ EVERYWHERE = {VEL: "vel = 12.0 * delta"}
 
 
 class Wires:
-    """A bus without nodes: stores the world's messages and sends it one command."""
+    """A bus without nodes, which stores the messages of the world and sends one command to the world."""
 
     def __init__(self, velocity: float) -> None:
         self.said: dict[str, Any] = {}
@@ -57,7 +57,7 @@ def push(mud: float, start: float, velocity: float, steps: int) -> tuple[Any, Wi
 
 
 @pytest.mark.parametrize("node", ["shuttle/traveller.py", "shuttle/traveller_swapped.py"])
-def test_every_mission_is_delivered_as_designed(node: str) -> None:
+def test_every_mission_delivers_in_the_designed_world(node: str) -> None:
     for seed in SEEDS:
         world = SHUTTLE.World(random(seed))
         rewards = drive(node, world)
@@ -90,7 +90,7 @@ def test_the_terrain_sensor_sees_the_patch_in_both_worlds() -> None:
         assert seen == {4.9: False, 5.1: True, 6.9: True, 7.1: False}
 
 
-def test_mud_leaves_its_share_of_the_commanded_speed() -> None:
+def test_mud_reduces_the_speed_to_the_stated_share_of_the_commanded_one() -> None:
     clean, _ = push(1.0, 2.0, 10.0, 30)
     muddy, _ = push(MUD, 6.0, 10.0, 30)
     commanded = 10.0 * SHUTTLE.WHEEL_RADIUS
@@ -98,7 +98,7 @@ def test_mud_leaves_its_share_of_the_commanded_speed() -> None:
     assert muddy.body.velocity.x == pytest.approx(MUD * commanded, rel=0.03)
 
 
-def test_exactly_the_missions_across_the_patch_are_late_in_mud() -> None:
+def test_in_mud_the_missions_across_the_patch_are_late_and_no_others() -> None:
     for seed in SEEDS:
         world = mission(seed, mud=MUD)
         assert world.delivered is not world.patch
@@ -106,7 +106,7 @@ def test_exactly_the_missions_across_the_patch_are_late_in_mud() -> None:
 
 
 @pytest.mark.parametrize("edits", [IN_PATCH, BY_POSITION], ids=["terrain", "position"])
-def test_a_higher_gain_on_the_patch_suffices_in_mud_and_is_harmless_as_designed(
+def test_a_higher_gain_on_the_patch_suffices_in_mud_and_is_harmless_in_the_designed_world(
     edits: dict[str, str],
 ) -> None:
     designed = [mission(seed).total for seed in SEEDS]

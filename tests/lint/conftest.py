@@ -1,4 +1,4 @@
-"""Hand-made flows, for tests of the stages after the analysis."""
+"""Flows written by hand, for tests of the stages after the analysis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The snippets of the rules TARL3xx are workspaces with a launch file, and their tests."""
+"""The snippets of the rules TARL3xx, which are workspaces with a launch file, are tests of these rules."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SNIPPETS = [
 
 
 def workspace(folder: Path, snippet: str) -> Path:
-    """Write the files of a snippet, each after a line `--- NAME`, into a package `robot`."""
+    """Write the files of a snippet into a package `robot`; in the snippet, each file follows a line `--- NAME`."""
     folder = folder / "robot"
     folder.mkdir()
     (folder / "package.xml").write_text(MANIFEST)

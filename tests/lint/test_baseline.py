@@ -56,7 +56,7 @@ def test_a_method_that_subscribes_belongs_to_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
 
-def test_more_flows_with_a_fingerprint_than_accepted_make_all_of_them_new(example):
+def test_a_fingerprint_with_more_flows_than_were_accepted_makes_all_its_flows_new(example):
     finding = replace(example.finding(), fingerprint="a")
     assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
     assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]
@@ -71,7 +71,7 @@ def test_an_implicit_flow_that_becomes_explicit_is_new(example):
     assert [f.status for f in subtract([implicit, explicit], accepted)] == ["accepted", "new"]
 
 
-def test_vanished_flows_are_dropped_and_those_of_unseen_files_kept(entry):
+def test_vanished_flows_are_dropped_and_flows_of_files_that_were_not_read_are_kept(entry):
     twice = replace(entry, count=2)
     other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"), files=("unread.py",))
     found = Counter([entry.fingerprint.digest()])
@@ -80,7 +80,7 @@ def test_vanished_flows_are_dropped_and_those_of_unseen_files_kept(entry):
     assert kept == (other,)
 
 
-def test_baselines_survive_writing_and_reading_with_any_names(entry, tmp_path):
+def test_a_baseline_with_any_names_is_read_back_as_it_was_written(entry, tmp_path):
     odd = replace(
         entry,
         fingerprint=replace(entry.fingerprint, source='größe "x" → y', package=""),
@@ -118,7 +118,7 @@ def test_the_file_has_one_flow_per_line_and_does_not_depend_on_order(entry):
         ('{"format": 1, "tool": "tarl-lint", "flows": 3}', "damaged"),
     ],
 )
-def test_a_damaged_or_foreign_file_is_refused_by_name(tmp_path, text, complaint):
+def test_the_error_about_a_damaged_or_foreign_file_names_the_file(tmp_path, text, complaint):
     path = tmp_path / "flows.json"
     path.write_text(text)
     with pytest.raises(BaselineError, match=rf"flows\.json.*{complaint}"):

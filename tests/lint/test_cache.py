@@ -1,4 +1,4 @@
-"""The cache: used if nothing changed, never wrong, and never a reason to fail."""
+"""The cache is used if nothing changed, never gives a wrong result, and never makes a run fail."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def test_options_decide_when_to_fail(node, capsys, arguments, code):
     assert lint(capsys, *arguments)[0] == code
 
 
-def test_json_is_the_document_of_the_schema(node, capsys):
+def test_the_json_output_is_valid_by_the_schema(node, capsys):
     code, out, _ = lint(capsys, "--format", "json", "--exit-zero")
     schema = json.loads((Path(runner.__file__).parent.parent / "report/findings.schema.json").read_text())
     jsonschema.validate(json.loads(out), schema)
@@ -71,7 +71,7 @@ def test_the_output_option_writes_the_report_to_a_file(node, capsys):
     )
 
 
-def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
+def test_accepted_flows_fail_the_run_only_if_the_baseline_is_ignored(node, capsys):
     code, out, _ = lint(capsys, "--write-baseline")
     assert (code, out) == (0, "tarl-flows.json: 1 flow accepted (1 new, 0 removed).\n")
     code, out, _ = lint(capsys)
@@ -87,7 +87,7 @@ def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
     assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 removed).\n"
 
 
-def test_a_named_baseline_is_written_and_no_other(node, capsys):
+def test_only_the_named_baseline_is_written(node, capsys):
     assert lint(capsys, "--baseline", "own.json", "--write-baseline")[1].startswith(
         "own.json: 1 flow accepted"
     )
@@ -135,7 +135,7 @@ def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys
         (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: patterns are written as in"),
     ],
 )
-def test_unusable_input_gives_one_sentence_and_exit_code_2(node, capsys, arguments, sentence):
+def test_unusable_input_is_reported_in_one_sentence_with_exit_code_2(node, capsys, arguments, sentence):
     (node.parent / "empty").mkdir()
     (node.parent / "bad.toml").write_text("selcet = []\n")
     code, out, err = lint(capsys, *arguments)
@@ -163,14 +163,14 @@ def test_settings_are_shown_in_the_syntax_of_the_settings_file(node, capsys):
     assert "select = [] # default" in lines
 
 
-def test_an_internal_error_gives_one_sentence(node, capsys, monkeypatch):
+def test_an_internal_error_is_reported_in_one_sentence(node, capsys, monkeypatch):
     monkeypatch.setattr("tarl_lint.engine.examine", lambda modules, config, isolate, readings: 1 / 0)
     code, out, err = lint(capsys)
     assert (code, out) == (2, "")
     assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err
 
 
-def test_an_interruption_gives_one_line(node, capsys, monkeypatch):
+def test_an_interrupted_run_prints_one_line(node, capsys, monkeypatch):
     def interrupt(chosen, config, tell):
         raise KeyboardInterrupt
 
@@ -295,7 +295,7 @@ def test_shown_settings_read_back_as_the_same_settings(node, capsys):
     assert values[0] == values[1]
 
 
-def test_statistics_count_what_each_topic_reaches(node, capsys):
+def test_statistics_count_the_publish_calls_that_each_topic_reaches(node, capsys):
     _, out, _ = lint(capsys, "--statistics")
     assert "Publish calls reached, by subscribed topic:\n1  odom\n" in out
 

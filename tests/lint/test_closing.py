@@ -73,7 +73,7 @@ def test_rules_that_did_not_run_are_not_reported_as_clean(said, arguments, words
         ),
     ],
 )
-def test_files_without_a_subscription_or_publisher_are_named_as_such(in_directory, capsys, files, words):
+def test_the_report_says_which_files_have_no_subscription_or_publisher(in_directory, capsys, files, words):
     in_directory(files)
     for _ in range(2):  # the second run reads the cache
         main(["--format", "concise"])
@@ -120,7 +120,7 @@ def test_a_comment_with_an_unknown_rule_has_its_own_message(in_directory, capsys
     assert "::There is no rule TARL1O1: correct or remove this comment" in capsys.readouterr().out
 
 
-def test_concise_format_names_vanished_findings(in_directory, capsys):
+def test_the_concise_format_lists_vanished_findings(in_directory, capsys):
     root = in_directory({"node.py": dedent(BOTH).format(comment="")})
     main(["--write-baseline"])
     (root / "node.py").write_text("")

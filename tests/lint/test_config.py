@@ -118,7 +118,7 @@ def test_a_named_pyproject_without_our_table_is_refused(in_directory):
         resolve(Options(config=Path("pyproject.toml")))
 
 
-def test_a_missing_or_invalid_settings_file_is_refused_by_name(in_directory):
+def test_the_error_about_a_missing_or_invalid_settings_file_names_the_file(in_directory):
     in_directory({"bad.toml": "select = [", "pyproject.toml": "tool.tarl-lint = 3"})
     with pytest.raises(ConfigError, match=r"missing\.toml cannot be read: No such file"):
         resolve(Options(config=Path("missing.toml")))

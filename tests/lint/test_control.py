@@ -49,7 +49,7 @@ def test_statements_after_a_loop_do_not_depend_on_it():
     assert (found[1], found[2], found[3]) == ({(1, "body")}, {(1, "body")}, set())
 
 
-def test_the_rest_of_an_endless_loop_depends_on_its_exit():
+def test_the_rest_of_an_endless_loop_depends_on_the_exit_condition():
     found = dependence("""
         while True:
             if a:
@@ -103,7 +103,7 @@ def test_an_endless_loop_without_an_exit_is_analysed():
     assert 2 in found
 
 
-def test_of_many_conditions_the_nearest_are_stored_and_the_first_is_reachable(tmp_path):
+def test_each_of_many_nested_conditions_is_among_the_steps(tmp_path):
     arms = "".join(f"    {'el' if n else ''}if k == {n}:\n        v = {n}\n" for n in range(300))
     head = "import rospy\ndef on(msg):\n    k = msg.data\n    v = 0\n"
     tail = "    out.publish(v)\nout = rospy.Publisher('a', F)\nrospy.Subscriber('b', F, on)\n"

@@ -1,4 +1,4 @@
-"""Deep recursion."""
+"""Calls with a deep stack."""
 
 import sys
 

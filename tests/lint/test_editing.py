@@ -114,7 +114,9 @@ LAYOUT = [
 
 
 @pytest.mark.parametrize(("name", "before", "after"), LAYOUT)
-def test_an_edit_of_unread_code_only_moves_lines(tmp_path, analysed, name, before, after):
+def test_an_edit_of_code_that_the_analysis_did_not_read_only_moves_lines(
+    tmp_path, analysed, name, before, after
+):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     analysed.clear()
@@ -136,7 +138,7 @@ READ = [
         "    return total",
         "    yield total",
     ),  # "yield" changes how the file's names are collected
-    ("helper.py", "    return total", "    return total + idle"),  # reads what may be the unused publisher
+    ("helper.py", "    return total", "    return total + idle"),  # may read the unused publisher
     ("helper.py", "class Filter:", "import os\n\nclass Filter:"),
     (
         "helper.py",
@@ -191,7 +193,7 @@ def test_an_undone_edit_needs_no_analysis(tmp_path, analysed):
     assert analysed == []
 
 
-def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, analysed):
+def test_an_edit_after_an_undone_edit_is_compared_with_the_original_text(tmp_path, analysed):
     workspace = Workspace([tmp_path])
     workspace.lint({})
     workspace.lint(edited(tmp_path, "node.py", "value > 3", "value > 4"))
@@ -199,7 +201,7 @@ def test_an_edit_after_an_undone_one_is_compared_with_the_text_before(tmp_path, 
     analysed.clear()
     buffers = edited(tmp_path, "helper.py", "return total", "return total - 1")
     assert workspace.lint(buffers) == Workspace([tmp_path]).lint(buffers)
-    assert analysed == ["node.py"]  # of the new session
+    assert analysed == ["node.py"]  # analysed by the new session
 
 
 def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_path, analysed):
@@ -222,7 +224,7 @@ def test_findings_of_an_edited_program_are_final_before_others_are_analysed(tmp_
     assert whole == Workspace([tmp_path]).lint(buffers)
 
 
-def test_an_obsolete_run_stops_and_keeps_what_it_has_analysed(tmp_path, analysed):
+def test_an_obsolete_run_stops_and_keeps_its_finished_analyses(tmp_path, analysed):
     Path(tmp_path, "other.py").write_text(NODE)
     workspace = Workspace([tmp_path])
     with pytest.raises(Superseded):
@@ -254,7 +256,7 @@ def edits(rng: random.Random, text: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_random_edits_give_the_results_of_a_new_session(tmp_path, analysed, seed):
+def test_after_random_edits_the_results_equal_those_of_a_new_session(tmp_path, analysed, seed):
     rng = random.Random(seed)
     workspace = Workspace([tmp_path])
     workspace.lint({})
@@ -289,7 +291,7 @@ def test_reading_a_body_is_recorded():
     assert watched(observed).reading().unread == set(places.values())
 
 
-def test_questions_about_the_text_are_recorded():
+def test_queries_about_the_text_of_a_module_are_recorded():
     observed = watched(module("def f():\n    return 1\n"))
     assert observed.contains("return")
     assert not observed.contains("yield")
@@ -303,6 +305,6 @@ def test_questions_about_the_text_are_recorded():
     assert moved_lines("def f():\n    return 1\n", "def f():\n    return 2\n", observed.reading()) is None
 
 
-def test_a_group_is_run_because_of_words_in_its_text():
+def test_words_in_the_text_of_a_group_cause_its_run():
     assert two_sided(["rospy.Subscriber(", "pub.publish(1)"], Config())
     assert not two_sided(["rospy.Subscriber(", "# pub.publish(1)"], Config())

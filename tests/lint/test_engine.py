@@ -34,13 +34,13 @@ def test_the_order_of_the_files_does_not_matter():
     assert analyse([node, tools], Config()) == analyse([tools, node], Config()) != ()
 
 
-def test_a_sanitizer_of_the_settings_ends_a_flow():
+def test_a_function_declared_as_sanitizer_ends_a_flow():
     node = module("node", NODE.format(value="bus.checked(msg.data)"))
     assert kinds(node) == [("explicit", ("a",), ("b",))]
     assert kinds(node, sanitizers=("bus.checked",)) == []
 
 
-def test_sources_of_the_settings_subscribe_or_return_a_message():
+def test_functions_declared_as_sources_subscribe_or_return_a_message():
     text = """
         import rospy
         import bus
@@ -53,7 +53,7 @@ def test_sources_of_the_settings_subscribe_or_return_a_message():
     assert found == [("explicit", ("a",), ("b",)), ("explicit", ("c",), ("b",))]
 
 
-def test_sinks_of_the_settings_are_publish_calls():
+def test_functions_declared_as_sinks_are_publish_calls():
     text = """
         import rospy
         import bus
@@ -63,7 +63,7 @@ def test_sinks_of_the_settings_are_publish_calls():
     assert kinds(module("node", text), sinks=("bus.send",)) == [("explicit", ("a",), ())]
 
 
-def test_an_import_finds_the_nearest_of_modules_with_the_same_name():
+def test_an_import_finds_the_nearest_of_several_modules_with_the_same_name():
     near = module("tools", "def helper(x):\n    return 0", "one/tools.py")
     far = module("tools", "def helper(x):\n    return x", "two/tools.py")
     text = NODE.format(value="helper(msg.data)")
@@ -123,7 +123,7 @@ def test_the_catalog_takes_precedence_over_source_files_of_ros():
     assert kinds(library, node) == kinds(node) == [("explicit", ("a",), ("b",))]
 
 
-def test_classes_started_from_outside_are_analysed():
+def test_node_classes_that_no_analysed_code_instantiates_are_analysed():
     node = module(
         "node",
         """

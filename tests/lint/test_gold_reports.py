@@ -32,7 +32,7 @@ SYSTEMS = {"svg": ("--format", "svg"), "mermaid": ("--format", "mermaid"), "text
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a copy of some cases, which the first test analyses; the others read the cache."""
+    """Return a copy of some cases; the first test analyses the copy, and the other tests read the cache."""
     copy = tmp_path_factory.mktemp("cases")
     for name in FILES:
         (copy / name).parent.mkdir(exist_ok=True)
@@ -47,7 +47,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def output(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """Return what a run prints, without what depends on the release and the folder."""
+    """Return the output of a run, without the parts that depend on the release and the folder."""
     main([*arguments, "--jobs", "1"])
     out, err = capsys.readouterr()
     text = (out + err).replace(__version__, "VERSION")

@@ -90,7 +90,9 @@ WAYS = [
 
 @settings(max_examples=40)
 @given(function=st.sampled_from(CARRYING + SILENT), handed=st.sampled_from(WAYS))
-def test_the_result_of_a_callable_is_part_of_the_librarys_result(tmp_path_factory, function, handed):
+def test_the_result_of_a_callable_argument_is_part_of_the_result_of_the_library_call(
+    tmp_path_factory, function, handed
+):
     directory = tmp_path_factory.mktemp("node")
     text = NODE.replace("{callable}", function).replace("{handed}", handed)
     found = {(f.source.topics, f.kind) for f in analysed(directory, node=text).flows}

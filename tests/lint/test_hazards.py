@@ -1,4 +1,4 @@
-"""Hazards: reported code and lines, and similar code that is correct."""
+"""Code and lines that are reported as hazards, and similar code that is correct."""
 
 import json
 from textwrap import dedent
@@ -41,7 +41,7 @@ RANGE = """
         "n = len(msg.ranges)\nahead = msg.ranges[n // 2]\ncmd.linear.x = 0.3 * ahead",
     ],
 )
-def test_a_command_computed_from_a_sensor_without_limit_is_a_hazard(body):
+def test_an_unlimited_command_computed_from_a_sensor_is_a_hazard(body):
     assert len(lines("TARL202", inside(RANGE, body, 8))) == 1
 
 

@@ -1,4 +1,4 @@
-"""Launch files that nest without end, contain themselves or are no text end in a sentence, never in a traceback."""
+"""Launch files that nest endlessly, include themselves or are not text give one sentence, never a traceback."""
 
 from __future__ import annotations
 

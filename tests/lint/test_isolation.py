@@ -28,7 +28,7 @@ ARGUMENTS = ["--no-cache", "--format", "json", "--exit-zero"]
 
 
 def bait(directory: Path) -> None:
-    """Write a file for every name; if it runs, it leaves a mark and then fails."""
+    """Write a file for every name; a file that is executed creates a marker file and then fails."""
     marks = directory / "ran"
     marks.mkdir(parents=True)
     for name in (*(f"{name}.py" for name in NAMES if name.isidentifier()), *CONFIGURATION):
@@ -49,7 +49,7 @@ def run(command: list[str], directory: Path, **environment: str) -> subprocess.C
 
 @pytest.fixture
 def nodes(tmp_path: Path) -> Path:
-    """Write two independent nodes, so that two processes have work."""
+    """Write two independent nodes, so that two processes are used."""
     directory = tmp_path / "nodes"
     for name in ("a", "b"):
         (directory / name).mkdir(parents=True)
@@ -93,7 +93,7 @@ def test_the_command_does_not_run_the_files_that_it_lints(place, jobs):
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_python_m_runs_no_further_file_of_the_working_directory(place, nodes, tmp_path, jobs):
+def test_python_dash_m_runs_no_other_file_of_the_working_directory(place, nodes, tmp_path, jobs):
     """`python -m` imports `runpy` or `importlib` from the working directory before any of our code runs."""
     (place / "trivial_program.py").write_text("")
     take_away_what_python_itself_runs([sys.executable, "-m", "trivial_program"], place)
@@ -136,11 +136,11 @@ def test_editable_source_trees_are_not_imported(monkeypatch, tmp_path):
     assert str(Path(os.__file__).parent) in sys.path
 
 
-def test_no_workers_are_forked_beside_another_thread(monkeypatch):
+def test_no_worker_is_forked_while_another_thread_runs(monkeypatch):
     monkeypatch.setattr("threading.active_count", lambda: 2)
     if workers._context() is None:
         assert workers.in_processes(abs, [-1, -2], [1, 1], 2, silent) is None
 
 
-def test_answers_keep_the_order_of_the_work():
+def test_the_results_are_in_the_order_of_the_tasks():
     assert workers.in_processes(abs, [-1, -2, -3], [1, 3, 2], 2, silent) == [1, 2, 3]

@@ -1,4 +1,4 @@
-"""Interfaces of programs are kept from run to run, and never outlive what they depend on."""
+"""Interfaces of programs are kept between runs until a file that they depend on changes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PROGRAMS = {"relay": TOP + DIRECT, "arms": TOP + TWO_ARMS, "client": CLIENT, "se
 UNKNOWN = (
     "relay",
     "arms",
-)  # with a name that only a launch gives: analysed again with all parameters of the node
+)  # a name that only the launch gives: the node is analysed again with all of its parameters
 
 
 @pytest.fixture

@@ -375,7 +375,7 @@ def test_unreadable_ros2_files_are_reported(tmp_path: Path, name: str, text: str
     assert any(reason in one.reason for one in found.problems)
 
 
-def test_parameters_of_ros1_nodes_are_private_but_absolute_yaml_is_not(tmp_path: Path) -> None:
+def test_parameters_of_ros1_nodes_are_private_unless_yaml_gives_an_absolute_name(tmp_path: Path) -> None:
     text = """
         <launch><node pkg="arm_base" type="drive" name="drive">
           <param name="/gui" value="  words  "/>

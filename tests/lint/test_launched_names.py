@@ -1,4 +1,4 @@
-"""Names of topics that only the launch of a node determines, in the ways in which nodes make them."""
+"""Topic names that only the launch of a node determines, in all the ways in which nodes compute them."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ RCLPY = """
         ("pass", 0),
     ],
 )
-def test_state_of_a_callback_used_in_a_timer_needs_its_lock(body, found):
+def test_state_that_a_callback_and_a_timer_share_needs_its_lock(body, found):
     assert len(lines("TARL201", inside(ROSPY, body, 12))) == found
 
 
@@ -110,7 +110,7 @@ def test_state_read_by_a_custom_thread_needs_the_lock_in_rclpy_too():
     assert len(lines("TARL201", text)) == 1
 
 
-def test_the_call_without_the_lock_is_named_if_others_hold_it():
+def test_the_call_without_the_lock_is_reported_if_other_calls_hold_the_lock():
     text = inside(ROSPY, "with self.lock:\n    self.send()\nself.send()", 12)
     (line,) = lines("TARL201", text)
     assert dedent(text).strip("\n").split("\n")[line - 1].strip() == "self.send()"
@@ -199,7 +199,7 @@ def test_parts_that_are_written_together_must_be_read_together(written, found):
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 
 
-def test_a_function_called_by_ros_and_others_is_reported_itself(tmp_path):
+def test_the_access_is_reported_if_both_ros_and_other_functions_call_its_function(tmp_path):
     """A callback run by ROS without the lock has no calling line; no line of another file may be reported."""
     files = {
         "a_first.py": "import rospy\n\n\ndef name():\n    return 'x'\n",
@@ -297,11 +297,11 @@ ACTIVITY = """
     ("asked", "found"),
     [("blocking=False", 0), ("False", 0), ("blocking=True", 1), ("", 1), ("timeout=1.0", 1)],
 )
-def test_a_lock_that_is_taken_only_if_it_is_free_guards_no_state(asked, found):
+def test_a_lock_that_is_only_tried_and_never_waited_for_guards_no_state(asked, found):
     assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
 
 
-def test_a_lock_that_one_function_tries_and_another_waits_for_guards_state():
+def test_a_lock_guards_state_if_one_function_only_tries_it_and_another_waits_for_it():
     waits = "with self.lock:\n                self.pub.publish(sum(self.seen.values()))"
     both = ACTIVITY.format(asked="False").replace("self.pub.publish(sum(self.seen.values()))", waits)
     assert lines("TARL201", both) == []

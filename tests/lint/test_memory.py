@@ -107,7 +107,7 @@ def test_data_is_found_at_any_depth_but_not_elsewhere(ctx):
     assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
 
 
-def test_an_empty_part_of_a_message_is_covered_by_the_whole(ctx):
+def test_parts_of_a_message_without_own_data_add_nothing_to_the_data_of_the_message(ctx):
     message = recency.intern(ctx, "message", "m")
     message.info = 7
     message.sub("pose").sub("position")
@@ -172,7 +172,7 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_depends_on_a_carrier_only_if_it_was_inside_when_the_object_was_passed_on(ctx, frame):
+def test_content_depends_on_a_carrier_only_if_the_content_was_inside_when_it_was_passed_on(ctx, frame):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])

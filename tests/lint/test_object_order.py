@@ -1,4 +1,4 @@
-"""Results do not depend on the addresses of objects in memory, which order the sets of them."""
+"""Results do not depend on memory addresses, which determine the order of sets of objects."""
 
 from __future__ import annotations
 

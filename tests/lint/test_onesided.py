@@ -118,7 +118,7 @@ LOCKED = """
     """
 
 
-def test_state_used_consistently_with_or_without_its_lock_needs_no_run():
+def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_run():
     assert skipped(LOCKED)
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
@@ -136,7 +136,7 @@ def test_state_used_consistently_with_or_without_its_lock_needs_no_run():
         ),
     ],
 )
-def test_modules_with_state_used_without_its_lock_are_run(changed):
+def test_a_module_is_run_if_it_uses_state_without_the_lock_of_that_state(changed):
     text = LOCKED.replace(*changed)
     assert text != LOCKED
     assert not skipped(text)
@@ -150,11 +150,11 @@ def test_modules_with_state_used_without_its_lock_are_run(changed):
         ("def on(msg):\n    last = msg.data\non(rospy.wait_for_message('a', String))", False),
     ],
 )
-def test_an_empty_function_is_a_callback_only_if_passed_on(text, run):
+def test_an_empty_function_is_a_callback_only_if_it_is_passed_as_an_argument(text, run):
     assert skipped("import rospy\n" + text) is not run
 
 
-def test_disabled_hazards_need_no_run():
+def test_a_module_is_not_run_for_a_disabled_hazard():
     idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
     assert skipped(idle, ignore=("TARL203",))
 
@@ -184,7 +184,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 @pytest.mark.parametrize("rules_out", [True, False, None])
 @pytest.mark.parametrize("text", [LISTENER, TALKER])
-def test_a_new_rule_decides_in_its_own_file_what_it_rules_out(tmp_path, rules_out, text):
+def test_a_new_rule_states_in_its_own_file_which_nodes_it_cannot_report(tmp_path, rules_out, text):
     """A rule without `ruled_out` runs on every node, also on nodes that only subscribe or only publish."""
     package = tmp_path / "tarl_lint"
     shutil.copytree(Path(tarl_lint.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))

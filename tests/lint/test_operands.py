@@ -287,7 +287,7 @@ def test_the_limit_of_a_watchdog_is_an_operand_without_data_of_a_message(tmp_pat
     )
     limit = "return self.last is not None and now - self.last < Duration(seconds=self.patience)"
     assert found[limit] == [("self.patience", 0.6)]
-    assert not any(code.startswith("patience") for code in found)  # its definition is no use
+    assert not any(code.startswith("patience") for code in found)  # the definition of a constant is not a use
 
 
 def test_a_set_point_and_a_waiting_time_that_no_message_reaches_are_operands(tmp_path):

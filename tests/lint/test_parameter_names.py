@@ -1,4 +1,4 @@
-"""Topics whose names come from parameters: followed through a program, and known per launched node."""
+"""Topic names from parameters are followed through a program and known for each launched node."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ Both().run()
 """
 
 
-def test_two_objects_of_a_class_have_topics_of_their_own(arm, capsys):
+def test_two_objects_of_one_class_have_separate_topics(arm, capsys):
     remap = '<remap from="state" to="/arms"/>'
     body = f'<group ns="robot">{node("both", remap)}</group>'
     assert system(arm, capsys, TOP + TWO_ARMS, body) == [
@@ -296,7 +296,7 @@ rospy.spin()
 """
 
 
-def test_a_launch_gives_a_list_of_topics(arm, capsys):
+def test_a_launch_file_gives_a_list_of_topics(arm, capsys):
     body = node("first", "<rosparam>{topics: [/a, b, /a]}</rosparam>")
     assert system(arm, capsys, TOP + LISTS, body) == [
         "/a → /first → /tiles  explicit",

@@ -1,4 +1,4 @@
-"""The YAML of launch files: which parameters a node gets, and what is said if it cannot be read."""
+"""The YAML of launch files: the parameters that a node gets, and the message if the YAML cannot be read."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def parsed(text: str) -> object:
         ("/robot/ga.e", "/robot/gate", False),
     ],
 )
-def test_a_section_is_for_the_nodes_that_its_pattern_matches(pattern, node, holds):
+def test_a_section_applies_to_the_nodes_that_match_its_pattern(pattern, node, holds):
     assert matches(pattern, node) is holds
 
 

@@ -22,7 +22,7 @@ def call(*command: object, cwd: Path, **environment: str) -> subprocess.Complete
 
 
 def commit_everything(directory: Path) -> str:
-    """Make a directory a git repository with one commit and return its hash."""
+    """Make a directory a git repository with one commit and return the hash of that commit."""
     for arguments in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "All"]):
         identity = (
             "-c",

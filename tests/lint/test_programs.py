@@ -1,4 +1,4 @@
-"""Programs that share modules are analysed apart, unless a flow may begin or end in a shared one."""
+"""Programs that share modules are analysed separately, unless a flow may begin or end in a shared module."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_import_cycles_without_a_beginning_stay_in_one_group():
     assert grouped(files) == [{"helper", "one", "two"}]
 
 
-def test_an_edit_analyses_only_the_programs_that_read_the_file(tmp_path, monkeypatch):
+def test_after_an_edit_only_the_programs_that_read_the_file_are_analysed(tmp_path, monkeypatch):
     for name, text in {"one": NODE, "two": NODE, "helper": HELPER}.items():
         Path(tmp_path, f"{name}.py").write_text(text)
     monkeypatch.chdir(tmp_path)

@@ -108,7 +108,7 @@ def test_stores_of_another_branch_do_not_hide_reads(store, obj):
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_reads_of_a_call_count_for_its_caller_unless_it_has_stored_there(store, obj):
+def test_reads_of_a_call_count_as_reads_of_its_caller_unless_the_caller_stored_to_that_key(store, obj):
     inner, outer = Reads(), Reads()
     inner.keys |= {(obj, "x"), (obj, "y")}
     outer.written.add((obj, "x"))
@@ -173,7 +173,7 @@ def test_replays_of_the_cases_equal_executions(path):
     linked(path.read_text(), checking=True)
 
 
-def test_replays_of_mixed_nodes_equal_executions():
+def test_replays_of_randomly_generated_nodes_equal_executions():
     draw = random.Random(3)
     for _ in range(60 if os.environ.get("TARL_SLOW") else 6):
         linked(node(*(draw.choice(sorted(axis)) for axis in AXES)), checking=True)

@@ -29,15 +29,15 @@ LONGEST = 12  # steps that are shown in full
         (MOST_RESULTS + 1, [Cut(MOST_RESULTS, MOST_STEPS), Cut(MOST_RESULTS, 0)]),
     ],
 )
-def test_reports_become_smaller_until_nothing_is_left(results, smaller):
+def test_the_cuts_of_a_report_become_smaller_until_nothing_is_left(results, smaller):
     assert list(islice(cuts(results), len(smaller))) == smaller
     assert list(cuts(results))[-1] == Cut(0, 0)
 
 
-def test_a_report_of_exactly_the_limit_is_taken(monkeypatch):
+def test_a_report_of_exactly_the_maximum_size_is_accepted(monkeypatch):
     monkeypatch.setattr(upload_limits, "MOST_BYTES", 1000)
     assert taken("x" * 1000)
-    assert taken("x" * 1001)  # compressed, it is smaller
+    assert taken("x" * 1001)  # the compressed text is smaller
     noise = random.Random(0).choices("abcdefghijklmnop", k=4000)
     assert not taken("".join(noise))
 
@@ -100,7 +100,7 @@ def test_a_frame_has_the_lines_before_and_carets_below_each_line_of_the_span():
     assert framed(text, Span("n", 7, 1, 9, 2))[-2:] == ["   7 │ b", "     │ ^"]
 
 
-def test_a_tall_span_is_shown_by_its_beginning_and_its_last_line():
+def test_of_a_tall_span_the_frame_shows_the_beginning_and_the_last_line():
     text = "\n".join("x" for _ in range(20))
     exact, taller = (framed(text, Span("n", 1, 1, end, 2)) for end in (TALL, TALL + 1))
     assert len(exact) == 2 * TALL
@@ -112,7 +112,7 @@ def test_a_narrow_frame_is_cropped_with_its_carets():
     assert framed("abcdefghij", Span("n", 1, 3, 1, 10), View(width=12)) == ["   1 │ abcd…", "     │   ^^^"]
 
 
-def test_a_picture_of_no_system_has_its_margins_only():
+def test_a_picture_without_nodes_has_only_margins():
     (start,) = (line for line in svg.report([]) if line.startswith("<svg"))
     assert f'width="{svg.MARGIN:.0f}" height="{svg.MARGIN:.0f}"' in start
 

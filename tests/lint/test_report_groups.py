@@ -94,7 +94,7 @@ def test_the_map_lists_the_data_and_the_conditions_of_each_published_topic():
     assert [*overview(flows[:-1], View())] == []  # five publish calls fit on a screen
 
 
-def test_names_of_a_map_are_wrapped_at_the_width_and_many_are_abbreviated():
+def test_names_in_a_map_are_wrapped_at_the_width_and_long_lists_are_abbreviated():
     assert [*_wrapped(["a", "b", "c"], 4)] == ["a,", "b,", "c"]
     assert [*_wrapped(["a", "b", "c"], 5)] == ["a, b,", "c"]
     assert [*_wrapped([], 6)] == []
@@ -143,7 +143,7 @@ CUT = SimpleNamespace(path="big.py", message="it was cut")
 BROKEN = SimpleNamespace(path="bad.py", line=7, message="it cannot be read")
 
 
-def test_the_code_quality_report_has_new_findings_errors_and_cut_programs():
+def test_the_code_quality_report_contains_new_findings_and_errors_and_incomplete_programs():
     some = (finding(fingerprint="f"), finding(fingerprint="g", status="accepted"))
     found = gitlab.document(result(findings=some, errors=(BROKEN,), statistics=SimpleNamespace(cut=(CUT,))))
     assert [(one["check_name"], one["severity"]) for one in found] == [
@@ -175,7 +175,7 @@ def test_an_annotation_has_columns_within_one_line_only():
     assert several == "::notice file=a.py,line=3,endLine=4,title=t::x%0Dy"
 
 
-def test_annotations_of_errors_hazards_and_cut_programs():
+def test_errors_and_hazards_and_incomplete_programs_have_annotations():
     told = result(
         new=(finding(), finding(flow=flow("/s", "/k"))),
         errors=(BROKEN,),
@@ -267,7 +267,7 @@ def test_new_findings_come_before_accepted_ones_and_severe_before_minor():
     assert keys == [(False, 0), (False, 1), (False, 2), (True, 0), (True, 2)]
 
 
-def test_a_wrapper_is_written_with_the_places_that_it_states():
+def test_a_wrapper_in_the_settings_is_written_with_only_its_stated_argument_positions():
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer")) == "rospy.Timer"
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer", topic=0, callback="on")) == {
         "like": "rospy.Timer",

@@ -134,7 +134,7 @@ def test_a_hazard_has_its_own_code_frame(example, result_of):
     assert "1 hazard: 1 TARL203.\n" in text
 
 
-def test_steps_in_other_files_name_them(example, result_of):
+def test_steps_in_other_files_name_their_file(example, result_of):
     flow = example.flow()
     elsewhere = replace(flow.steps[2], span=replace(flow.steps[2].span, path="lib/helper.py", line=7))
     source = replace(flow.source, span=replace(flow.source.span, path="main.py"))
@@ -156,7 +156,7 @@ def test_a_multi_line_step_is_joined(example, result_of):
     )
 
 
-def test_long_lines_are_cut_to_the_terminal_and_whole_in_a_file(example, result_of):
+def test_long_lines_are_cut_on_a_terminal_and_written_in_full_to_a_file(example, result_of):
     result = result_of(example.finding())
     narrow = shown(result, View(width=40)).splitlines()
     assert all(len(line) <= 40 for line in narrow if "│" in line or "assign" in line or "register" in line)

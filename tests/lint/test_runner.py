@@ -149,7 +149,7 @@ def test_accepted_flows_stay_accepted_when_lines_move(example, in_directory, lin
     assert result.vanished == ()
 
 
-def test_a_new_flow_with_an_accepted_fingerprint_reports_all_flows_with_it(
+def test_a_new_flow_with_an_accepted_fingerprint_makes_all_flows_with_that_fingerprint_new(
     example, in_directory, lint, accept
 ):
     root = in_directory({"node.py": example.text})

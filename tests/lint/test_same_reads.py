@@ -1,4 +1,4 @@
-"""What of an object's changes can be told where a call begins, and where loops and carriers begin again."""
+"""Which changes of an object a call detects before a replay, and where loops and carriers resume."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def same(store: Store, reads: Reads) -> bool:
 
 
 def noted(store: Store, *objects: Obj) -> Reads:
-    """Return reads of a call that looked at objects as they are."""
+    """Return the reads of a call that read these objects in their present state."""
     reads = Reads()
     for obj in objects:
         reads.look(obj)
@@ -66,7 +66,7 @@ def noted(store: Store, *objects: Obj) -> Reads:
 
 
 def hidden(store: Store, obj: Obj, name: str, value: Value) -> None:
-    """Store a field on a path that is left again."""
+    """Store a field on a path that is then left."""
     store.push()
     store.put((obj, name), value)
     store.pop()
@@ -97,7 +97,7 @@ def test_data_stored_on_another_path_is_not_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_data_inside_what_an_object_holds_is_seen(store, obj):
+def test_data_inside_a_held_object_is_seen(store, obj):
     inner = Obj("lib", "inner")
     store.put((obj, "x"), pointer(inner))
     reads = noted(store, obj)
@@ -122,13 +122,13 @@ def test_a_store_into_a_part_or_below_it_prevents_the_replay(store, obj):
     assert not same(store, reads)
 
 
-def test_a_change_of_an_objects_meaning_is_always_seen(store, obj):
+def test_a_change_in_the_description_of_an_object_is_always_seen(store, obj):
     reads = noted(store, obj)
     obj.describe("another thing")
     assert not same(store, reads)
 
 
-def test_a_call_can_be_replayed_only_if_nothing_of_its_objects_is_left(store):
+def test_a_call_is_replayed_only_if_no_reachable_object_refers_to_an_object_that_the_call_creates(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -136,7 +136,7 @@ def test_a_call_can_be_replayed_only_if_nothing_of_its_objects_is_left(store):
     hidden(store, holder, "x", pointer(obj))
     assert same(store, reads)
     store.put((holder, "x"), pointer(obj))
-    assert not same(store, reads)  # making it would first move what is held to the older ones
+    assert not same(store, reads)  # creating the object would first merge the held one into the older ones
 
 
 def test_only_visible_holders_of_an_object_count(store, obj):
@@ -216,7 +216,7 @@ def test_the_cache_of_arrivals_is_valid_until_a_carrier_passes_on_more():
     assert graph.through(frozenset([item]), frozenset([carried])) != first
 
 
-def test_a_cached_arrival_records_the_carriers_it_depends_on():
+def test_a_cached_arrival_records_the_carriers_on_which_it_depends():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]

@@ -1,4 +1,4 @@
-"""Calls that share a context: no flow is missed, and long programs are analysed completely."""
+"""If calls share a context, no flow is missed and long programs are analysed completely."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ rospy.Subscriber("in", F, on)
 
 
 @pytest.mark.usefixtures("sharing")
-def test_the_conditions_of_all_callers_decide_what_runs(tmp_path):
+def test_the_conditions_of_all_callers_decide_whether_a_shared_call_runs(tmp_path):
     (tmp_path / "node.py").write_text(CHOSEN)
     assert [f.kind for f in analyse([tmp_path]).flows] == ["implicit"]
 

@@ -58,7 +58,7 @@ def test_reachability_follows_data_and_control_edges_within_a_set():
     assert closure([0], [[[1], [0]]]) == {0, 1}
 
 
-def test_a_source_reaches_by_data_and_by_conditions():
+def test_a_source_reaches_nodes_through_data_and_through_conditions():
     of = graph(5, data={1: [0], 3: [2]}, control={2: [1]})
     found = tracer(of).reach(SimpleNamespace(nodes={0}))
     assert (found.data, found.any, found.counted) == ({0, 1}, {0, 1, 2, 3}, {})
@@ -97,7 +97,7 @@ def test_data_behind_a_length_includes_the_counted_elements():
     assert (formers(2), formers(4), formers(1)) == ([1], [2], [0])
 
 
-def test_constants_chosen_by_conditions_are_found_with_their_makers():
+def test_constants_chosen_by_conditions_are_found_with_the_nodes_that_make_them():
     """Node 5 is chosen by the branch (9, 1); it is made from 4, and 4 from 3, all under that branch."""
     under = frozenset({(9, 1)})
     of = graph(
@@ -113,7 +113,7 @@ def test_constants_chosen_by_conditions_are_found_with_their_makers():
     assert tracer(of).made_there({6, 9}) == set()
 
 
-def test_a_copy_stands_for_the_node_whose_conditions_it_lacks():
+def test_a_copy_without_conditions_is_traced_back_to_the_node_that_has_them():
     under = frozenset({(9, 1)})
     of = graph(10, data={7: [8]}, branches={5: under, 7: ()}, stands_for={8: 5})
     assert made_alongside(of) == {7: [5]}
@@ -278,7 +278,7 @@ def test_a_wrapper_has_the_argument_places_of_its_model_by_default():
         ("something else", "Something else."),
     ],
 )  # fmt: skip
-def test_mistakes_on_the_command_line_give_one_sentence(message, sentence):
+def test_mistakes_on_the_command_line_are_reported_in_one_sentence(message, sentence):
     assert _sentence(message, KNOWN) == sentence
 
 

@@ -16,7 +16,7 @@ from tarl_lint.system.model import Hop
 
 
 def spans(count: int) -> dict[int, Span]:
-    """Return a span for each key; a lower key stands above."""
+    """Return a span for each key; the span of a lower key comes first."""
     return {key: Span("n.py", key + 1, 1, key + 1, 9) for key in range(count)}
 
 
@@ -139,7 +139,7 @@ def test_the_kind_of_a_chain_is_that_of_its_weakest_hop():
 
 
 class Texts:
-    """Files in which every stretch is its first four numbers."""
+    """Source files in which the text of a span consists of the first four numbers of that span."""
 
     def __getitem__(self, path: str) -> Texts:
         self.path = path

@@ -1,4 +1,4 @@
-"""Misconfigurations sown into the example workspace, of the kinds that ROSDiscover looks for: each is found.
+"""The linter finds each misconfiguration injected into the example workspace; the kinds are those of ROSDiscover.
 
 ROSDiscover (Timperley et al., ICSA 2022) detects ends that are not connected: names that are wrong in the code or the
 launch file, remappings that have no effect, nodes in the wrong namespace, and connections that ROS refuses. The other

@@ -27,7 +27,7 @@ def place(example, in_directory) -> Path:
     return in_directory({"node.py": example.text, "clean.py": "import rospy\n\n\ndef f(x):\n    return x\n"})
 
 
-def test_a_run_on_a_clean_file_imports_nothing_heavy(place):
+def test_a_run_on_a_clean_file_imports_no_heavy_modules(place):
     program = f"""
 import sys
 from tarl_lint.cli import main
@@ -75,7 +75,7 @@ print("tarl_lint.engine" in sys.modules)
 
 
 @pytest.mark.parametrize("name", ["sarif", "gitlab", "junit", "github", "dot", "mermaid", "json"])
-def test_no_report_needs_anything_heavy(place, name):
+def test_no_report_format_imports_heavy_modules(place, name):
     program = f"""
 import sys
 from tarl_lint.cli import main

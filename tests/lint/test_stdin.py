@@ -20,7 +20,7 @@ def lint(monkeypatch, capsys):
     return go
 
 
-def test_the_text_replaces_the_named_file(example, in_directory, lint):
+def test_the_text_from_stdin_replaces_that_of_the_named_file(example, in_directory, lint):
     in_directory({"src/node.py": "x = 1\n"})
     code, out, _ = lint(example.text, "-", "--stdin-filename", "src/node.py", "--format", "concise")
     assert code == 1
@@ -47,7 +47,7 @@ def test_settings_are_those_of_the_named_file(example, in_directory, lint):
     assert lint(example.text, "-", "--stdin-filename", "node.py")[0] == 1
 
 
-def test_unreadable_text_is_reported_like_a_file(in_directory, lint):
+def test_unreadable_stdin_is_reported_like_an_unreadable_file(in_directory, lint):
     in_directory({})
     assert (
         "a.py:1:1 TARL001 The file is not valid Python" in lint("def (", "-", "--stdin-filename", "a.py")[1]

@@ -300,7 +300,7 @@ message_filters.TimeSynchronizer(fs=subs, queue_size=10).registerCallback(each)
         ("subs = [left, right]\nsubs.append(state)", "left a, right b, state c"),
         ("subs = [left, right]\nif rospy.get_param('~c'): subs.append(state)", "left a, right b, state c"),
         ("subs = []\nsubs.append(left)", "left a"),
-        (  # the first one may be missing
+        (  # the first subscriber may be missing
             "subs = [left]\nif rospy.get_param('~c'): subs.append(right)\nsubs.append(state)",
             "left a, right b, state b, state c",
         ),
@@ -318,7 +318,7 @@ message_filters.TimeSynchronizer(fs=subs, queue_size=10).registerCallback(each)
         ),
     ],
 )
-def test_appended_subscribers_keep_their_places(tmp_path, made, pairs):
+def test_synchronised_subscribers_in_a_list_keep_their_positions(tmp_path, made, pairs):
     flows = analysed(tmp_path, node=SYNCHRONISED.format(made)).flows
     assert sorted({f"{f.source.topics[0]} {f.sink.topics[0]}" for f in flows}) == pairs.split(", ")
 
@@ -328,7 +328,7 @@ def test_two_runs_give_the_same_result(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["msg.name", "msg.name + 'x'", "str(msg.name)"])
-def test_a_key_from_data_makes_its_store_a_step(tmp_path, key):
+def test_a_store_under_a_key_from_data_is_a_step(tmp_path, key):
     node = f"""
         import rospy
         def on(msg):

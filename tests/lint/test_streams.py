@@ -25,7 +25,7 @@ def run(directory: Path, redirections: str, *arguments: str) -> subprocess.Compl
 @pytest.mark.parametrize(
     "arguments", [[], ["--format", "json"], ["--explain", "TARL101"], ["--show-settings"]]
 )
-def test_a_full_disk_gives_one_sentence(node, arguments):
+def test_a_full_disk_is_reported_in_one_sentence(node, arguments):
     done = run(node.parent, "> /dev/full", *arguments)
     assert done.returncode == 2
     said = "tarl-lint: Cannot write the report to standard output: No space left on device.\n"
@@ -38,7 +38,7 @@ def test_closed_streams_affect_only_the_output(node, redirections):
     assert (done.returncode, done.stderr) == (1, "")
 
 
-def test_a_closed_standard_input_gives_one_sentence(node):
+def test_a_closed_standard_input_is_reported_in_one_sentence(node):
     done = run(node.parent, "<&-", "-")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == ("tarl-lint: Standard input is closed: omit -, or pipe the text of a file to it.\n")

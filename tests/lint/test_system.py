@@ -99,7 +99,7 @@ def test_arguments_choose_what_is_launched(workspace, capsys):
     ]
 
 
-def test_an_unread_node_may_connect_topics_in_its_remappings(workspace, capsys):
+def test_a_node_whose_code_is_not_read_may_connect_the_topics_in_its_remappings(workspace, capsys):
     driver = '<node pkg="base" type="mux" name="mux"><remap from="i" to="/raw"/><remap from="o" to="/safe"/></node>'
     file = launched(workspace, relay("one", "/scan", "/raw") + driver + relay("two", "/safe", "/cmd_vel"))
     _, out, _ = run(capsys, "--launch", file)

@@ -1,4 +1,4 @@
-"""Columns of a picture of a system: each node after its inputs, each unfed topic just before its readers."""
+"""Columns of a system picture: each node follows its inputs; topics without a publisher directly precede readers."""
 
 from __future__ import annotations
 

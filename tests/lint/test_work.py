@@ -19,7 +19,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.settings.config import Config
 
-MOST = 2.5 * PROGRAM_LIMIT  # statements, limit for any program
+MOST = 2.5 * PROGRAM_LIMIT  # maximum number of statements of any program
 
 
 def work(text: str, *others: str, thorough: bool = False) -> Linker:
@@ -222,7 +222,7 @@ rospy.Subscriber("a", Float64, on)
     assert lines == {4, 5}
 
 
-def test_a_root_is_not_rerun_for_its_own_stores():
+def test_an_entry_point_is_not_rerun_for_its_own_stores():
     text = "import rospy\nx = []\nfor i in range(3):\n    x.append([i])\nprint(x, rospy.Publisher('a', F))\n"
     assert work(text).total < 20
 
@@ -253,7 +253,7 @@ def test_nested_loops_take_a_bounded_number_of_passes():
     assert len(Tracer(machine).flows()) == 1
 
 
-def test_nested_elements_of_unknown_objects_are_few():
+def test_an_unknown_object_has_few_nested_elements():
     deep = "".join(f"        part = (part[{n % 2}], part[i], part)[n]\n" for n in range(12))
     machine = work(callback(f"    part = load(x)\n    for i in x:\n{deep}        part.shift(i)\n"))
     widest = max(
@@ -297,4 +297,4 @@ def test_a_library_does_not_pass_an_instance_that_it_calls_to_itself():
     body = "\n".join(f"        x = self.conv{n}(x)" for n in range(8))
     machine = work(NET.replace("LAYERS", layers).replace("BODY", body))
     called = [frame for frame in machine.frames.values() if frame.function.name == "__call__"]
-    assert len(called) == 2  # by `on`, and by the library
+    assert len(called) == 2  # called by `on` and by the library

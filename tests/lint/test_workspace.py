@@ -103,7 +103,7 @@ def test_non_constant_values_are_unknown_and_nothing_is_executed(tmp_path: Path)
     ["while True:\n    x = 1", "def f():\n    return f()\nx = f()", "for i in range(10**9):\n    pass",
      "x = [" * 90 + "]" * 90, "for i in range(90000):\n    x = i\n"],
 )  # fmt: skip
-def test_endless_files_are_read_in_part(tmp_path: Path, text: str) -> None:
+def test_only_the_beginning_of_an_endless_file_is_read(tmp_path: Path, text: str) -> None:
     assert isinstance(interpreted(tmp_path, text), dict)
 
 
@@ -288,7 +288,7 @@ def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Pat
     found = workspace(tmp_path)
     assert [(one.package.name, one.marker) for one in found.hidden] == [
         ("old", tmp_path / "ws/src/old/COLCON_IGNORE")
-    ]  # build output has no marker of a person
+    ]  # markers in build output are not written by a person
     assert "old" not in {one.name for one in found.packages}
     for old in (found.package("old"), found.package_of(tmp_path / "ws/src/old/scripts/drive.py")):
         assert old is not None
@@ -296,7 +296,7 @@ def test_a_hidden_package_is_found_by_name_and_path_but_not_listed(tmp_path: Pat
     assert found.package("elsewhere") is None
 
 
-def test_a_visible_package_counts_before_a_hidden_one_of_the_same_name(tmp_path: Path) -> None:
+def test_a_visible_package_takes_precedence_over_a_hidden_one_of_the_same_name(tmp_path: Path) -> None:
     write(package(tmp_path / "a_fork", "arm"), CATKIN_IGNORE="")
     package(tmp_path / "arm", "arm")
     found = read(tmp_path)
@@ -305,7 +305,7 @@ def test_a_visible_package_counts_before_a_hidden_one_of_the_same_name(tmp_path:
     assert (arm.folder, found.hidden) == (tmp_path / "arm", ())
 
 
-def test_markers_below_a_hidden_folder_hide_too(tmp_path: Path) -> None:
+def test_a_hidden_package_names_its_own_marker_before_that_of_its_folder(tmp_path: Path) -> None:
     package(tmp_path / "arms/left", "left")
     write(tmp_path / "arms", CATKIN_IGNORE="")
     write(package(tmp_path / "arms/right", "right"), COLCON_IGNORE="")

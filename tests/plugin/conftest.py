@@ -1,4 +1,4 @@
-"""Import both packages completely: pytester unloads what an in-process run imported, so none may be half loaded."""
+"""Import both packages completely, since pytester unloads modules that an in-process run imports for the first time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bags of the tank: missions as recorded on a robot, in every format."""
+"""Bags with missions of the tank, as recorded on a robot, in every format."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def fixture_file(tank: pytest.Pytester) -> Path:
 
 
 def columns_of(fixture: bytes) -> dict[str, list[object]]:
-    """Return the recorded columns, without the header, which contains a digest of the test's modules."""
+    """Return the recorded columns without the header, because the header contains a digest of the test's modules."""
     with np.load(io.BytesIO(fixture), allow_pickle=False) as arrays:
         return {name: arrays[name].tolist() for name in arrays.files if name != HEADER}
 

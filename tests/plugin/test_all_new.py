@@ -1,4 +1,4 @@
-"""A sensor whose deployed value was never recorded makes every situation new: the report and the ranking then."""
+"""The report and the ranking if a sensor has only new values, so that every situation is new."""
 
 from __future__ import annotations
 

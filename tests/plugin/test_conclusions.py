@@ -1,4 +1,4 @@
-"""Results besides the verdict: output for CI, several drifts, parts of the reward."""
+"""Results other than the verdict: output for CI, several drifts, parts of the reward."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_the_lost_part_of_the_reward_is_shown_with_its_region(drifting: pytest.P
     assert "Lost where" in page.read_text("utf-8")
 
 
-def test_holm_corrects_the_verdicts_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
+def test_verdicts_are_corrected_by_holm_after_all_tests_have_run(drifting: pytest.Pytester) -> None:
     told = drifting.runpytest(*ONLINE, "--tarl-holm", "-v")
     told.assert_outcomes(failed=1, passed=1, deselected=1)
     told.stdout.fnmatch_lines(["*clogged?*FAILED*", "*fine?*PASSED*", "*corrected for the 2 comparisons*"])
@@ -118,7 +118,7 @@ def test_a_loss_that_is_significant_alone_may_not_be_after_correction(drifting: 
     short = (
         "--tarl-online",
         "--tarl-episodes=2",
-    )  # so few permutations that the smallest p-value is far from 0
+    )  # few permutations, so that the smallest possible p-value is far from 0
     drifting.runpytest(*short, "--tarl-drift=clogged", "--tarl-looks=1").assert_outcomes(
         failed=1, deselected=1
     )

@@ -106,7 +106,7 @@ MISTAKES: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_of_the_test_gives_one_sentence(tmp_path, mistake):
+def test_a_mistake_of_the_test_is_reported_in_one_sentence(tmp_path, mistake):
     call, words = MISTAKES[mistake]
     with episode(tmp_path) as (tarl, recorder):
         with pytest.raises(SettingsError, match=words):

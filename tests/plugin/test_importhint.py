@@ -33,7 +33,9 @@ def test_other_import_errors_come_without_a_hint(tank: pytest.Pytester, line: st
     told.stdout.no_fnmatch_line("*TARL*")
 
 
-def test_a_test_inside_a_package_that_imports_ros_is_told_to_move_out(tank: pytest.Pytester) -> None:
+def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_the_test(
+    tank: pytest.Pytester,
+) -> None:
     package = tank.mkpydir("robot")
     (package / "__init__.py").write_text("from .driver import Driver\n")
     (package / "driver.py").write_text("import rospy\nclass Driver:\n    pass\n")

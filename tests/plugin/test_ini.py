@@ -90,7 +90,9 @@ def test_only_a_mode_activates_the_plugin(pytester: pytest.Pytester, lines: str,
         ("tarl_utility = q", "(tarl_utility is set in "),
     ],
 )
-def test_an_invalid_value_gives_one_sentence(pytester: pytest.Pytester, lines: str, words: str) -> None:
+def test_an_invalid_value_is_reported_in_one_sentence(
+    pytester: pytest.Pytester, lines: str, words: str
+) -> None:
     pytester.makeini(f"[pytest]\n{lines}")
     pytester.makepyfile(NO_NODE)
     ended = pytester.runpytest("--tarl-online")

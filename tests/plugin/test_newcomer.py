@@ -8,7 +8,7 @@ from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 
 @pytest.mark.parametrize("start", ["inside", "above"])
-def test_the_current_folder_does_not_matter(
+def test_results_do_not_depend_on_the_current_folder(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, start: str
 ) -> None:
     tank.runpytest(*RECORD)
@@ -51,14 +51,14 @@ def test_an_unwritable_folder_is_reported_before_the_first_episode(tank: pytest.
     told.stdout.no_fnmatch_line("*mkdir*")
 
 
-def test_all_modes_work_without_the_terminal_plugin(tank: pytest.Pytester) -> None:
+def test_all_modes_work_if_pytests_terminal_plugin_is_disabled(tank: pytest.Pytester) -> None:
     assert tank.runpytest(*RECORD, "-p", "no:terminal").ret == pytest.ExitCode.OK
     ended = tank.runpytest(*ONLINE, "--tarl-repair", "-p", "no:terminal")
     assert ended.ret == pytest.ExitCode.TESTS_FAILED
     assert list((tank.path / ".tarl" / "patches").glob("*.patch"))
 
 
-def test_a_missing_marker_gives_one_sentence_without_a_traceback(tank: pytest.Pytester) -> None:
+def test_a_missing_marker_is_reported_in_one_sentence_without_a_traceback(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_bare="def test_bare(tarl):\n    pass\n")
     told = tank.runpytest("test_bare.py")
     told.assert_outcomes(errors=1)
@@ -92,7 +92,7 @@ def test_a_run_without_marked_tests_says_that_nothing_was_run(
 
 
 @pytest.mark.parametrize("helper", [False, True])
-def test_a_mistake_outside_a_test_gives_one_sentence_with_its_line(
+def test_a_mistake_outside_a_test_is_reported_in_one_sentence_with_its_line(
     tank: pytest.Pytester, helper: bool
 ) -> None:
     wrong = "from pytest_tarl.ros import message_type\n\nScan = message_type('sensor_msgs/msg/Skan')\n"
@@ -112,7 +112,9 @@ def test_the_verdict_is_the_failure_message(tank: pytest.Pytester) -> None:
     )
 
 
-def test_a_file_of_another_kind_is_refused_without_advice_to_trust_it(tank: pytest.Pytester) -> None:
+def test_the_error_about_a_file_of_another_kind_does_not_advise_trusting_the_file(
+    tank: pytest.Pytester,
+) -> None:
     tank.runpytest(*RECORD)
     fixture_file(tank).write_text("x")
     told = tank.runpytest(*ONLINE)
@@ -120,7 +122,7 @@ def test_a_file_of_another_kind_is_refused_without_advice_to_trust_it(tank: pyte
     told.stdout.no_fnmatch_line("*pickle*")
 
 
-def test_a_failure_that_ends_in_a_full_stop_has_only_one(tank: pytest.Pytester) -> None:
+def test_a_failure_message_that_ends_in_a_full_stop_gets_no_second_one(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 

@@ -64,7 +64,7 @@ def test_a_valid_marker_has_default_values() -> None:
         ({"colour": 1}, "no argument 'colour'"),
     ],
 )
-def test_an_invalid_marker_gives_one_sentence(change: dict[str, Any], words: str) -> None:
+def test_an_invalid_marker_is_reported_in_one_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(SettingsError, match=words) as raised:
         designation("t.py::test", (), GOOD | change)
     assert str(raised.value).startswith("t.py::test")
@@ -96,7 +96,7 @@ def test_flags_select_the_mode(change: dict[str, Any], mode: str) -> None:
         ({"episodes": 1}, "--tarl-episodes"),
     ],
 )
-def test_invalid_flags_give_one_sentence(change: dict[str, Any], words: str) -> None:
+def test_invalid_flags_are_reported_in_one_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(SettingsError, match=words):
         options(FLAGS | change)
 

@@ -78,7 +78,7 @@ def test_a_drift_without_an_effect_passes(tank: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*test_fills?clean?: no difference*"])
 
 
-def test_without_a_drift_the_scenario_is_called_online(tank: pytest.Pytester) -> None:
+def test_the_scenario_is_called_online_if_no_drift_is_named(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", '    drifts={"clogged": 0.25},\n', "")
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE, "-v").stdout.fnmatch_lines(["*test_fills?online?*PASSED*"])
@@ -192,7 +192,7 @@ def test_every_mistake_gives_advice(tank: pytest.Pytester, file: str, old: str, 
     assert not list((tank.path / ".tarl").glob("utility/*"))
 
 
-def test_failing_episodes_are_reported_as_unfinished_software(tank: pytest.Pytester) -> None:
+def test_recording_stops_with_advice_if_the_first_episodes_all_fail(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(failed=1, deselected=1)
@@ -248,7 +248,7 @@ def test_a_skip_inside_the_test_skips_it(tank: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*no simulator here*"])
 
 
-def test_using_the_fixture_without_the_marker_gives_one_sentence(tank: pytest.Pytester) -> None:
+def test_using_the_fixture_without_the_marker_is_reported_in_one_sentence(tank: pytest.Pytester) -> None:
     tank.makepyfile("def test_it(tarl):\n    pass\n")
     tank.runpytest().stdout.fnmatch_lines(["*without the marker*@pytest.mark.tarl*"])
 

@@ -106,7 +106,7 @@ def test_drifts_without_the_fixture_tarl_drift_are_refused(
 
 
 @pytest.mark.parametrize("drifts", ["5", "None", "{1: 2}"])
-def test_an_invalid_marker_gives_one_sentence(tank: pytest.Pytester, drifts: str) -> None:
+def test_an_invalid_marker_is_reported_in_one_sentence(tank: pytest.Pytester, drifts: str) -> None:
     changed(tank, "test_tank", '{"clogged": 0.25}', drifts)
     told = tank.runpytest(*ONLINE)
     told.assert_outcomes(failed=1, deselected=1)

@@ -1,4 +1,4 @@
-"""Replaying a bag: what was latched, and at which time a node receives a message."""
+"""Replaying a bag: which messages are latched, and at which time a node receives each message."""
 
 from __future__ import annotations
 

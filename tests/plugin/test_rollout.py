@@ -1,4 +1,4 @@
-"""Episodes started ahead of their request: the results are the same, and their number is limited."""
+"""Starting episodes ahead of their request does not change the results, and is limited in number."""
 
 from __future__ import annotations
 

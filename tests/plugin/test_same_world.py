@@ -1,6 +1,6 @@
 """Compare a world with itself, with a recording on disk and the command line: constant rewards give no difference.
 
-The worlds are those of benchmarks/same_worlds; how often they are told from themselves is measured in
+The worlds are those of benchmarks/same_worlds; how often a difference is reported between equal worlds is measured in
 benchmarks/same_world.py. Here the seeds are fixed, so the results are always the same.
 """
 

@@ -81,7 +81,7 @@ def test_a_guard_reads_the_variable_that_holds_the_sensor(expr: str) -> None:
         ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],
 )
-def test_an_invalid_declaration_gives_one_sentence(arguments: dict[str, object], words: str) -> None:
+def test_an_invalid_declaration_is_reported_in_one_sentence(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(SettingsError, match=words):
         Sensor(**arguments)  # type: ignore[arg-type]
 
@@ -103,7 +103,7 @@ def test_numbers_of_any_type_have_a_bin(value: object) -> None:
     assert Sensor("x", low=0, high=2, bins=2).bin(value) == 1
 
 
-def test_a_number_beyond_the_largest_float_is_outside_the_range() -> None:
+def test_a_number_that_exceeds_the_largest_float_is_outside_the_range() -> None:
     assert Sensor("x", low=0, high=1, bins=2).bin(10**400) == 2
     assert Sensor("x", low=0, high=1, bins=2).bin(-(10**400)) == -1
 
@@ -210,6 +210,6 @@ def test_a_single_edge_is_a_threshold() -> None:
 @pytest.mark.parametrize(
     "wrong", [{"edges": (0.5,), "angle": True}, {"edges": (0.5,), "tilings": 2}, {"edges": ("x",)}]
 )
-def test_invalid_edges_give_one_sentence(wrong: dict[str, Any]) -> None:
+def test_invalid_edges_are_reported_in_one_sentence(wrong: dict[str, Any]) -> None:
     with pytest.raises(SettingsError, match=r"edges must be|tilings must be"):
         Sensor("x", **wrong)

@@ -1,4 +1,4 @@
-"""Four sensors of different kinds, two nodes and two taint lists in one test, from recording to verdict and region."""
+"""A test with four kinds of sensors, two nodes and two taint lists, from recording to verdict and region."""
 
 from __future__ import annotations
 

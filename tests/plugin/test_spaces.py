@@ -51,7 +51,7 @@ def test_each_direction_is_drawn_independently_and_options_are_equally_likely() 
     assert 900 < downs < 1100
 
 
-def test_without_this_scenario_the_values_are_nominal() -> None:
+def test_an_episode_without_the_scenario_of_the_space_has_the_nominal_values() -> None:
     drifts = {"world": WORLD, "dusk": drift("t", "dusk", {"light": 0.3}), "rain": drift("t", "rain", 0.2)}
     assert value(drifts, (), None, 1) == {"mud": 1.0, "camera": "up"}
     assert value(drifts, (), "dusk", 1) == {"mud": 1.0, "camera": "up", "light": 0.3}
@@ -96,7 +96,7 @@ def test_the_nominal_option_is_the_first_unless_stated() -> None:
         (lambda: drift("t", "world", {"a": Drift(WORLD.value)}), "inside a dictionary"),
     ],
 )
-def test_an_invalid_space_gives_one_sentence(make: Any, told: str) -> None:
+def test_an_invalid_space_is_reported_in_one_sentence(make: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         make()
 
@@ -146,7 +146,9 @@ def spaced(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_a_space_is_recorded_as_nominal_and_compared_as_drawn(spaced: pytest.Pytester) -> None:
+def test_recording_uses_the_nominal_point_of_a_space_and_comparing_draws_from_it(
+    spaced: pytest.Pytester,
+) -> None:
     changed(spaced, "test_tank", "    tarl.start", '    print("PUMP", pump == 1.0)\n    tarl.start')
     plain = spaced.runpytest("-s")
     plain.assert_outcomes(passed=2)

@@ -1,4 +1,4 @@
-"""Modules that import a module to be dropped are found, however they name it, and no others."""
+"""All modules that import a dropped module are found, for every form of import, and no others."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def test_equal_episodes_are_reported_as_one_tested_world(tank: pytest.Pytester) 
     said(tank, "  only one world was tested: all 16 episodes are equal*")
 
 
-def test_with_a_confidence_recording_continues_until_it_can_decide(tank: pytest.Pytester) -> None:
+def test_with_a_stated_confidence_recording_continues_until_it_can_decide(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     stated = load(fixture_file(tank)).stated
@@ -58,7 +58,7 @@ def test_with_a_confidence_recording_continues_until_it_can_decide(tank: pytest.
     assert stated.success.method == "confidence sequence"
 
 
-def test_with_a_confidence_too_many_failures_end_the_recording(tank: pytest.Pytester) -> None:
+def test_with_a_stated_confidence_too_many_failures_end_the_recording(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
     changed(tank, "test_tank", "< 0.1, ", "< 0.1 and draws.random() < 0.5, ")
     told = tank.runpytest(*RECORD)
@@ -75,7 +75,7 @@ def test_with_a_confidence_too_many_failures_end_the_recording(tank: pytest.Pyte
         ("total_range=3, min_success=0.9,", "*total_range must be two finite bounds*"),
     ],
 )
-def test_a_confidence_that_can_never_be_reached_is_a_usage_error(
+def test_an_unreachable_confidence_is_a_usage_error(
     tank: pytest.Pytester, marked: str, sentence: str
 ) -> None:
     changed(tank, "test_tank", "min_success=0.9,", marked)

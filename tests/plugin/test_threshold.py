@@ -9,7 +9,7 @@ import pytest
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 
-def test_a_sensor_with_one_edge_works_from_recording_to_patch(tank: pytest.Pytester) -> None:
+def test_a_sensor_with_one_edge_can_be_recorded_compared_and_repaired(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "low=0, high=1, bins=10", "edges=(0.5,)")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-seed=3")

@@ -48,7 +48,9 @@ def ran(project: pytest.Pytester) -> dict[str, int]:
     return {drift: int(one["episodes"]["online"]) for drift, one in results(project).items()}
 
 
-def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_left(sharing: pytest.Pytester) -> None:
+def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_did_not_need(
+    sharing: pytest.Pytester,
+) -> None:
     told = sharing.runpytest("--tarl-online", "--tarl-total=80")
     told.assert_outcomes(failed=1, passed=1, deselected=1)
     episodes = ran(sharing)
@@ -64,10 +66,10 @@ def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_left(shari
     )
 
 
-def test_a_shared_comparison_is_the_one_that_runs_alone_with_as_many_episodes(
+def test_a_shared_comparison_equals_one_that_runs_alone_with_as_many_episodes(
     sharing: pytest.Pytester,
 ) -> None:
-    """The command in the output repeats the comparison; its episodes are the same, so is what they lost."""
+    """The command in the output repeats the comparison, with the same episodes and the same loss."""
     sharing.runpytest("--tarl-online", "--tarl-total=80")
     shared = results(sharing)
     for drift, one in shared.items():
@@ -95,7 +97,7 @@ def test_no_episode_runs_twice_and_no_finished_episodes_are_kept(sharing: pytest
     sharing.runpytest("--tarl-online", "--tarl-total=80")
     assert len(file.read_text()) == sum(ran(sharing).values())
     before = len(file.read_text())
-    sharing.runpytest("--tarl-online", "--tarl-total=80", "--tarl-resume")  # nothing to resume: all run again
+    sharing.runpytest("--tarl-online", "--tarl-total=80", "--tarl-resume")  # no kept episodes: all run again
     assert len(file.read_text()) == 2 * before
 
 
@@ -125,13 +127,13 @@ def test_a_total_too_small_for_all_comparisons_is_refused_before_any_episode(
     told.stderr.fnmatch_lines(["*--tarl-total=12 is too small: this run has 3 comparisons*Raise it to *"])
 
 
-def test_processes_that_do_not_know_all_tests_cannot_share(sharing: pytest.Pytester) -> None:
+def test_a_shared_total_is_refused_with_xdist(sharing: pytest.Pytester) -> None:
     told = sharing.runpytest("--tarl-online", "--tarl-total=80", "-n2")
     assert told.ret == pytest.ExitCode.USAGE_ERROR
     told.stderr.fnmatch_lines(["*--tarl-total shares episodes over all tests of a run, but with -n*"])
 
 
-def test_an_error_in_one_test_leaves_the_others_their_share(sharing: pytest.Pytester) -> None:
+def test_an_error_in_one_test_does_not_take_episodes_from_the_others(sharing: pytest.Pytester) -> None:
     Path(sharing.path / "test_broken.py").write_text(
         (sharing.path / "test_tank.py").read_text().replace("def test_fills", "def test_breaks")
     )

@@ -1,4 +1,4 @@
-"""A Gymnasium environment as the world of a test: by an environment of our own, and by real ones where installed."""
+"""Gymnasium environments as worlds of tests: a small one defined here, and installed real ones."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Environment:
 
 
 class Episode:
-    """The part of the fixture `tarl` that a world uses; `answers` are what the node publishes in each step."""
+    """The part of the fixture `tarl` that a world uses; the node publishes one of `answers` in each step."""
 
     def __init__(self, answers: list[Any], seed: int = 0) -> None:
         self.seed, self.answers, self.ends, self.heard, self.time = seed, answers, [], [], 0.0
@@ -102,12 +102,12 @@ def test_the_seeds_of_an_episode_determine_the_environment() -> None:
 
 
 @pytest.mark.parametrize("answer", [float("nan"), [0.1, 0.2]])
-def test_an_action_that_is_none_is_refused(answer: Any) -> None:
+def test_the_action_none_is_refused(answer: Any) -> None:
     with pytest.raises(SettingsError, match="from /u is not in the environment's"):
         world(Episode([answer]), Environment()).step()
 
 
-def test_an_environment_without_a_time_step_needs_one() -> None:
+def test_an_environment_without_a_time_step_is_refused_unless_one_is_given() -> None:
     environment = Environment()
     environment.unwrapped = object()  # type: ignore[assignment]
     with pytest.raises(SettingsError, match="does not say how long a step is: pass dt"):

@@ -45,7 +45,7 @@ def run(folder: Path, *options: str) -> str:
 
 
 @pytest.mark.parametrize(("example", "test", "repair"), HERE)
-def test_an_example_is_recorded_compared_and_repaired_as_on_the_embedded_ros(
+def test_recording_comparing_and_repairing_an_example_gives_the_results_of_the_embedded_ros(
     tmp_path: Path, example: str, test: str, repair: str
 ) -> None:
     digests = {}

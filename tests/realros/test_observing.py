@@ -19,7 +19,7 @@ from tests.plugin.tank import NODE, RECORD, TEST
 from tests.realros.probes.running import installed
 
 MISSIONS, STEPS = 3, 20
-# ROS does not determine in which order messages on different topics arrive: the world waits for what the log holds
+# ROS does not define the order of messages on different topics, so the world waits until the log contains a message
 LOGGED = """
 import sys
 import time

@@ -1,4 +1,4 @@
-"""The stand-in gives the recorded results of the real ROS, which are checked where it is installed."""
+"""The stand-in gives the recorded results of the real ROS, and so does an installed ROS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The site, built once for all processes of a test run; or the one that TARL_SITE names."""
+"""The site that TARL_SITE names, or else one that is built once for all processes of a test run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture(scope="session")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the directory of a built site, without the gallery unless TARL_SITE names a whole one."""
+    """Return the directory of a built site; only a site that TARL_SITE names may have the gallery."""
     if named := os.environ.get("TARL_SITE"):
         return Path(named).resolve()
     fcntl = pytest.importorskip("fcntl", reason="processes of a test run share the site by flock")

@@ -1,4 +1,4 @@
-"""The site in a real browser, from the disk and without a network: it searches, draws, and is easy to read."""
+"""The site in a real browser, from disk and without a network: search, figures and accessibility."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ if os.environ.get("TARL_SLOW") or os.environ.get("TARL_SITE"):
 def opened(
     site: Path, page: str, script: str, directory: Path, *flags: str, at: str = ""
 ) -> tuple[dict[str, Any], list[str]]:
-    """Return what a script finds on a page, and the lines of the console."""
+    """Return the result of a script on a page, and the lines of the console."""
     if BROWSER is None:
         pytest.skip("no browser is installed, so the site was not opened")
     body = f"const found = {{}};{WAIT}{script}\ndocument.body.dataset.found = JSON.stringify(found);"
@@ -127,7 +127,9 @@ def test_search_finds_rules_and_messages(site: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("page", "dark"), READ_PAGES)
-def test_pages_can_be_read_by_everybody(site: Path, axe: str, tmp_path: Path, page: str, dark: bool) -> None:
+def test_pages_are_accessible_to_readers_with_disabilities(
+    site: Path, axe: str, tmp_path: Path, page: str, dark: bool
+) -> None:
     text = json.dumps(axe).replace("</script>", "<\\/script>")
     script = f"document.head.append(Object.assign(document.createElement('script'), {{text: {text}}}));{READ}"
     found, console = opened(site, page, script, tmp_path, *[DARK] * dark)

@@ -1,4 +1,4 @@
-"""The guide shows what `tarl fleet` prints for the example that `python -m website.fleet_example` writes."""
+"""The guide shows the output of `tarl fleet` for the example that `python -m website.fleet_example` writes."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ yaml = pytest.importorskip("yaml")
 tomllib = pytest.importorskip("tomllib", reason="the site is built on Python 3.11 or newer")
 
 WRITTEN = [path for path in written().values() if path.suffix == ".md"]
-PAGES = [path for path in WRITTEN if path.parent.name != "rules"]  # the tests of the rules run those
+PAGES = [path for path in WRITTEN if path.parent.name != "rules"]  # other tests run those snippets
 FENCE = re.compile(r"^( *)```(\w+)[^\n]*\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""Published versions stand side by side; the newest release is what readers get, and schemas keep their address."""
+"""All published versions are kept; the newest release is the default, and addresses of schemas never change."""
 
 from __future__ import annotations
 

@@ -5,13 +5,13 @@ import rospy
 from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Float64
 
-CROSS_GAIN = 0.05  # course change per metre beside the line: rad/m
+CROSS_GAIN = 0.05  # course change per metre of distance from the line, rad/m
 MOST_CROSSING = 0.7  # rad
 HEADING_GAIN = 1.2
 YAW_DAMPING = 0.6  # s
 MOST_RUDDER = 0.5  # rad
 CRUISE = 4.0  # m/s
-EASE = 1.5  # speed given up at full rudder: m/s
+EASE = 1.5  # reduction of speed at full rudder, m/s
 
 
 class Helmsman:
@@ -28,11 +28,11 @@ class Helmsman:
         rospy.Timer(rospy.Duration(0.25), self.steer)
 
     def on_fix(self, msg):
-        """Take the distance from the middle line, north positive."""
+        """Store the distance from the middle line, north positive."""
         self.cross = msg.point.y
 
     def on_compass(self, msg):
-        """Take the heading, north of east positive."""
+        """Store the heading, north of east positive."""
         self.heading = msg.data
 
     def steer(self, _):

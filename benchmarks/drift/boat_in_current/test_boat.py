@@ -1,4 +1,4 @@
-"""The boat passes the strait without leaving the fairway; every metre counts, and so does the middle line."""
+"""The boat passes the strait inside the fairway; progress near the middle line is rewarded most."""
 
 import math
 
@@ -18,7 +18,7 @@ TIME_BOUND = 45.0
 
 
 class Fairway:
-    """A fairway with a strait, in which a current may set north: `current`, m/s."""
+    """A fairway with a strait in which a current of `current` m/s may set north."""
 
     def __init__(self, rng, current):
         self.rng = rng
@@ -34,7 +34,7 @@ class Fairway:
         return self.east >= LENGTH
 
     def publish(self, bus):
-        """Publish what satellites and compass measure."""
+        """Publish the measurements of satellite receiver and compass."""
         fix = PointStamped()
         fix.point.x = self.east + self.rng.normal(0.0, 0.1)
         fix.point.y = self.north + self.rng.normal(0.0, 0.1)

@@ -13,7 +13,7 @@ MOST = 12.0  # N
 
 
 def bounded(force):
-    """Keep a force within what the winches can do."""
+    """Limit a force to the range of the winches."""
     if force > MOST:
         return MOST
     if force < -MOST:
@@ -22,7 +22,7 @@ def bounded(force):
 
 
 class CableDrone(Node):
-    """One law for each axis, each with gains of its own."""
+    """Control each axis by the same law with separate gains."""
 
     def __init__(self):
         super().__init__("cable_drone")
@@ -34,7 +34,7 @@ class CableDrone(Node):
         self.create_timer(0.1, self.on_timer)
 
     def on_place(self, msg):
-        """Take where the drone is, and how fast it moves."""
+        """Store the position and the speed of the drone."""
         self.vx = 0.5 * self.vx + 0.5 * (msg.point.x - self.x) / 0.1
         self.vy = 0.5 * self.vy + 0.5 * (msg.point.y - self.y) / 0.1
         self.vz = 0.5 * self.vz + 0.5 * (msg.point.z - self.z) / 0.1

@@ -1,4 +1,4 @@
-"""The drone stays in front of what it inspects, also in a steady wind; every axis counts in every step."""
+"""The drone stays in front of the inspected place, even in a steady wind; each axis is rewarded in each step."""
 
 import pytest
 
@@ -14,7 +14,7 @@ BLURRED = 0.3  # m, error in one axis
 
 
 class Wall:
-    """A drone of 2 kg on cables; `wind` pushes in all three directions from some moment on, N."""
+    """A drone of 2 kg on cables; from a random moment on, `wind` N push in each of the three directions."""
 
     def __init__(self, rng, wind):
         self.rng = rng
@@ -26,7 +26,7 @@ class Wall:
         self.blurred = 0
 
     def publish(self, bus):
-        """Publish where the drone is."""
+        """Publish the position of the drone."""
         place = PointStamped()
         place.point.x, place.point.y, place.point.z = (at + self.rng.normal(0.0, 0.002) for at in self.place)
         bus.publish("/place", place)
@@ -42,7 +42,7 @@ class Wall:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: a third for every axis that is near enough."""
+        """Return the reward of the step: a third for each axis whose error is small enough."""
         off = [abs(at - wanted) for at, wanted in zip(self.place, PLACE, strict=True)]
         self.blurred += max(off) > BLURRED
         return sum(0.04 if one <= BLURRED else -0.08 for one in off)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Push parcels off a belt: a gate weighs them, a pusher further down waits for their time."""
+"""Push parcels off a belt: a gate weighs them, and a pusher further down is timed to push them."""
 
 import rospy
 from std_msgs.msg import Float32
@@ -8,7 +8,7 @@ PLAN = {
     "travel": 2.0,  # from gate to pusher: s
     "hold": 0.35,  # how long to push: s
     "push": 0.7,  # share of full force
-    "heavy": 4.0,  # pushed with full force from here: kg
+    "heavy": 4.0,  # weight from which parcels are pushed with full force, kg
 }
 
 waiting = []
@@ -23,7 +23,7 @@ def on_gate(msg):
 
 
 def force_now(now):
-    """Return the force to push with at this moment."""
+    """Return the pushing force at this moment."""
     while waiting and now > waiting[0][0] + PLAN["hold"]:
         waiting.pop(0)
     if not waiting:

@@ -1,4 +1,4 @@
-"""Four parcels leave the belt where they should."""
+"""Four parcels leave the belt at the pusher."""
 
 import pytest
 
@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 DT = 0.05
 PUSHER = 1.0  # from the gate, m
 REACH = 0.14
-NEEDED = 0.035  # of full force times seconds, per kg
+NEEDED = 0.035  # share of full force times seconds, needed per kg
 
 
 class Belt:
@@ -35,14 +35,14 @@ class Belt:
         return all(done or lost for done, lost in zip(self.sorted, self.missed, strict=True))
 
     def publish(self, bus):
-        """Publish what the belt's encoder and the gate measure."""
+        """Publish the measurements of the belt's encoder and of the gate."""
         bus.publish("/belt", Float32(data=self.speed + self.rng.normal(0.0, 0.01)))
         if self.seen < 4 and self.places[self.seen] >= 0.0:
             bus.publish("/gate", Float32(data=self.weights[self.seen] + self.rng.normal(0.0, 0.05)))
             self.seen += 1
 
     def advance(self, command):
-        """Let the belt run for one step; the pusher moves what is in front of it."""
+        """Let the belt run for one step; the pusher moves the parcel in front of it."""
         force = self.force = max(0.0, min(1.0, command.data)) if command else 0.0
         for i, place in enumerate(self.places):
             if not self.sorted[i] and abs(place - PUSHER) <= REACH:
@@ -50,7 +50,7 @@ class Belt:
             self.places[i] += self.speed * DT
 
     def judge(self):
-        """Return the reward of the step: 2.5 for a parcel, -2.5 for a lost one, less the cost of force."""
+        """Return the reward of the step: 2.5 for a parcel, -2.5 for a lost one, minus the cost of force."""
         reward = -0.02 * self.force
         for i, weight in enumerate(self.weights):
             if self.sorted[i] or self.missed[i]:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follow the vehicle in front: close, and never into it."""
+"""Follow the vehicle in front closely without touching it."""
 
 import rospy
 from sensor_msgs.msg import Range
@@ -14,7 +14,7 @@ EMERGENCY = -8.0  # m/s²
 
 
 class Follower:
-    """Range and speed in, acceleration out."""
+    """Compute the acceleration from range and speed."""
 
     def __init__(self, soon=1.0):
         self.soon = soon
@@ -26,11 +26,11 @@ class Follower:
         rospy.Subscriber("/range", Range, self.on_range)
 
     def on_speed(self, msg):
-        """Take our own speed: m/s."""
+        """Store the speed of this vehicle, m/s."""
         self.speed = msg.data
 
     def on_range(self, msg):
-        """Take the distance to the vehicle in front."""
+        """Store the distance to the vehicle in front."""
         if self.gap is not None:
             closing = (self.gap - msg.range) / 0.1
             self.closing += 0.4 * (closing - self.closing)
@@ -38,7 +38,7 @@ class Follower:
         self.out.publish(self.acceleration())
 
     def acceleration(self):
-        """Return how to speed up or brake: m/s²."""
+        """Return the acceleration, negative to brake, m/s²."""
         if self.closing > 0.5:
             left = self.gap / self.closing
             if left < self.soon:

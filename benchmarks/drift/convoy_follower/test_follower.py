@@ -1,4 +1,4 @@
-"""The follower stays close behind and never touches, also where the road is wet. Falling back costs a little."""
+"""The follower stays close behind and never touches the vehicle in front, even on a wet road."""
 
 import pytest
 
@@ -29,16 +29,16 @@ class Road:
 
     @property
     def gap(self):
-        """Return what is between the vehicles, m."""
+        """Return the gap between the vehicles, m."""
         return self.leader - self.x
 
     @property
     def wet(self):
-        """Return whether the follower's road is wet."""
+        """Return whether the road is wet at the follower."""
         return self.grip < 9.0 and WET[0] <= self.x <= WET[1]
 
     def publish(self, bus):
-        """Publish what rain sensor, wheels and radar measure."""
+        """Publish the measurements of rain sensor, wheels and radar."""
         bus.publish("/rain", Float32(data=(0.8 if self.wet else 0.05) + self.rng.normal(0.0, 0.02)))
         bus.publish("/speed", Float64(data=self.speed))
         bus.publish("/range", Range(range=self.gap + self.rng.normal(0.0, 0.02)))
@@ -56,7 +56,7 @@ class Road:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the closer the better, up to a point that is too close."""
+        """Return the reward of the step: it grows as the gap shrinks, down to a gap that is too small."""
         if self.gap < 1.0:
             self.failure = "drove into the vehicle in front"
             return -5.0

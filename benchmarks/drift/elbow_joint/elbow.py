@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Hold and move an elbow: a gravity model does most of the work, the rest is a soft controller."""
+"""Hold and move an elbow by a gravity model, which supplies most of the torque, and a soft controller."""
 
 import math
 
@@ -31,16 +31,16 @@ class Elbow(Node):
         self.create_subscription(JointState, "/joint", self.on_joint, 10)
 
     def on_goal(self, msg):
-        """Take the angle to go to: rad above the horizon."""
+        """Store the target angle, rad above the horizon."""
         self.goal += 0.2 * (msg.data - self.goal)
 
     def gravity(self, angle):
-        """Return the torque that carries the arm."""
+        """Return the torque that compensates gravity."""
         mass = 0.5 * MODEL["forearm"] + MODEL["hand"]
         return mass * 9.81 * MODEL["length"] * math.cos(angle)
 
     def on_joint(self, msg):
-        """Take angle and speed, send a torque."""
+        """Send a torque computed from angle and speed."""
         angle = msg.position[0]
         speed = msg.velocity[0]
         error = self.goal - angle

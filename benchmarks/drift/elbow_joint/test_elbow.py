@@ -1,4 +1,4 @@
-"""The elbow reaches three angles in turn, with or without a tool in the hand; the hand's error counts all the time."""
+"""The elbow reaches three angles in turn, with or without a tool; each step is rewarded by the error of the hand."""
 
 import math
 
@@ -17,7 +17,7 @@ NEAR = 0.1  # rad
 
 
 class Arm:
-    """An elbow whose hand takes a tool of `tool` kg after some time."""
+    """An elbow whose hand picks up a tool of `tool` kg after some time."""
 
     def __init__(self, rng, tool):
         self.rng = rng
@@ -31,11 +31,11 @@ class Arm:
 
     @property
     def goal(self):
-        """Return the angle that is asked for now."""
+        """Return the target angle at this step."""
         return self.goals[min(2, self.steps // HOLD)]
 
     def publish(self, bus):
-        """Publish what the joint and the hand feel."""
+        """Publish the measurements of joint and hand."""
         bus.publish("/tool", Bool(data=self.tool > 0.0 and self.steps >= self.taken))
         bus.publish("/goal", Float64(data=self.goal))
         joint = JointState()
@@ -74,7 +74,7 @@ class Arm:
     min_success=0.95,
 )
 def test_reaches_its_goals(tarl, tarl_drift):
-    """Be near every goal in the end."""
+    """Be near each target angle when its time ends."""
     arm = Arm(tarl.rng("arm"), tarl_drift or 0.0)
     tarl.start("elbow.py")
     while arm.steps < 3 * HOLD:

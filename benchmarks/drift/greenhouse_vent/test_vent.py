@@ -1,4 +1,4 @@
-"""The crop survives two hours around noon; it is judged at the end, and a scorched or chilled crop is lost."""
+"""The crop survives two hours around noon. It is judged at the end; a scorched or chilled crop is lost."""
 
 import pytest
 
@@ -15,7 +15,7 @@ SHADED = 25.0  # light under the net, klx
 
 
 class Greenhouse:
-    """A greenhouse under a shading net, which a storm may tear: `torn` multiplies the sun from then on."""
+    """A greenhouse under a shading net that a storm may tear; from then on, `torn` multiplies the sunlight."""
 
     def __init__(self, rng, torn):
         self.rng = rng
@@ -34,7 +34,7 @@ class Greenhouse:
         return SHADED * self.cloud * (self.torn if self.minute >= self.storm else 1.0)
 
     def publish(self, bus):
-        """Publish what the weather station measures."""
+        """Publish the measurements of the weather station."""
         bus.publish("/light", Illuminance(illuminance=1000.0 * self.light))
         bus.publish("/air", Temperature(temperature=self.air + self.rng.normal(0.0, 0.1)))
 
@@ -48,7 +48,7 @@ class Greenhouse:
         self.minute += 1
 
     def judge(self):
-        """Return the reward of the minute: nothing before the end."""
+        """Return the reward of the minute, which is 0 before the end."""
         if self.air > SCORCHED:
             self.failure = "scorched"
         elif self.air < CHILLED:

@@ -8,7 +8,7 @@ from std_msgs.msg import Float32
 
 
 class Vent(Node):
-    """Switch with hysteresis, move gently."""
+    """Switch with hysteresis and move the vent slowly."""
 
     def __init__(self):
         super().__init__("vent")
@@ -24,14 +24,14 @@ class Vent(Node):
         self.create_timer(60.0, self.on_minute)
 
     def on_air(self, msg):
-        """Take the air's temperature, smoothed."""
+        """Store the smoothed air temperature."""
         if self.smooth is None:
             self.smooth = msg.temperature
         self.smooth += 0.5 * (msg.temperature - self.smooth)
         self.temperature = self.smooth
 
     def on_light(self, msg):
-        """Take how bright it is: klx."""
+        """Store the brightness, klx."""
         self.sun = msg.illuminance / 1000.0
 
     def on_minute(self):

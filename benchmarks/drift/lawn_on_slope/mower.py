@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Mow a straight strip: follow it by position and compass, spare the blade in high grass."""
+"""Mow a straight strip: follow it by position and compass, and slow the blade down in high grass."""
 
 import rospy
 from geometry_msgs.msg import PointStamped, Twist
@@ -10,7 +10,7 @@ PACE = 0.6  # m/s
 
 
 class Mower:
-    """Remember what the sensors said, send a command ten times a second."""
+    """Store the sensor readings and send a command ten times a second."""
 
     def __init__(self):
         self.place = None
@@ -23,19 +23,19 @@ class Mower:
         self.blade = rospy.Publisher("/blade", Float32, queue_size=1)
 
     def on_place(self, msg):
-        """Take where the robot is."""
+        """Store the position of the robot."""
         self.place = msg.point
 
     def on_compass(self, msg):
-        """Take where it looks, from the strip's direction."""
+        """Store the heading of the robot relative to the strip."""
         self.heading = msg.data
 
     def on_grass(self, msg):
-        """Take how high the grass is: cm."""
+        """Store the height of the grass, cm."""
         self.grass = 0.7 * self.grass + 0.3 * msg.data
 
     def command(self):
-        """Return wheels' command."""
+        """Return the command of the wheels."""
         cmd = Twist()
         cmd.linear.x = PACE
         if self.grass > 12.0:

@@ -1,13 +1,13 @@
-"""How a mower steers and cuts: functions of what it sees."""
+"""Functions that compute steering and blade speed of a mower from its sensors."""
 
 
 def limited(value, most):
-    """Keep a value within bounds on both sides."""
+    """Limit a value to a range symmetric about 0."""
     return max(-most, min(most, value))
 
 
 def turn_rate(offset, heading, pull=0.8, most=0.5, firmness=2.0):
-    """Return how fast to turn: towards the strip, the more the further beside it."""
+    """Return the turn rate towards the strip, proportional to the distance from it."""
     wanted = limited(-pull * offset, most)
     return firmness * (wanted - heading)
 

@@ -1,4 +1,4 @@
-"""The mower leaves no unmown grass along its strip, on the slope too."""
+"""The mower leaves no unmown grass along its strip, even on the slope."""
 
 import math
 
@@ -18,7 +18,7 @@ STRIP = 0.16  # from the middle, m
 
 
 class Lawn:
-    """A strip of lawn whose middle part may slope: `slide` is how fast the robot slips sideways there, m/s."""
+    """A strip of lawn whose middle part may slope; there the robot slips sideways at `slide` m/s."""
 
     def __init__(self, rng, slide):
         self.rng = rng
@@ -38,11 +38,11 @@ class Lawn:
 
     @property
     def grass(self):
-        """Return how high the grass is here, cm."""
+        """Return the height of the grass at the mower, cm."""
         return 15.0 if self.high <= self.x <= self.high + 1.0 else 7.0
 
     def publish(self, bus):
-        """Publish what the sensors measure."""
+        """Publish the sensor readings."""
         place = PointStamped()
         place.point.x = self.x + self.rng.normal(0.0, 0.01)
         place.point.y = self.y + self.rng.normal(0.0, 0.01)
@@ -64,7 +64,7 @@ class Lawn:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: every metre mown well."""
+        """Return the reward of the step, for each well mown metre."""
         if abs(self.y) > STRIP:
             self.failure = "left grass unmown"
         elif self.time > 20.0:

@@ -12,7 +12,7 @@ DEAD = 0.01  # m
 
 
 class Filler(Node):
-    """Pump as the level demands."""
+    """Control the pump by the level."""
 
     def __init__(self, smoothing=0.4):
         super().__init__("filler")
@@ -25,7 +25,7 @@ class Filler(Node):
         self.create_timer(0.5, self.on_timer)
 
     def on_level(self, msg):
-        """Take the level, smoothed."""
+        """Store the smoothed level."""
         if self.level is None:
             self.level = msg.data
         self.level += self.smoothing * (msg.data - self.level)

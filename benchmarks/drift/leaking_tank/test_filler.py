@@ -1,4 +1,4 @@
-"""The level stays near its set point. Against a leak that takes more than the pump can give, nothing helps."""
+"""The level stays near its set point. No repair is possible for a leak that exceeds the flow of the pump."""
 
 import pytest
 
@@ -23,7 +23,7 @@ class Tank:
         self.failure = ""
 
     def publish(self, bus):
-        """Publish what float and flow meter measure."""
+        """Publish the measurements of float and flow meter."""
         bus.publish("/outflow", Float32(data=self.use + self.rng.normal(0.0, 0.0005)))
         bus.publish("/level", Float32(data=self.level + self.rng.normal(0.0, 0.005)))
 
@@ -53,7 +53,7 @@ class Tank:
     min_success=0.95,
 )
 def test_keeps_the_level(tarl, tarl_drift):
-    """Neither run dry nor over."""
+    """Neither run dry nor overflow."""
     tank = Tank(tarl.rng("tank"), tarl_drift or 0.0)
     tarl.start("filler.py")
     while tank.time < DURATION and not tank.failure:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bring a lift's car to a floor and hold it there until the doors were open."""
+"""Bring the car of a lift to a floor and hold it there while the doors are open."""
 
 import rclpy
 from rclpy.node import Node
@@ -10,7 +10,7 @@ TOP_SPEED = 1.2  # m/s
 
 
 class Lift(Node):
-    """Speed follows the distance left, force follows the speed, and the encoder tells both."""
+    """Compute the speed from the remaining distance and the force from the speed; both are measured by the encoder."""
 
     def __init__(self, approach, stiffness, hold, soften=0.8):
         super().__init__("lift")
@@ -27,11 +27,11 @@ class Lift(Node):
         self.force = self.create_publisher(Float64, "/force", 10)
 
     def on_call(self, msg):
-        """Take the floor to go to."""
+        """Store the target floor."""
         self.goal = msg.data * FLOOR_HEIGHT
 
     def on_encoder(self, msg):
-        """Take the height of the car and answer with a force."""
+        """Answer the height of the car with a force."""
         self.height = msg.data / 1000.0
         if self.before is not None:
             measured = (self.height - self.before) / 0.05

@@ -1,4 +1,4 @@
-"""The car stops in time, level with the floor that called it; a step at the door costs reward."""
+"""The car stops in time at the level of the calling floor; a step at the door costs reward."""
 
 import pytest
 
@@ -15,7 +15,7 @@ GRAVITY = 9.81
 
 
 class Shaft:
-    """A car on a rope; `short` is by how much the counterweight is too light, kg."""
+    """A car on a rope with a counterweight that is `short` kg too light."""
 
     def __init__(self, rng, short):
         self.rng = rng
@@ -34,13 +34,13 @@ class Shaft:
         return self.level >= 20
 
     def publish(self, bus):
-        """Publish who calls and what the encoder counts, in mm."""
+        """Publish the calling floor and the encoder count, in mm."""
         if self.time == 0.0:
             bus.publish("/call", UInt8(data=self.floor))
         bus.publish("/encoder", Float64(data=float(round(self.height * 1000.0 + self.rng.normal(0.0, 0.3)))))
 
     def advance(self, command):
-        """Let the machine and the counterweight pull for one step."""
+        """Let motor and counterweight pull for one step."""
         force = command.data if command else 0.0
         total = force - self.missing * GRAVITY - 300.0 * self.speed
         self.speed += total / (2.0 * self.mass) * DT
@@ -50,7 +50,7 @@ class Shaft:
         self.level = self.level + 1 if off <= LEVEL and abs(self.speed) < 0.05 else 0
 
     def judge(self):
-        """Return the reward of the step: the less is left the better; arriving is worth most."""
+        """Return the reward of the step, which grows as the remaining distance shrinks; arriving is worth most."""
         off = min(1.0, abs(self.height - self.floor * 3.2) / 6.4)
         if self.time > TIME_BOUND:
             self.failure = "never level with the floor"

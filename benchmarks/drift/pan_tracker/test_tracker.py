@@ -1,4 +1,4 @@
-"""The camera keeps its target in view for four seconds, near the middle of the image."""
+"""The camera keeps its target near the middle of the image for four seconds."""
 
 import math
 from collections import deque
@@ -17,7 +17,7 @@ PIXEL = 0.0016
 
 
 class Scene:
-    """A target that wanders around the camera; images arrive `late` steps after they were taken."""
+    """A target that moves around the camera; images arrive `late` steps after they are taken."""
 
     def __init__(self, rng, late):
         self.rng = rng
@@ -30,12 +30,12 @@ class Scene:
 
     @property
     def bearing(self):
-        """Return where the target is, rad."""
+        """Return the direction of the target, rad."""
         return self.swing * math.sin(self.pace * self.time + self.phase)
 
     @property
     def pixels(self):
-        """Return where the target is in the image taken now."""
+        """Return the position of the target in the image taken now."""
         return 320.0 + (self.bearing - self.pan) / PIXEL
 
     @property
@@ -44,7 +44,7 @@ class Scene:
         return self.time >= DURATION
 
     def publish(self, bus):
-        """Publish what the detector sees in the latest image that has arrived."""
+        """Publish the detection in the latest image that has arrived."""
         seen = PointStamped()
         seen.point.x = self.images[0] + self.rng.normal(0.0, 1.0)
         seen.point.z = self.rng.uniform(0.5, 1.0)
@@ -59,7 +59,7 @@ class Scene:
         self.images.append(self.pixels)
 
     def judge(self):
-        """Return the reward of the step: the nearer to the middle the better."""
+        """Return the reward of the step, which is larger near the middle of the image."""
         off = abs(self.bearing - self.pan) / VIEW
         if off > 1.0:
             self.failure = "lost the target"

@@ -8,7 +8,7 @@ from std_msgs.msg import Float64
 
 
 class PanTracker(Node):
-    """Turn towards what the detector sees."""
+    """Turn towards the detected target."""
 
     KP = 6.0  # 1/s
     KI = 0.8  # 1/s²
@@ -17,7 +17,7 @@ class PanTracker(Node):
     MIDDLE = 320.0  # px
     DEADBAND = 4.0  # px
     MOST_RATE = 2.5  # rad/s
-    SURE = 0.3  # detections below are not believed
+    SURE = 0.3  # detections with less confidence are ignored
 
     def __init__(self):
         super().__init__("pan_tracker")
@@ -28,7 +28,7 @@ class PanTracker(Node):
         self.create_timer(0.05, self.on_timer)
 
     def on_target(self, msg):
-        """Take where the target is in the image; z is how sure the detector is."""
+        """Store the position of the target in the image; z is the confidence of the detector."""
         if msg.point.z < self.SURE:
             return
         pixels = msg.point.x - self.MIDDLE

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Crawl through a pipe at an even speed, slower where something lies in it."""
+"""Crawl through a pipe at a steady speed, and slower past an obstacle."""
 
 import rospy
 from std_msgs.msg import Float32, Float64
 
 
 class Crawler:
-    """Push as the speed demands, and not more than the wheels can bring to the wall."""
+    """Push as much as the speed requires, up to the grip of the wheels on the wall."""
 
     CRUISE = 0.4  # m/s
     CAREFUL = 0.25  # m/s
@@ -24,12 +24,12 @@ class Crawler:
         rospy.Subscriber("/speed", Float64, self.on_speed)
 
     def on_debris(self, msg):
-        """Take how much lies in the way: 0 to 1."""
+        """Store the amount of obstacles ahead, 0 to 1."""
         self.debris = msg.data
         self.lamp.publish(0.2 + 0.8 * self.debris)
 
     def on_speed(self, msg):
-        """Take the speed, and answer with a push."""
+        """Answer the speed with a push."""
         self.speed = msg.data
         wanted = self.CRUISE
         if self.debris > 0.5:

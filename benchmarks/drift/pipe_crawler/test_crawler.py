@@ -1,4 +1,4 @@
-"""The crawler reaches the end of the pipe; only that is judged, and how long it took."""
+"""The crawler reaches the end of the pipe; only arrival and the time taken are rewarded."""
 
 import pytest
 
@@ -11,12 +11,12 @@ Float64 = message_type("std_msgs/Float64")
 DT = 0.1
 LENGTH = 4.0
 NARROW = (1.5, 2.6)
-GRIP = 30.0  # N: pushed harder in the wide pipe, wheels spin and wear
+GRIP = 30.0  # N; with a stronger push in the wide pipe, the wheels spin and wear
 TIME_BOUND = 16.0
 
 
 class Pipe:
-    """A pipe that may have a narrowing, in which `drag` N hold the crawler back."""
+    """A pipe with a narrowing in which `drag` N may hold the crawler back."""
 
     def __init__(self, rng, drag):
         self.rng = rng
@@ -33,7 +33,7 @@ class Pipe:
         return self.drag > 8.0 and NARROW[0] <= self.x <= NARROW[1]
 
     def publish(self, bus):
-        """Publish what feelers, camera and wheels measure."""
+        """Publish the measurements of feelers, camera and wheels."""
         bus.publish("/feeler", Float32(data=(205.0 if self.narrow else 240.0) + self.rng.normal(0.0, 2.0)))
         bus.publish("/debris", Float32(data=0.9 if 0.0 <= self.x - self.debris <= 0.4 else 0.1))
         bus.publish("/speed", Float64(data=self.speed + self.rng.normal(0.0, 0.005)))
@@ -51,7 +51,7 @@ class Pipe:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: nothing before the end."""
+        """Return the reward of the step, which is 0 before the end."""
         if self.spun > 10:
             self.failure = "wheels worn out"
         elif self.time > TIME_BOUND:

@@ -1,4 +1,4 @@
-"""The panel looks at the sun; power counts in every step, and far from the sun there is none."""
+"""The panel points at the sun; each step is rewarded by the power, which is 0 far from the sun."""
 
 import math
 
@@ -15,7 +15,7 @@ LOST = 0.6  # rad from the sun
 
 
 class Roof:
-    """A panel on a roof where from some moment on wind may blow: `push` in rad/s, from either side."""
+    """A panel on a roof; from a random moment on, wind may turn it at `push` rad/s to either side."""
 
     def __init__(self, rng, push):
         self.rng = rng
@@ -29,11 +29,11 @@ class Roof:
 
     @property
     def blowing(self):
-        """Return how hard the wind pushes now, rad/s; it comes up within a second."""
+        """Return the rate at which the wind turns the panel now, rad/s; the wind rises within a second."""
         return self.push * max(0.0, min(1.0, self.time - self.begin))
 
     def publish(self, bus):
-        """Publish what the weather station and the encoder measure."""
+        """Publish the measurements of weather station and encoder."""
         bus.publish("/wind", Float64(data=60.0 * self.blowing + abs(self.rng.normal(1.0, 0.5))))
         bus.publish("/sun", Float64(data=self.sun))
         bus.publish("/tilt", Float64(data=self.tilt + self.rng.normal(0.0, 0.003)))

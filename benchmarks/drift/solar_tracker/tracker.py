@@ -9,19 +9,19 @@ tilt = 0.0
 
 
 def on_sun(msg):
-    """Take where the sun stands: rad."""
+    """Store the elevation of the sun, rad."""
     global sun
     sun = msg.data
 
 
 def on_tilt(msg):
-    """Take how the panel is tilted, smoothed: rad."""
+    """Store the smoothed tilt of the panel, rad."""
     global tilt
     tilt = 0.4 * tilt + 0.6 * msg.data
 
 
 def command(gain, limit, rest):
-    """Return the speed to turn with: rad/s."""
+    """Return the turn rate, rad/s."""
     error = sun - tilt
     if abs(error) < rest:
         error = 0.0

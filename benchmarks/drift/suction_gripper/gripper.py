@@ -7,7 +7,7 @@ from std_msgs.msg import Float32, UInt8
 
 VACUUM = [22.0, 30.0, 40.0]  # by size: kPa
 LIFT_SPEED = [0.5, 0.4, 0.3]  # by size: m/s
-HEIGHT = 0.6  # to lift to: m
+HEIGHT = 0.6  # height to which the carton is lifted, m
 RAMP = 0.05  # change of speed per period: m/s
 
 
@@ -29,15 +29,15 @@ class Gripper(Node):
         self.create_timer(0.05, self.on_timer)
 
     def on_size(self, msg):
-        """Take how large the carton is: 0, 1, 2."""
+        """Store the size of the carton: 0, 1 or 2."""
         self.size = msg.data
 
     def on_vacuum(self, msg):
-        """Take the vacuum under the cup, smoothed: kPa."""
+        """Store the smoothed vacuum under the cup, kPa."""
         self.vacuum += 0.5 * (msg.data - self.vacuum)
 
     def on_height(self, msg):
-        """Take how high the cup is: m."""
+        """Store the height of the cup, m."""
         self.height = msg.data
 
     def on_timer(self):

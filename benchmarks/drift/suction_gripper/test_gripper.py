@@ -1,4 +1,4 @@
-"""A carton is lifted and not dropped; the pump's power costs. Otherwise only the end is judged."""
+"""A carton is lifted without being dropped. The power of the pump costs reward; otherwise only the end is rewarded."""
 
 import pytest
 
@@ -16,7 +16,7 @@ CUP = 0.0011  # m²
 
 
 class Carton:
-    """A carton under the cup; `hold` is the share of the cup's area that seals on this cardboard."""
+    """A carton under the cup; `hold` is the share of the area of the cup that seals on the cardboard."""
 
     def __init__(self, rng, hold):
         self.rng = rng
@@ -30,11 +30,11 @@ class Carton:
 
     @property
     def lifted(self):
-        """Return whether the carton is where it should be."""
+        """Return whether the carton is at its goal."""
         return self.height >= 0.55
 
     def publish(self, bus):
-        """Publish what camera, cup and arm measure."""
+        """Publish the measurements of camera, cup and arm."""
         bus.publish("/surface", String(data=self.surface))
         bus.publish("/size", UInt8(data=self.size))
         bus.publish("/vacuum", Float32(data=self.vacuum + self.rng.normal(0.0, 0.3)))

@@ -1,14 +1,14 @@
-"""Where the furrow leads: filters and a steering law."""
+"""Filters for the view of the furrow, and a steering law."""
 
 OFFSET_GAIN = 0.35  # rad per m
 ANGLE_GAIN = 0.8  # rad per rad
 CHANGE_GAIN = 0.3  # rad per m/s
 MOST_STEERING = 0.7  # rad
-SLOW = 0.4  # m/s: below, steer gently
+SLOW = 0.4  # m/s, speed below which steering is gentle
 
 
 class FurrowGuide:
-    """Keep what was seen of the furrow, and steer after it."""
+    """Store the filtered view of the furrow and steer along it."""
 
     def __init__(self, trust=0.6):
         self.trust = trust
@@ -17,13 +17,13 @@ class FurrowGuide:
         self.before = 0.0
 
     def see(self, offset, angle):
-        """Take one view of the furrow."""
+        """Update the filters with one view of the furrow."""
         self.before = self.offset
         self.offset += self.trust * (offset - self.offset)
         self.angle += self.trust * (angle - self.angle)
 
     def steering(self, speed):
-        """Return the wheels' angle: rad."""
+        """Return the angle of the wheels, rad."""
         change = (self.offset - self.before) / 0.1
         angle = OFFSET_GAIN * self.offset
         angle += ANGLE_GAIN * self.angle

@@ -1,4 +1,4 @@
-"""Throttle and hitch: how hard to pull, how deep to go."""
+"""Throttle and hitch: pull and depth of the implement."""
 
 FORWARD = 0.4  # throttle per m/s wanted
 CATCH_UP = 0.2  # throttle per m/s missing
@@ -7,7 +7,7 @@ LIFT_GAIN = 2.0
 
 
 def throttle(pace, speed, steering):
-    """Return the throttle, 0 to 1: less in bends."""
+    """Return the throttle, 0 to 1, which is smaller in bends."""
     wanted = pace
     if abs(steering) > 0.4:
         wanted = 0.8 * pace
@@ -17,7 +17,7 @@ def throttle(pace, speed, steering):
 
 
 def hitch_height(depth, speed, base=0.5):
-    """Return how the hitch is set, 0 to 1."""
+    """Return the setting of the hitch, 0 to 1."""
     error = DEPTH - depth
     height = base + LIFT_GAIN * error
     if speed < 0.1:

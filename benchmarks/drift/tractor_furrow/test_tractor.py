@@ -1,4 +1,4 @@
-"""The tractor stays in its furrow and gets to the headland in time, with a heavy implement too."""
+"""The tractor stays in its furrow and reaches the headland in time, even with a heavy implement."""
 
 import math
 
@@ -17,7 +17,7 @@ HALF_WIDTH = 0.3
 
 
 class Field:
-    """A winding furrow. A heavy implement leaves `grip` of the steering and of the pull."""
+    """A winding furrow. A heavy implement reduces steering and pull to the share `grip`."""
 
     def __init__(self, rng, grip):
         self.rng = rng
@@ -30,15 +30,15 @@ class Field:
         self.failure = ""
 
     def furrow(self, x):
-        """Return where the furrow lies, m."""
+        """Return the lateral position of the furrow, m."""
         return self.swing * math.sin(0.8 * x + self.phase)
 
     def direction(self, x):
-        """Return where the furrow leads, rad."""
+        """Return the direction of the furrow, rad."""
         return math.atan(0.8 * self.swing * math.cos(0.8 * x + self.phase))
 
     def publish(self, bus):
-        """Publish what camera, wheels and hitch measure."""
+        """Publish the measurements of camera, wheels and hitch."""
         ahead = self.x + 0.3
         offset = self.furrow(ahead) - (self.y + 0.3 * math.tan(self.heading)) + self.rng.normal(0.0, 0.005)
         angle = self.direction(ahead) - self.heading + self.rng.normal(0.0, 0.01)
@@ -61,7 +61,7 @@ class Field:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: way made, less what is beside the furrow."""
+        """Return the reward of the step: progress minus a penalty for the distance from the furrow."""
         off = abs(self.y - self.furrow(self.x)) / HALF_WIDTH
         if off > 1.0:
             self.failure = "left the furrow"

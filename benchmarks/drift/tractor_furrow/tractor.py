@@ -12,7 +12,7 @@ PERIOD = 0.1  # s
 
 
 class Tractor(Node):
-    """Camera, wheels and hitch meet here."""
+    """Compute the commands from camera, wheels and hitch."""
 
     def __init__(self):
         super().__init__("tractor")
@@ -30,18 +30,18 @@ class Tractor(Node):
         self.create_timer(PERIOD, self.on_timer)
 
     def on_furrow(self, msg):
-        """Take the furrow as the camera sees it: lateral offset in m, angle in rad, contrast."""
+        """Store the furrow as seen by the camera: lateral offset in m, angle in rad, contrast."""
         offset, angle, contrast = msg.data
         if contrast > 0.4:
             self.guide.see(offset, angle)
             self.seen = True
 
     def on_speed(self, msg):
-        """Take the speed over ground, smoothed."""
+        """Store the smoothed speed over ground."""
         self.speed += 0.5 * (msg.data - self.speed)
 
     def on_depth(self, msg):
-        """Take the depth of the implement."""
+        """Store the depth of the implement."""
         self.depth = 0.8 * self.depth + 0.2 * msg.data
 
     def on_timer(self):

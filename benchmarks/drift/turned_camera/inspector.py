@@ -9,7 +9,7 @@ CAMERA = {"middle": 160.0, "metres": 0.001, "side": 1.0}
 
 
 class Inspector:
-    """Seam to offset, offset to steering."""
+    """Compute the offset from the seam and the steering from the offset."""
 
     def __init__(self, pull=2.5, damping=0.6):
         self.pull = pull
@@ -22,7 +22,7 @@ class Inspector:
         rospy.Timer(rospy.Duration(0.1), self.on_timer)
 
     def on_seam(self, msg):
-        """Take the seam's two edges: px."""
+        """Store the two edges of the seam, px."""
         left, right = msg.data
         seam = 0.5 * (left + right)
         offset = CAMERA["side"] * CAMERA["metres"] * (seam - CAMERA["middle"])

@@ -1,4 +1,4 @@
-"""The seam stays in view to its end; a camera that was mounted upside down shows left as right."""
+"""The seam stays in view to its end. A camera that is mounted upside down swaps left and right."""
 
 import math
 
@@ -12,11 +12,11 @@ Bool = message_type("std_msgs/Bool")
 
 DT = 0.1
 LENGTH = 1.6
-VIEW = 0.12  # half of what the camera sees, m
+VIEW = 0.12  # half of the camera's field of view, m
 
 
 class Seam:
-    """A seam that bends gently; `side` is -1 where the camera hangs upside down."""
+    """A seam that bends gently; `side` is -1 if the camera hangs upside down."""
 
     def __init__(self, rng, side):
         self.rng = rng
@@ -31,11 +31,11 @@ class Seam:
 
     @property
     def offset(self):
-        """Return how far to the left the seam is, m."""
+        """Return the distance to the seam, left positive, m."""
         return self.bend * math.sin(4.0 * self.x) - self.y
 
     def publish(self, bus):
-        """Publish what the camera and its mount measure."""
+        """Publish the measurements of the camera and of its mount."""
         bus.publish("/upright", Bool(data=self.side > 0))
         half = 35.0 if 0.0 <= self.x - self.wide <= 0.2 else 15.0
         middle = 160.0 + self.side * self.offset / 0.001 + self.rng.normal(0.0, 0.3)
@@ -51,7 +51,7 @@ class Seam:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the way made, more of it near the seam."""
+        """Return the reward of the step: progress, with a larger weight near the seam."""
         if abs(self.offset) > VIEW:
             self.failure = "lost the seam"
         elif self.time > 14.0:

@@ -1,4 +1,4 @@
-"""The vehicle stands in its bay in time, without touching the wall. Only the end is judged."""
+"""The vehicle stops in its bay in time without touching the wall. Only the end is rewarded."""
 
 import pytest
 
@@ -16,7 +16,7 @@ TOP_TURNS = 100.0
 
 
 class Aisle:
-    """A straight aisle; `wear` is the share of the wheels' radius that is left."""
+    """A straight aisle; `wear` is the radius of the worn wheels as a share of that of new ones."""
 
     def __init__(self, rng, wear):
         self.rng = rng
@@ -30,11 +30,11 @@ class Aisle:
 
     @property
     def docked(self):
-        """Return whether the vehicle stood in its bay for half a second."""
+        """Return whether the vehicle has stood in its bay for half a second."""
         return self.standing >= 5
 
     def publish(self, bus):
-        """Publish what scanner and scales measure."""
+        """Publish the measurements of scanner and scales."""
         bus.publish("/range", Range(range=self.gap + self.rng.normal(0.0, 0.01)))
         bus.publish("/load", Float32(data=self.load))
 
@@ -48,7 +48,7 @@ class Aisle:
         self.standing = self.standing + 1 if inside else 0
 
     def judge(self):
-        """Return the reward of the step: nothing before the end."""
+        """Return the reward of the step, which is 0 before the end."""
         if self.docked:
             return 10.0 - 2.0 * self.time / TIME_BOUND
         if self.gap < 0.1:

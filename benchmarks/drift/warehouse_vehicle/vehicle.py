@@ -10,19 +10,19 @@ load = 0.0
 
 
 def on_range(msg):
-    """Take how far the wall is: m."""
+    """Store the distance to the wall, m."""
     global gap
     gap = msg.range
 
 
 def on_load(msg):
-    """Take what lies on the fork: kg."""
+    """Store the load on the fork, kg."""
     global load
     load = msg.data
 
 
 def wanted_speed(distance):
-    """Return how fast to approach: m/s."""
+    """Return the approach speed, m/s."""
     left = distance - 0.4
     wanted = 0.9 * left
     if load > 250:

@@ -12,7 +12,7 @@ MOST_TURN = 0.5  # rad/s
 
 
 class Pilot:
-    """Fly at the mast, more slowly when it is near."""
+    """Fly towards the mast, more slowly near it."""
 
     def __init__(self):
         self.place = None
@@ -24,11 +24,11 @@ class Pilot:
         rospy.Timer(rospy.Duration(0.5), self.on_timer)
 
     def on_pose(self, msg):
-        """Take where the ship is."""
+        """Store the position of the airship."""
         self.place = msg.pose.position
 
     def on_compass(self, msg):
-        """Take where its nose points, left positive: rad."""
+        """Store the heading of the airship, left positive, rad."""
         self.heading = msg.data
 
     def on_timer(self, _):

@@ -1,4 +1,4 @@
-"""The airship comes to its mast. Against a wind that is faster than the ship nothing helps."""
+"""The airship reaches its mast. No repair is possible in a wind that is faster than the airship."""
 
 import math
 
@@ -16,7 +16,7 @@ TIME_BOUND = 60.0
 
 
 class Sky:
-    """A sky with a wind from the mast: m/s."""
+    """A sky with wind that blows from the mast, m/s."""
 
     def __init__(self, rng, wind):
         self.rng = rng
@@ -28,7 +28,7 @@ class Sky:
 
     @property
     def away(self):
-        """Return how far the mast is, m."""
+        """Return the distance to the mast, m."""
         return math.hypot(20.0 - self.x, self.y)
 
     @property
@@ -37,7 +37,7 @@ class Sky:
         return self.away < 0.8
 
     def publish(self, bus):
-        """Publish what satellites, compass and wind gauge measure."""
+        """Publish the measurements of satellite receiver, compass and wind gauge."""
         pose = PoseStamped()
         pose.pose.position.x = self.x + self.rng.normal(0.0, 0.05)
         pose.pose.position.y = self.y + self.rng.normal(0.0, 0.05)

@@ -9,12 +9,12 @@ MOST_THRUST = 1.0
 
 
 def clipped(value, most):
-    """Keep a value within bounds on both sides."""
+    """Limit a value to a range symmetric about 0."""
     return max(-most, min(most, value))
 
 
 class DepthKeeper(Node):
-    """Pressure to depth, depth to thrust; positive is down."""
+    """Compute depth from pressure and thrust from depth; positive is down."""
 
     def __init__(self):
         super().__init__("depth_keeper")
@@ -29,11 +29,11 @@ class DepthKeeper(Node):
         self.create_timer(self.period, self.on_timer)
 
     def on_wanted(self, msg):
-        """Take the depth to hold: m."""
+        """Store the depth to hold, m."""
         self.wanted = msg.data
 
     def on_pressure(self, msg):
-        """Take the pressure above that of the surface: kPa. Sea water is 10.1 kPa per metre."""
+        """Store the pressure above that at the surface, kPa. Sea water adds 10.1 kPa per metre."""
         depth = msg.data / 10.1
         if self.depth is not None:
             rate = (depth - self.depth) / self.period

@@ -1,4 +1,4 @@
-"""The robot comes to its depth and stays near it. Tools in its claw weigh or float; no sensor tells which."""
+"""The robot reaches its depth and stays near it. A tool in its claw sinks or floats; no sensor measures which."""
 
 import pytest
 
@@ -10,14 +10,14 @@ Bool = message_type("std_msgs/msg/Bool")
 
 DT = 0.2
 TIME = 46.0
-SETTLED = 30.0  # from here on the depth counts, s
+SETTLED = 30.0  # time from which the depth is rewarded, s
 BAND = 0.15  # m
-MOST_OUT = 4.0  # how long the robot may be out of the band, s
-LATENCY = 5  # periods until a command is at the thruster
+MOST_OUT = 4.0  # maximum time out of the band, s
+LATENCY = 5  # periods until a command reaches the thruster
 
 
 class Water:
-    """A robot in water; `load` is how much tools pull at it, either way: m/s²."""
+    """A robot in water; `load` is the acceleration by its tools, up or down, m/s²."""
 
     def __init__(self, rng, load):
         self.rng = rng
@@ -36,13 +36,13 @@ class Water:
         return self.time >= TIME
 
     def publish(self, bus):
-        """Publish what claw and pressure sensor measure."""
+        """Publish the measurements of claw and pressure sensor."""
         bus.publish("/tool", Bool(data=self.tool))
         bus.publish("/wanted_depth", Float64(data=self.wanted))
         bus.publish("/pressure", Float64(data=10.1 * self.depth + self.rng.normal(0.0, 0.05)))
 
     def advance(self, thrust):
-        """Sink for one step; commands take their time, and so do thrusters."""
+        """Sink for one step; commands and thrusters act with a delay."""
         self.waiting.append(max(-1.0, min(1.0, thrust.data)) if thrust else 0.0)
         self.thrust += (self.waiting.pop(0) - self.thrust) * DT / 0.5
         self.speed += (self.thrust + self.load - 0.3 * self.speed) * DT
@@ -73,7 +73,7 @@ class Water:
     min_success=0.95,
 )
 def test_holds_its_depth(tarl, tarl_drift):
-    """Stay where the operator wants the robot."""
+    """Stay at the depth that the operator requests."""
     water = Water(tarl.rng("water"), tarl_drift or 0.0)
     tarl.start("depth_keeper.py")
     while not (water.done or water.failure):

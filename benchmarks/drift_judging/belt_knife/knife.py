@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
-"""Cut loaves on a belt in their middle: a light barrier sees them come, the knife falls some time later."""
+"""Cut loaves on a belt in their middle: a light barrier detects each loaf, and the knife falls some time later."""
 
 import rospy
 from std_msgs.msg import Bool, Empty
 
 
 class Knife:
-    """Remember when loaves have come, cut each in its turn."""
+    """Store the arrival times of loaves and cut each loaf in turn."""
 
     def __init__(self):
         self.way = rospy.get_param("~way", 0.6)  # from light barrier to knife: m
         self.belt = rospy.get_param("~belt", 0.5)  # m/s
         self.loaf = rospy.get_param("~loaf", 0.24)  # length: m
-        self.lead = rospy.get_param("~lead", 0.05)  # the knife needs to fall: s
+        self.lead = rospy.get_param("~lead", 0.05)  # time that the knife takes to fall, s
         self.blocked = False
         self.due = []
         rospy.Subscriber("/barrier", Bool, self.on_barrier)
         self.blade = rospy.Publisher("/cut", Empty, queue_size=5)
 
     def on_barrier(self, msg):
-        """Take whether something is in the light; a loaf that comes is due later."""
+        """Store the state of the light barrier, and schedule the cut of a new loaf."""
         if msg.data and not self.blocked:
             delay = (self.way + 0.5 * self.loaf) / self.belt - self.lead
             self.due.append(rospy.get_time() + delay)

@@ -1,4 +1,4 @@
-"""Loaves are cut in their middle. The belt also has a slower programme, which the knife does not know about."""
+"""Loaves are cut in their middle. The belt also has a slower programme, of which the knife gets no message."""
 
 import pytest
 
@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 DT = 0.05
 WAY = 0.6  # m
 LOAF = 0.24  # m
-OFF = 0.12  # a cut may be so far beside the middle, m
+OFF = 0.12  # maximum distance of a cut from the middle, m
 LOAVES = 2
 
 
@@ -34,7 +34,7 @@ class Belt:
         return self.cuts == LOAVES
 
     def on_cut(self, _):
-        """Cut what lies below the knife when the blade has fallen."""
+        """Cut the loaf that lies below the knife when the blade has fallen."""
         if self.failure or self.done:
             return
         beside = self.middles[self.cuts] + 0.05 * self.speed - WAY
@@ -43,13 +43,13 @@ class Belt:
             self.failure = f"cut {abs(beside) * 100:.0f} cm beside the middle"
 
     def publish(self, bus):
-        """Publish what light barrier and belt say."""
+        """Publish the states of light barrier and belt."""
         blocked = any(abs(middle) < LOAF / 2 for middle in self.middles)
         bus.publish("/programme", String(data=self.programme))
         bus.publish("/barrier", Bool(data=blocked))
 
     def advance(self):
-        """Move on for one step."""
+        """Move the belt for one step."""
         self.middles = [middle + self.speed * DT for middle in self.middles]
         if not self.done and self.middles[self.cuts] > WAY + 3 * LOAF:
             self.failure = "missed a loaf"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Push a puck so that it slides to a mark: one push, of the right speed."""
+"""Push a puck once, at the speed with which it slides to a mark."""
 
 import math
 
@@ -13,7 +13,7 @@ PUSH = {"ramp": 12.0, "follow": 0.15, "least": 0.2}  # m/s², m, m/s
 
 
 class Putter(Node):
-    """Wait for mark and puck, run up, push, stop."""
+    """Wait for mark and puck, accelerate, push, and stop."""
 
     def __init__(self):
         super().__init__("putter")
@@ -25,11 +25,11 @@ class Putter(Node):
         self.create_timer(0.02, self.on_timer)
 
     def on_mark(self, msg):
-        """Take where the mark is from the puck: m."""
+        """Store the distance from puck to mark, m."""
         self.away = math.hypot(msg.x, msg.y)
 
     def wanted(self):
-        """Return how fast the puck has to leave."""
+        """Return the speed at which the puck has to leave."""
         slide = self.away - PUSH["follow"]
         return math.sqrt(max(0.0, 2.0 * FLOOR["friction"] * FLOOR["gravity"] * slide))
 

@@ -1,4 +1,4 @@
-"""A puck comes to rest on its mark. It is judged when it lies still. On carpet it slides less far."""
+"""A puck comes to rest on its mark and is judged when it lies still. On carpet it slides less far."""
 
 import pytest
 
@@ -28,17 +28,17 @@ class Floor:
 
     @property
     def still(self):
-        """Return whether the puck has been pushed and lies."""
+        """Return whether the puck has been pushed and lies still."""
         return self.pushed and self.speed == 0.0
 
     def publish(self, bus):
-        """Publish what the camera sees, until the arm moves."""
+        """Publish the camera's measurement until the arm moves."""
         bus.publish("/floor", String(data=self.kind))
         if self.arm == 0.0 and not self.pushed:
             bus.publish("/mark", Point(x=self.mark + self.rng.normal(0.0, 0.005), y=self.aside))
 
     def advance(self, arm):
-        """Push or slide for one step; the arm pushes and never pulls."""
+        """Let the puck be pushed or slide for one step; the arm cannot pull it."""
         self.arm = max(0.0, min(3.0, arm.data)) if arm else 0.0
         self.speed = max(0.0, self.speed - self.braking * DT)
         if self.arm > self.speed:
@@ -49,7 +49,7 @@ class Floor:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: nothing before the end."""
+        """Return the reward of the step, which is 0 before the end."""
         beside = abs(self.x - self.mark)
         if self.time > TIME_BOUND:
             self.failure = "late"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fill bags with powder: turn a screw as often as the recipe needs, then let the bag go."""
+"""Fill bags with powder: turn a screw as often as the recipe requires, then release the bag."""
 
 import rospy
 from std_msgs.msg import Bool, Float64
@@ -8,7 +8,7 @@ RECIPE = {
     "kg_per_turn": 0.04,
     "fast": 12.0,  # turns per second
     "slow": 1.5,
-    "ease": 1.8,  # turns per second for each that is left
+    "ease": 1.8,  # turns per second for each remaining turn
 }
 
 
@@ -26,11 +26,11 @@ class Doser:
         self.release = rospy.Publisher("/release", Bool, queue_size=1)
 
     def on_order(self, msg):
-        """Take what the bag shall weigh: kg."""
+        """Store the ordered weight of the bag, kg."""
         self.order = msg.data
 
     def on_turns(self, msg):
-        """Take how often the screw has turned since the morning."""
+        """Store the number of turns of the screw since it was switched on."""
         if self.first is None:
             self.first = msg.data
         self.turns = msg.data - self.first
@@ -40,7 +40,7 @@ class Doser:
         return self.order / RECIPE["kg_per_turn"] - self.turns
 
     def step(self):
-        """Command the screw; let the bag go when it is full."""
+        """Command the screw; release the bag when it is full."""
         missing = self.left()
         if missing < self.enough:
             self.motor.publish(0.0)

@@ -1,4 +1,4 @@
-"""A bag is released with what was ordered. Damp powder packs badly: a turn moves less of it."""
+"""A bag is released with the ordered weight. Damp powder packs badly: a turn moves less powder."""
 
 import pytest
 
@@ -14,7 +14,7 @@ TIME_BOUND = 22.0
 
 
 class Hopper:
-    """A screw below a hopper; `packing` is what a turn moves, as a share of what it moves of dry powder."""
+    """A screw below a hopper; `packing` is the powder moved per turn, as a share of that of dry powder."""
 
     def __init__(self, rng, packing):
         self.rng = rng
@@ -28,7 +28,7 @@ class Hopper:
         self.failure = ""
 
     def publish(self, bus):
-        """Publish the order, the encoder and the moisture."""
+        """Publish the order, the encoder count and the moisture."""
         bus.publish("/order", Float64(data=self.order))
         bus.publish("/moisture", Float64(data=self.damp + self.rng.normal(0.0, 0.5)))
         bus.publish("/turns", Float64(data=self.turns))
@@ -44,7 +44,7 @@ class Hopper:
         self.released = bool(release and release.data)
 
     def judge(self):
-        """Return the reward of the step: time costs, the weight counts."""
+        """Return the reward of the step: time costs, the right weight is rewarded."""
         wrong = abs(self.weight / self.order - 1.0)
         if self.time > TIME_BOUND:
             self.failure = "late"

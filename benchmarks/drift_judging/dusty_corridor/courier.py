@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Carry a tray of glasses along a corridor; slow down before people and wait for them."""
+"""Carry a tray of glasses along a corridor; slow down near people and wait for them."""
 
 import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Range
 
 PACE = 0.8  # m/s
-SLOWING = 1.0  # speed per metre that is left: 1/s
+SLOWING = 1.0  # speed per remaining metre, 1/s
 STOP = 0.6  # m
-LOST = 0.5  # without a reading for so long the robot stands: s
+LOST = 0.5  # time without a reading after which the robot stops, s
 
 
 class Courier:
-    """The newest range, a command ten times a second."""
+    """Store the latest range and send a command ten times a second."""
 
     def __init__(self):
         self.range = None
@@ -21,12 +21,12 @@ class Courier:
         rospy.Subscriber("/front", Range, self.on_range)
 
     def on_range(self, msg):
-        """Take how far it is to whatever is ahead: m."""
+        """Store the distance to the nearest object ahead, m."""
         self.range = min(msg.range, msg.max_range)
         self.heard = rospy.Time.now()
 
     def speed(self):
-        """Return how fast to go now."""
+        """Return the speed for this cycle."""
         if self.range is None:
             return 0.0
         if (rospy.Time.now() - self.heard).to_sec() > LOST:

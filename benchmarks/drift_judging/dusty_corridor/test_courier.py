@@ -1,4 +1,4 @@
-"""Glasses arrive unbroken: few commands brake hard, nobody is bumped into. Dust makes single readings short."""
+"""Glasses arrive unbroken: the robot brakes hard rarely and touches nobody. Dust makes single readings too short."""
 
 import pytest
 
@@ -11,13 +11,13 @@ Bool = message_type("std_msgs/Bool")
 DT = 0.1
 LENGTH = 8.0
 SIGHT = 5.0  # m
-HARD = 0.3  # brakes harder than that from one command to the next break a glass: m/s
+HARD = 0.3  # decrease of speed from one command to the next that breaks a glass, m/s
 GLASSES = 2
 TIME_BOUND = 21.0
 
 
 class Corridor:
-    """A corridor with a person who stands in it for a while; `dust` is the share of readings that dust reflects."""
+    """A corridor in which a person stands for a while; `dust` is the share of readings reflected by dust."""
 
     def __init__(self, rng, dust):
         self.rng = rng
@@ -37,11 +37,11 @@ class Corridor:
 
     @property
     def gap(self):
-        """Return how much room there is ahead, m."""
+        """Return the free distance ahead, m."""
         return self.person - self.x if self.patience > 0.0 else SIGHT
 
     def publish(self, bus):
-        """Publish what sonar and dust meter measure."""
+        """Publish the measurements of sonar and dust meter."""
         seen = min(SIGHT, self.gap) + self.rng.normal(0.0, 0.01)
         if self.rng.random() < self.dust:
             seen = self.rng.uniform(0.05, 0.4)
@@ -49,7 +49,7 @@ class Corridor:
         bus.publish("/front", Range(min_range=0.02, max_range=SIGHT, range=max(0.02, seen)))
 
     def advance(self, drive):
-        """Roll for one step; a person who sees the robot wait goes away."""
+        """Roll for one step; a person for whom the robot waits goes away."""
         wanted = max(0.0, min(1.0, drive.linear.x)) if drive else 0.0
         if self.wanted - wanted > HARD:
             self.broken += 1
@@ -62,7 +62,7 @@ class Corridor:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the way, and whole glasses."""
+        """Return the reward of the step: progress, and unbroken glasses."""
         if self.gap < 0.25:
             self.failure = "bumped into a person"
         elif self.broken > GLASSES:

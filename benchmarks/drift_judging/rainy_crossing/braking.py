@@ -1,4 +1,4 @@
-"""When to brake, and how to pull away."""
+"""The braking distance, and the pedal for acceleration."""
 
 DECELERATION = 3.0  # on full brake: m/s²
 REACTION = 0.4  # s
@@ -6,10 +6,10 @@ RESERVE = 1.2  # m
 
 
 def brake_distance(speed):
-    """Return from which distance on the shuttle has to brake: m."""
+    """Return the distance at which the shuttle has to start braking, m."""
     return RESERVE + REACTION * speed + speed * speed / (2.0 * DECELERATION)
 
 
 def eased(missing, gain=0.6, most=0.8):
-    """Return the pedal for a speed that is missing."""
+    """Return the pedal position for a missing speed."""
     return max(-most, min(most, gain * missing))

@@ -10,7 +10,7 @@ PACE = 3.0  # m/s
 
 
 class Shuttle(Node):
-    """Speed and the way ahead to throttle."""
+    """Compute the throttle from the speed and the free distance ahead."""
 
     def __init__(self):
         super().__init__("shuttle")
@@ -23,11 +23,11 @@ class Shuttle(Node):
         self.create_timer(0.1, self.on_timer)
 
     def on_speed(self, msg):
-        """Take the wheels' speed: m/s."""
+        """Store the speed of the wheels, m/s."""
         self.speed += 0.7 * (msg.data - self.speed)
 
     def on_ahead(self, msg):
-        """Take how far the road is free: m."""
+        """Store the free distance on the road, m."""
         self.ahead = msg.data
 
     def on_timer(self):

@@ -1,4 +1,4 @@
-"""Nobody is hit. People cross in one mission of eight; on a wet road the shuttle takes longer to stop."""
+"""The shuttle hits nobody. People cross in one of eight missions; on a wet road the shuttle takes longer to stop."""
 
 import pytest
 
@@ -11,12 +11,12 @@ Bool = message_type("std_msgs/msg/Bool")
 DT = 0.1
 LENGTH = 30.0
 SIGHT = 12.0  # m
-CROSSING = 0.12  # share of missions in which somebody steps on the road
+CROSSING = 0.12  # share of missions in which a person steps on the road
 TIME_BOUND = 40.0
 
 
 class Road:
-    """A road; `grip` is how hard the shuttle can brake and pull away, as a share of a dry road's."""
+    """A road; `grip` is the possible braking and acceleration of the shuttle as a share of that on a dry road."""
 
     def __init__(self, rng, grip):
         self.rng = rng
@@ -24,7 +24,7 @@ class Road:
         self.wet = grip < 1.0
         self.x, self.speed = 0.0, 0.0
         self.person = rng.uniform(14.0, 26.0) if rng.random() < CROSSING else None
-        self.steps_out = rng.uniform(6.5, 11.0)  # so far ahead of the shuttle, m
+        self.steps_out = rng.uniform(6.5, 11.0)  # distance at which the person steps out, m
         self.crossing = 6.0  # s
         self.time = 0.0
         self.gained = 0.0
@@ -37,20 +37,20 @@ class Road:
 
     @property
     def ahead(self):
-        """Return how far the road is free, m."""
+        """Return the free distance on the road, m."""
         if self.person is None or self.crossing <= 0.0:
             return SIGHT
         away = self.person - self.x
         return away if away < self.steps_out else SIGHT
 
     def publish(self, bus):
-        """Publish what wheels, lidar and rain sensor measure."""
+        """Publish the measurements of wheels, lidar and rain sensor."""
         bus.publish("/rain", Bool(data=self.wet))
         bus.publish("/speed", Float32(data=self.speed + self.rng.normal(0.0, 0.03)))
         bus.publish("/ahead", Float32(data=self.ahead + self.rng.normal(0.0, 0.05)))
 
     def advance(self, pedal):
-        """Drive for one step; the road takes no more than its grip."""
+        """Drive for one step; the grip of the road limits the acceleration."""
         pressed = max(-1.0, min(1.0, pedal.data)) if pedal else 0.0
         wanted = 3.5 * pressed if pressed < 0.0 else 2.0 * pressed
         most = 3.5 * self.grip

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pick parts from a tray: from the camera's pixels to a place for the gripper, then close it."""
+"""Pick parts from a tray: convert pixels of the camera to a gripper position, move there, and close the gripper."""
 
 import math
 
@@ -10,7 +10,7 @@ from std_msgs.msg import Bool
 
 
 class Picker(Node):
-    """Look, go there, close."""
+    """Look at the part, go there, and close the gripper."""
 
     def __init__(self):
         super().__init__("picker")
@@ -32,18 +32,18 @@ class Picker(Node):
         self.create_timer(0.05, self.on_timer)
 
     def on_part(self, msg):
-        """Take where the camera sees the part, px; smooth it."""
+        """Store the smoothed position of the part in the image, px."""
         seen = (self.camera_x + self.scale * (msg.x - 320.0), self.camera_y + self.scale * (msg.y - 240.0))
         if self.part is None:
             self.part = seen
         self.part = tuple(0.8 * old + 0.2 * new for old, new in zip(self.part, seen, strict=True))
 
     def on_gripper(self, msg):
-        """Take where the gripper is: m."""
+        """Store the position of the gripper, m."""
         self.gripper = (msg.x, msg.y)
 
     def on_timer(self):
-        """Move on; close when it has been there for three periods."""
+        """Move the gripper; close it after three periods at the goal."""
         if self.part is None or self.gripper is None:
             return
         dx = self.part[0] - self.gripper[0]

@@ -1,4 +1,4 @@
-"""Parts are grasped by their middle. Somebody has knocked the camera: it stays where it is now."""
+"""Parts are grasped by their middle. Somebody has knocked against the camera, which stays in its new place."""
 
 import math
 
@@ -11,13 +11,13 @@ Point = message_type("geometry_msgs/msg/Point")
 
 DT = 0.05
 SCALE = 0.0005  # m per pixel
-MIDDLE = (0.12, 0.05)  # of the picture as it was calibrated, m
+MIDDLE = (0.12, 0.05)  # calibrated middle of the picture, m
 GRASP = 0.016  # from the part's middle, m
 TIME_BOUND = 6.0
 
 
 class Tray:
-    """A part on a tray below a camera that may have been shifted along x: m."""
+    """A part on a tray below a camera that may be shifted along x, m."""
 
     def __init__(self, rng, shift):
         self.rng = rng
@@ -31,11 +31,11 @@ class Tray:
 
     @property
     def away(self):
-        """Return how far the gripper is from the part's middle."""
+        """Return the distance of the gripper from the middle of the part."""
         return math.hypot(self.part[0] - self.x, self.part[1] - self.y)
 
     def publish(self, bus):
-        """Publish what camera and encoders measure."""
+        """Publish the measurements of camera and encoders."""
         seen = Point()
         seen.x = 320.0 + (self.part[0] - self.middle[0]) / SCALE + self.rng.normal(0.0, 1.5)
         seen.y = 240.0 + (self.part[1] - self.middle[1]) / SCALE + self.rng.normal(0.0, 1.5)
@@ -54,7 +54,7 @@ class Tray:
         self.closed = bool(close and close.data)
 
     def judge(self):
-        """Return the reward of the step: a little for coming near, most for a good grasp."""
+        """Return the reward of the step: a little for approaching, most for a good grasp."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.closed and self.away > GRASP:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Raise a camera mast to the height that is asked for and hold it there against its weight."""
+"""Raise a camera mast to the requested height and hold it there against its weight."""
 
 import rclpy
 from rclpy.node import Node
@@ -24,13 +24,13 @@ class Mast(Node):
         self.create_timer(self.period, self.on_timer)
 
     def on_height(self, msg):
-        """Take how high the camera is: m."""
+        """Store the height of the camera, m."""
         if self.height is not None:
             self.rising = 0.6 * self.rising + 0.4 * (msg.data - self.height) / self.period
         self.height = msg.data
 
     def on_goal(self, msg):
-        """Take how high it shall be: m."""
+        """Store the requested height of the camera, m."""
         self.goal = msg.data
 
     def duty(self):

@@ -1,4 +1,4 @@
-"""The mast holds its camera near the height that is asked for, whatever is left in the battery."""
+"""The mast holds its camera near the requested height for any charge of the battery."""
 
 import pytest
 
@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.1
 TIME = 14.0
-SETTLED = 7.0  # from here on the height counts, s
+SETTLED = 7.0  # time from which the height is rewarded, s
 BAND = 0.3  # m
 MOST_OUT = 2.5  # s
 WEIGHT = 2.25  # m/s²
@@ -34,7 +34,7 @@ class Yard:
         return self.time >= TIME
 
     def publish(self, bus):
-        """Publish what encoder and voltmeter measure."""
+        """Publish the measurements of encoder and voltmeter."""
         bus.publish("/volts", Float32(data=24.0 * self.charge + self.rng.normal(0.0, 0.1)))
         bus.publish("/goal", Float32(data=self.goal))
         bus.publish("/height", Float32(data=self.height + self.rng.normal(0.0, 0.003)))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drive along an aisle to the shelf that was asked for, by the wheels' ticks alone, and say when it is there."""
+"""Drive along an aisle to the requested shelf by wheel ticks only, and report the arrival."""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -12,7 +12,7 @@ CLOSE = 0.01  # m
 
 
 class Storeman:
-    """Ticks to place, place to command."""
+    """Compute the position from ticks and the command from the position."""
 
     def __init__(self):
         self.goal = None
@@ -28,11 +28,11 @@ class Storeman:
         rospy.Timer(rospy.Duration(0.1), self.on_timer)
 
     def on_shelf(self, msg):
-        """Take how far away the shelf is: m."""
+        """Store the distance to the shelf, m."""
         self.goal = msg.data
 
     def on_ticks(self, msg):
-        """Take what the encoders have counted since they were switched on."""
+        """Store the counts of the encoders since they were switched on."""
         left, right = msg.data
         if self.start is None:
             self.start = (left, right)

@@ -1,4 +1,4 @@
-"""The robot stops at its shelf. Tyres wear off, and no sensor measures it; the change is permanent."""
+"""The robot stops at its shelf. Its tyres wear down permanently, and no sensor measures the wear."""
 
 import math
 
@@ -13,12 +13,12 @@ Int32MultiArray = message_type("std_msgs/Int32MultiArray")
 DT = 0.1
 TICKS = 1200.0  # per metre of tread, new tyres
 TRACK = 0.42
-REACH = 0.14  # beside the shelf by which a box can still be taken, m
+REACH = 0.14  # distance from the shelf at which a box can still be taken, m
 TIME_BOUND = 18.0
 
 
 class Aisle:
-    """An aisle; `tyre` is the wheels' radius as a share of the new one."""
+    """An aisle; `tyre` is the radius of the wheels as a share of that of new wheels."""
 
     def __init__(self, rng, tyre):
         self.rng = rng
@@ -32,12 +32,12 @@ class Aisle:
         self.arrived = False
 
     def publish(self, bus):
-        """Publish the order and what the encoders count."""
+        """Publish the order and the counts of the encoders."""
         bus.publish("/shelf", Float64(data=self.shelf))
         bus.publish("/ticks", Int32MultiArray(data=[int(count) for count in self.ticks]))
 
     def advance(self, drive, there):
-        """Roll for one step; motors turn the wheels at the speed that new tyres would need."""
+        """Roll for one step; the motors turn the wheels at the rate that is right for new tyres."""
         speed, turn = (drive.linear.x, drive.angular.z) if drive else (0.0, 0.0)
         self.speed += (max(0.0, min(0.6, speed)) - self.speed) * 0.5
         for side, sign in ((0, -1.0), (1, 1.0)):
@@ -50,7 +50,7 @@ class Aisle:
         self.arrived = bool(there and there.data)
 
     def judge(self):
-        """Return the reward of the step: time costs, the place counts."""
+        """Return the reward of the step: time costs, the right place is rewarded."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         miss = math.hypot(self.x - self.shelf, self.y)
@@ -72,7 +72,7 @@ class Aisle:
     min_success=0.95,
 )
 def test_stops_at_the_shelf(tarl, tarl_drift):
-    """Go where the box is."""
+    """Drive to the shelf with the box."""
     aisle = Aisle(tarl.rng("aisle"), tarl_drift or 1.0)
     tarl.start("storeman.py")
     while not (aisle.arrived or aisle.failure):

@@ -18,7 +18,7 @@ GANTRY = {
 
 
 class Sprayer:
-    """One pass over each board."""
+    """Paint each board in one pass."""
 
     def __init__(self):
         self.film = None
@@ -33,19 +33,19 @@ class Sprayer:
         rospy.Subscriber("gantry/position", Float64, self.on_position)
 
     def on_film(self, msg):
-        """Wanted wet film in micrometres."""
+        """Store the wanted thickness of the wet film in micrometres."""
         self.film = msg.data
 
     def on_length(self, msg):
-        """Length of the board in metres."""
+        """Store the length of the board in metres."""
         self.board = msg.data
 
     def on_position(self, msg):
-        """Position of the gun, 0 is the near edge of the board."""
+        """Store the position of the gun; 0 is the near edge of the board."""
         self.x = msg.data
 
     def traverse_speed(self):
-        """Speed in m/s at which the gun leaves the wanted film: volume flow over cross section."""
+        """Return the speed in m/s that gives the wanted film: volume flow divided by cross section."""
         volume = GUN["flow"] * (1.0 - GUN["overspray"])  # ml/s
         section = GUN["width"] * self.film  # ml/m, since 1 um * 1 m * 1 m is 1 ml
         speed = volume / section

@@ -1,4 +1,4 @@
-"""Boards get the film that was ordered. Cold paint is thick: less of it leaves the gun, the colder the less."""
+"""Boards get the ordered film. Cold paint is viscous: the colder it is, the less paint leaves the gun."""
 
 import pytest
 
@@ -9,14 +9,14 @@ Bool = message_type("std_msgs/Bool")
 Float64 = message_type("std_msgs/Float64")
 
 DT = 0.05
-STRIP = 0.1  # boards are measured in strips so long, m
-WRONG = 0.24  # share by which a strip's film may be wrong
-STRIPS = 3  # so many strips may be wrong
+STRIP = 0.1  # length of the strips in which boards are measured, m
+WRONG = 0.24  # tolerated relative error of the film in a strip
+STRIPS = 3  # maximum number of wrong strips
 TIME_BOUND = 20.0
 
 
 class Booth:
-    """A board below a gun; `flow` is what leaves the gun as a share of warm paint's."""
+    """A board below a gun; `flow` is the flow of paint as a share of that of warm paint."""
 
     def __init__(self, rng, flow):
         self.rng = rng
@@ -36,7 +36,7 @@ class Booth:
         return self.judged == self.strips
 
     def publish(self, bus):
-        """Publish order, position and the thermometer in the pot."""
+        """Publish order, position and the temperature in the pot."""
         bus.publish("paint/temperature", Float64(data=self.temperature + self.rng.normal(0.0, 0.2)))
         bus.publish("order/film", Float64(data=self.film))
         bus.publish("order/length", Float64(data=self.strips * STRIP))
@@ -55,7 +55,7 @@ class Booth:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the strips that the gun has left behind."""
+        """Return the reward of the step, for the strips that the gun has just finished."""
         reward = 0.0
         while not self.done and self.x > (self.judged + 1) * STRIP:
             wrong = abs(self.film_on[self.judged] / self.film - 1.0)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class EnergyModel:
-    """Numbers in percent of a full battery."""
+    """An energy model in percent of a full battery."""
 
     per_metre: float = 1.6
     per_check: float = 0.5

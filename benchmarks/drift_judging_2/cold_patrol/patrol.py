@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Patrol along a fence: visit the posts, look at each, and be back at the dock before the battery is empty."""
+"""Patrol along a fence: visit and inspect the posts, and return to the dock before the battery is empty."""
 
 import rclpy
 from energy import EnergyModel, smoothed
@@ -13,7 +13,7 @@ NEAR = 0.15
 
 
 class Patrol(Node):
-    """Outward, then home."""
+    """Drive outward, then home."""
 
     def __init__(self, model=None):
         super().__init__("patrol")
@@ -33,15 +33,15 @@ class Patrol(Node):
         self.create_timer(0.25, self.on_timer)
 
     def on_posts(self, msg):
-        """Take the posts, nearest first: m from the dock."""
+        """Store the posts, nearest first, in m from the dock."""
         self.posts = list(msg.data)
 
     def on_odometer(self, msg):
-        """Take the distance from the dock."""
+        """Store the distance from the dock."""
         self.place = msg.data
 
     def on_battery(self, msg):
-        """Take the state of charge."""
+        """Store the state of charge."""
         percent = 100.0 * msg.percentage
         self.charge = percent if self.charge is None else smoothed(self.charge, percent)
 
@@ -50,7 +50,7 @@ class Patrol(Node):
         return self.get_clock().now().nanoseconds / 1e9
 
     def on_timer(self):
-        """Decide and drive."""
+        """Decide where to drive, and drive."""
         if self.posts is None or self.place is None or self.charge is None:
             return
         if self.next_post >= len(self.posts) or self.model.must_return(self.charge, self.place):
@@ -72,7 +72,7 @@ class Patrol(Node):
             self.go(away)
 
     def go(self, away):
-        """Publish the speed for a distance that is left."""
+        """Publish the speed for the remaining distance."""
         cmd = Twist()
         if abs(away) > 1e-3:
             speed = self.speed if abs(away) > 0.6 else self.crawl

@@ -1,4 +1,4 @@
-"""The robot is back at its dock. In frost the battery gives up early; only the long patrols come to notice."""
+"""The robot returns to its dock. In frost the battery is empty early, which only affects long patrols."""
 
 import pytest
 
@@ -15,7 +15,7 @@ TIME_BOUND = 120.0
 
 
 class Fence:
-    """A fence with posts; the battery is dead below a charge of `dead` percent."""
+    """A fence with posts; the battery fails below a charge of `dead` percent."""
 
     def __init__(self, rng, dead):
         self.rng = rng
@@ -56,7 +56,7 @@ class Fence:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: posts that were looked at, and home."""
+        """Return the reward of the step, for inspected posts and the return."""
         seen = sum(look >= 0.8 for look in self.looks)
         reward, self.seen = 2.0 * (seen - self.seen), seen
         if self.charge <= self.dead:

@@ -1,4 +1,4 @@
-"""Profile of the soldering head for lead-free solder and the 2 mm tip."""
+"""The profile of the soldering head for lead-free solder and the 2 mm tip."""
 
 IRON = {"temperature": 350.0, "idle": 180.0, "ready_within": 5.0}  # degrees C
 
@@ -9,6 +9,6 @@ MOTION = {"approach": 0.3, "retract": 0.2, "cool": 0.3}  # s
 
 
 def dwell(area):
-    """Return for how many seconds the tip stays on a pad of so many mm2."""
+    """Return the seconds for which the tip stays on a pad with this area in mm²."""
     constant = HEATING["base"] + HEATING["per_mm2"] * area
     return HEATING["factor"] * constant

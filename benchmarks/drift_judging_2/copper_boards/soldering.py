@@ -20,15 +20,15 @@ class SolderingHead:
         rospy.Subscriber("iron/tip", Float32, self.tip_cb)
 
     def pads_cb(self, msg):
-        """Areas of the pads in mm2."""
+        """Store the areas of the pads in mm²."""
         self.pads = list(msg.data)
 
     def tip_cb(self, msg):
-        """Temperature of the tip."""
+        """Store the temperature of the tip."""
         self.tip = msg.data
 
     def wait_for_board(self):
-        """Block until a board is there and the iron is hot."""
+        """Wait until a board is present and the iron is hot."""
         self.iron_pub.publish(IRON["temperature"])
         while not rospy.is_shutdown() and (self.pads is None or self.tip is None):
             rospy.sleep(0.05)

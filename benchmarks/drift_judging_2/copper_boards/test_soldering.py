@@ -1,4 +1,4 @@
-"""All joints are sound; they are inspected when the board is done. Boards with a ground plane heat up more slowly."""
+"""All joints are sound; they are inspected after the last one. Boards with a ground plane heat up more slowly."""
 
 import pytest
 
@@ -12,13 +12,13 @@ String = message_type("std_msgs/String")
 
 DT = 0.05
 JOINTS = 3
-SOUND = (210.0, 260.0)  # a joint's highest temperature, °C
-HOTTEST = 400.0  # that the iron can be, °C
+SOUND = (210.0, 260.0)  # range for the highest temperature of a joint, °C
+HOTTEST = 400.0  # highest possible temperature of the iron, °C
 TIME_BOUND = 20.0
 
 
 class Board:
-    """A board whose joints take `slow` times as long to heat as those of a plain one."""
+    """A board whose joints take `slow` times as long to heat as those of a plain board."""
 
     def __init__(self, rng, slow, bus):
         self.rng = rng
@@ -39,7 +39,7 @@ class Board:
         self.touching = msg.data
 
     def publish(self, bus):
-        """Publish what the label says and how hot the tip is."""
+        """Publish the label and the temperature of the tip."""
         bus.publish("board/kind", String(data=self.kind))
         bus.publish("board/pads", Float32MultiArray(data=self.areas))
         bus.publish("iron/tip", Float32(data=self.tip + self.rng.normal(0.0, 0.5)))
@@ -61,7 +61,7 @@ class Board:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: nothing before the inspection."""
+        """Return the reward of the step, which is 0 before the inspection."""
         if self.time > TIME_BOUND:
             self.failure = "late"
             return -8.0

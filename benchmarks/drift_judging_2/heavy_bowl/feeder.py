@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drive a vibratory bowl feeder: constant frequency, amplitude by the rate of parts at the exit."""
+"""Drive a vibratory bowl feeder at constant frequency; control the amplitude by the rate of parts at the exit."""
 
 import rospy
 from std_msgs.msg import Bool, Float64, UInt32
@@ -29,11 +29,11 @@ class BowlFeeder:
         self.timer = rospy.Timer(rospy.Duration(self.period), self.timer_cb)
 
     def order_cb(self, msg):
-        """How many parts the machine needs."""
+        """Store the number of parts that the machine needs."""
         self.order = msg.data
 
     def count_cb(self, msg):
-        """Parts that have left the bowl so far."""
+        """Store the number of parts that have left the bowl."""
         self.counted = msg.data
         now = rospy.get_time()
         self.recent.append((now, msg.data))
@@ -41,7 +41,7 @@ class BowlFeeder:
             self.recent.pop(0)
 
     def rate(self):
-        """Parts per second over the window."""
+        """Return the parts per second over the window."""
         if len(self.recent) < 2:
             return 0.0
         (t0, n0), (t1, n1) = self.recent[0], self.recent[-1]

@@ -14,12 +14,12 @@ UInt32 = message_type("std_msgs/UInt32")
 DT = 0.05
 QUALITY = 6.0  # of the resonance
 FASTEST = 20.0  # parts per s at resonance and full amplitude
-JAM = 17.0  # parts per s that the exit cannot take
+JAM = 17.0  # parts per s at which the exit jams
 TIME_BOUND = 6.5
 
 
 class Bowl:
-    """A bowl on springs that resonates at `resonance` Hz."""
+    """A bowl on springs with a resonance at `resonance` Hz."""
 
     def __init__(self, rng, resonance):
         self.rng = rng
@@ -55,7 +55,7 @@ class Bowl:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: each part that is needed counts."""
+        """Return the reward of the step, for each needed part."""
         needed = self.new if self.exit <= self.order else 0
         if FASTEST * self.shaking > JAM:
             self.failure = "parts jam at the exit"

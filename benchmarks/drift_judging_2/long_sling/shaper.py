@@ -1,4 +1,4 @@
-"""Zero-vibration input shaping: two half steps, half a swing apart, cancel each other's sway."""
+"""Zero-vibration input shaping: two half steps, half a period apart, cancel each other's sway."""
 
 import math
 from collections import deque
@@ -26,5 +26,5 @@ class ZeroVibration:
         return 0.5 * command + 0.5 * old
 
     def settled(self, command):
-        """Return whether the line holds nothing but the command."""
+        """Return whether the delay line contains only the current command."""
         return all(abs(value - command) < 1e-6 for value in self.line)

@@ -1,4 +1,4 @@
-"""The load hangs still when it is lowered. Beams hang in a longer sling than boxes and swing more slowly."""
+"""The load hangs still when it is lowered. Beams hang in longer slings than boxes and swing more slowly."""
 
 import math
 
@@ -12,13 +12,13 @@ Float64 = message_type("std_msgs/msg/Float64")
 String = message_type("std_msgs/msg/String")
 
 DT = 0.1
-STILL = 0.17  # m of sway that a load may have when it is lowered
-PLACE = 0.15  # m beside the goal
+STILL = 0.17  # maximum sway of a load when it is lowered, m
+PLACE = 0.15  # maximum distance from the goal, m
 TIME_BOUND = 30.0
 
 
 class Hall:
-    """A crane; `sling` is from the hook to the middle of the load: m."""
+    """A crane; `sling` is the distance from the hook to the middle of the load, m."""
 
     def __init__(self, rng, sling):
         self.rng = rng
@@ -61,7 +61,7 @@ class Hall:
         self.lowered = bool(lower and lower.data)
 
     def judge(self):
-        """Return the reward of the step: some for the way, most for a load that is set down well."""
+        """Return the reward of the step: some for progress, most for a load that is set down well."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.lowered and self.sway > STILL:

@@ -11,11 +11,11 @@ PERIOD = 0.1  # s
 TOP_SPEED = 0.8  # m/s
 CREEP_SPEED = 0.05
 CREEP_WITHIN = 0.03
-STOPPING = 0.24  # the drive needs so much to stop from top speed, m
+STOPPING = 0.24  # distance that the drive needs to stop from top speed, m
 
 
 class Trolley(Node):
-    """Raw command from the distance, shaped command to the drive."""
+    """Compute the raw command from the distance, shape it, and send it to the drive."""
 
     def __init__(self):
         super().__init__("trolley")
@@ -33,20 +33,20 @@ class Trolley(Node):
         self.create_timer(PERIOD, self.control)
 
     def on_goal(self, msg):
-        """Take where the load has to go."""
+        """Store the goal of the load."""
         self.goal = msg.data
 
     def on_position(self, msg):
-        """Take where the trolley starts."""
+        """Store the start position of the trolley."""
         if self.start is None:
             self.start = msg.data
 
     def on_hoist(self, msg):
-        """Take how much rope is out, smoothed."""
+        """Store the smoothed length of rope."""
         self.hoist = msg.data if self.hoist is None else 0.9 * self.hoist + 0.1 * msg.data
 
     def raw_speed(self):
-        """Return the unshaped speed: top speed for as long as the distance takes."""
+        """Return the unshaped speed: top speed until the distance is covered."""
         left = self.goal - self.start - TOP_SPEED * self.elapsed
         return max(0.0, min(TOP_SPEED, left / PERIOD))
 

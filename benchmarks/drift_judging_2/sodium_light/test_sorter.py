@@ -14,11 +14,11 @@ SPACING = 20  # steps from one fruit to the next
 VIEW = 5  # steps that a fruit is in view
 FLAP = 12  # steps from the middle of the view to the flap
 FRUITS = 6
-WRONG = 1  # so many may be sorted wrongly
+WRONG = 1  # maximum number of fruits sorted wrongly
 
 
 class Belt:
-    """A belt with fruits, ripe or green; `mono` is the share of the light that is sodium's."""
+    """A belt with ripe and green fruits; `mono` is the share of sodium light."""
 
     def __init__(self, rng, mono):
         self.rng = rng
@@ -37,11 +37,11 @@ class Belt:
         return self.sorted == FRUITS
 
     def fruit(self, behind):
-        """Return which fruit is this many steps behind the edge of the view, and how far it is."""
+        """Return the fruit that is this many steps behind the edge of the view, and its distance."""
         return divmod(self.step - self.first - behind, SPACING)
 
     def publish(self, bus):
-        """Publish the lamp and what the camera sees: a fruit's own colour, or the lamp's."""
+        """Publish the lamp and the camera's colour, which is that of the fruit or that of the lamp."""
         index, since = self.fruit(0)
         there = 0 <= index < FRUITS and since < VIEW
         colour = (0.5, 0.5, 0.5)
@@ -57,7 +57,7 @@ class Belt:
         bus.publish("camera/colour", ColorRGBA(r=red, g=green, b=blue, a=1.0))
 
     def judge(self, flap):
-        """Return the reward of the step: each fruit at the flap counts, one way or the other."""
+        """Return the reward of the step: positive for a fruit sorted correctly, else negative."""
         index, since = self.fruit(FLAP)
         self.step += 1
         if since != 0 or not 0 <= index < FRUITS:

@@ -1,4 +1,4 @@
-"""Plates and soup come to their table in time. Soup is spilt when the robot accelerates or brakes hard."""
+"""Plates and soup reach their table in time. Soup is spilt if the robot accelerates or brakes hard."""
 
 import pytest
 
@@ -12,12 +12,12 @@ String = message_type("std_msgs/msg/String")
 
 DT = 0.1
 DOOR = (2.0, 3.2)  # where the kitchen door opens, m
-SPILT = 0.06  # how much may be lost: m/s
-PACE = 0.85  # a guest's patience: the average speed of a robot that is just in time, m/s
+SPILT = 0.06  # maximum amount spilt, m/s
+PACE = 0.85  # average speed at which the robot arrives just in time for the guest, m/s
 
 
 class Restaurant:
-    """An aisle; what is on the tray takes accelerations up to `firmness`: m/s²."""
+    """An aisle; the load on the tray tolerates accelerations up to `firmness`, m/s²."""
 
     def __init__(self, rng, firmness):
         self.rng = rng
@@ -40,7 +40,7 @@ class Restaurant:
         bus.publish("pose", Pose2D(x=x, y=y))
 
     def advance(self, cmd, arrived):
-        """Roll for one step; the drive follows quickly, in tenths of the step."""
+        """Roll for one step; the drive is integrated in tenths of the step."""
         wanted, turn = (cmd.linear.x, cmd.angular.z) if cmd else (0.0, 0.0)
         before = self.x
         for _ in range(4):
@@ -54,7 +54,7 @@ class Restaurant:
         self.arrived = bool(arrived and arrived.data)
 
     def judge(self):
-        """Return the reward of the step: the way, less what was spilt."""
+        """Return the reward of the step: progress minus the amount spilt."""
         if self.spilt > SPILT:
             self.failure = f"spilt the {self.cargo}"
         elif self.time > 4.0 + self.table / PACE:

@@ -13,7 +13,7 @@ class Waiter(Node):
     CRUISE_SPEED = 0.9  # m/s
     DOOR_SPEED = 0.45  # m/s, next to the kitchen door
     APPROACH_GAIN = 0.8  # 1/s
-    MIN_SPEED = 0.08  # m/s, the wheels stick below
+    MIN_SPEED = 0.08  # m/s; the wheels stick at lower speeds
     TOLERANCE = 0.05  # m
     LANE_GAIN = 1.2  # 1/s per m
 

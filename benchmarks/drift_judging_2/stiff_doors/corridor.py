@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-# Night rounds: go through the doors of a corridor. A door that does not give way is locked: take the way round.
-"""Push through swing doors, or ask for a detour."""
+# Night rounds through the doors of a corridor. A door that does not open when pushed is locked: take the detour.
+"""Push swing doors open, or request a detour."""
 
 import rospy
 from sensor_msgs.msg import LaserScan
@@ -8,9 +8,9 @@ from std_msgs.msg import Bool, Float32, String
 
 DRIVE = 0.7  # m/s
 PUSH = 0.15  # m/s, bumper against the door
-TOUCH = 0.08  # m, closer than that the bumper touches
+TOUCH = 0.08  # m, distance below which the bumper touches the door
 SLOW_FROM = 0.6  # m
-OPEN_GAP = 1.0  # m of free way behind a door that is open
+OPEN_GAP = 1.0  # m, free distance that shows an open door
 PATIENCE = 2.5  # s
 BACK_OFF = 0.3  # m/s
 
@@ -35,7 +35,7 @@ def change(new, now):
 
 
 def drive_speed():
-    """Full speed, slower in front of a door."""
+    """Return full speed, and less in front of a door."""
     if gap > SLOW_FROM:
         return DRIVE
     return max(PUSH, DRIVE * gap / SLOW_FROM)
@@ -54,7 +54,7 @@ def step(now):
         elif now - since > PATIENCE:
             change("detour", now)
         return PUSH
-    # detour: back off a little, the fleet manager takes over
+    # detour: back off a little, then the fleet manager takes over
     return -BACK_OFF if now - since < 0.5 else 0.0
 
 

@@ -1,6 +1,6 @@
-"""Rounds are done in time.
+"""Rounds end in time.
 
-At a locked door the robot has to go round; in winter some doors are stiff and open slowly.
+The robot makes a detour at a locked door; in winter some doors are stiff and open slowly.
 """
 
 import pytest
@@ -16,11 +16,11 @@ DT = 0.1
 LENGTH = 7.0
 SIGHT = 4.0  # m
 LOCKED = 0.08  # share of rounds with a locked door
-DETOUR = 9.0  # the way round takes, s
+DETOUR = 9.0  # duration of the detour, s
 
 
 class House:
-    """A corridor with two doors; `stiff` is the share of rounds in which one of them is stiff."""
+    """A corridor with two doors; in a share `stiff` of the rounds, one of the doors is stiff."""
 
     def __init__(self, rng, stiff):
         self.rng = rng
@@ -50,17 +50,17 @@ class House:
 
     @property
     def gap(self):
-        """Return how far the corridor is free, m."""
+        """Return the free distance in the corridor, m."""
         return SIGHT if self.ahead is None else min(SIGHT, self.doors[self.ahead] - self.x)
 
     def publish(self, bus):
-        """Publish the thermometer outside and a scan with three rays to the front."""
+        """Publish the outdoor temperature and a scan with three rays to the front."""
         bus.publish("/outside", Float32(data=self.outside + self.rng.normal(0.0, 0.2)))
         rays = [max(0.02, min(SIGHT, self.gap + self.rng.normal(0.0, 0.01))) for _ in range(3)]
         bus.publish("/scan", LaserScan(range_min=0.02, range_max=SIGHT, ranges=rays))
 
     def advance(self, speed, detour):
-        """Drive or push for one step; doors give way to what leans on them."""
+        """Drive or push for one step; a door opens after enough pushing."""
         wanted = max(-0.5, min(1.0, speed.data)) if speed else 0.0
         before = self.x
         self.x += wanted * DT
@@ -74,7 +74,7 @@ class House:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the way, and less for each second."""
+        """Return the reward of the step: progress minus a cost of time."""
         if self.detour and not self.locked:
             self.failure = "took the way round a door that opens"
         elif self.time > 40.0:

@@ -17,7 +17,7 @@ ALPHA_GPS = 0.6
 
 
 class WaypointFollower:
-    """Drive to one waypoint after the other."""
+    """Drive to each waypoint in turn."""
 
     def __init__(self):
         self.waypoints = rospy.get_param("~waypoints", [[5.0, 0.0], [11.0, 0.0]])
@@ -37,11 +37,11 @@ class WaypointFollower:
         self.here = (x, y)
 
     def compass_cb(self, msg):
-        """Turn the reading into a heading."""
+        """Convert the compass reading to a heading."""
         self.heading = heading_from_compass(msg.data)
 
     def compute(self):
-        """Return the command for now."""
+        """Return the command for this cycle."""
         cmd = Twist()
         if self.index >= len(self.waypoints):
             return cmd

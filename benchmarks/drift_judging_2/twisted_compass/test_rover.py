@@ -1,4 +1,4 @@
-"""The rover reaches the end of its row between two hedges. After a repair its compass sits twisted, for good."""
+"""The rover reaches the end of its row between two hedges. After a repair, its compass is permanently twisted."""
 
 import math
 

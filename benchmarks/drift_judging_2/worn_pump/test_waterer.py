@@ -1,4 +1,4 @@
-"""Every pot gets its dose. The pump is worn and no flow meter is fitted: it delivers less, for good."""
+"""Every pot gets its dose. The worn pump permanently delivers less, and there is no flow meter."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ Float64MultiArray = message_type("std_msgs/msg/Float64MultiArray")
 DT = 0.1
 POTS = 3
 NEW_PUMP = 22.0  # ml/s
-WRONG = 0.2  # share of the dose by which a pot may be wrong
+WRONG = 0.2  # tolerated relative error of a dose
 TIME_BOUND = 45.0
 
 
@@ -43,7 +43,7 @@ class Greenhouse:
         bus.publish("rail/position", Float64(data=self.x + self.rng.normal(0.0, 0.002)))
 
     def advance(self, bus):
-        """Move the cart and pump for one step; the hose has to fill first."""
+        """Run cart and pump for one step; the hose has to fill first."""
         speed, pump = bus.latest("rail/speed"), bus.latest("pump")
         self.speed += ((speed.data if speed else 0.0) - self.speed) * 0.8
         self.x += self.speed * DT
@@ -58,7 +58,7 @@ class Greenhouse:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: each pot counts once the cart has left it."""
+        """Return the reward of the step, for each pot that the cart has just left."""
         reward = 0.0
         while self.judged < POTS and (self.done or self.x > self.pots[self.judged] + 0.15):
             wrong = abs(self.given[self.judged] / self.doses[self.judged] - 1.0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Water the pots along a rail: drive to a pot, pump its dose, wait until the hose has stopped to drip."""
+"""Water the pots along a rail: drive to a pot, pump its dose, wait until the hose has stopped dripping."""
 
 from enum import Enum
 
@@ -9,7 +9,7 @@ from std_msgs.msg import Bool, Float64, Float64MultiArray
 
 
 class State(Enum):
-    """What the cart is doing."""
+    """The states of the cart."""
 
     WAIT_FOR_JOB = 0
     DRIVE = 1
@@ -52,11 +52,11 @@ class Waterer(Node):
         self.position = msg.data
 
     def pots_cb(self, msg):
-        """Store where the pots are."""
+        """Store the positions of the pots."""
         self.pots = list(msg.data)
 
     def doses_cb(self, msg):
-        """Store how much each pot gets in ml."""
+        """Store the dose of each pot in ml."""
         self.doses = list(msg.data)
 
     def pump_time(self, dose):

@@ -1,4 +1,4 @@
-"""Fall of a parcel below its parachute."""
+"""The fall of a parcel under its parachute."""
 
 import numpy as np
 
@@ -7,15 +7,15 @@ FREE_FALL = 4.0  # m/s, mean speed until the chute is open
 
 
 def fall_time(height):
-    """Seconds between release and ground."""
+    """Return the seconds from the release to the landing."""
     return CHUTE["opening"] + (height - FREE_FALL * CHUTE["opening"]) / CHUTE["sink"]
 
 
 def drift(height, wind):
-    """Where the wind carries a parcel (m, east and north)."""
+    """Return how far the wind carries a parcel (m, east and north)."""
     return np.asarray(wind) * fall_time(height)
 
 
 def throw(velocity):
-    """How far a parcel flies on before the air has stopped it: m."""
+    """Return the distance that a parcel travels before drag has stopped it, m."""
     return CHUTE["throw"] * float(np.linalg.norm(velocity))

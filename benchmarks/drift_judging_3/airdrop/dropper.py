@@ -13,7 +13,7 @@ from std_msgs.msg import Bool, Float64
 
 AIR_SPEED = 15.0
 WIND_WEIGHT = 0.15
-CLOSE = 0.5  # of a step, by which the release is late on average
+CLOSE = 0.5  # average delay of the release, in steps
 
 
 class Dropper(Node):
@@ -40,7 +40,7 @@ class Dropper(Node):
         self.wind = new if self.wind is None else (1 - WIND_WEIGHT) * self.wind + WIND_WEIGHT * new
 
     def ground_velocity(self, towards):
-        """Ground velocity of a flight that makes good the direction `towards`."""
+        """Return the ground velocity of a flight whose track has the direction `towards`."""
         ahead = towards / max(1e-6, np.linalg.norm(towards))
         aside = np.array([-ahead[1], ahead[0]])
         across = float(self.wind @ aside)
@@ -51,7 +51,7 @@ class Dropper(Node):
         if self.position is None or self.target is None or self.wind is None or self.released:
             return
         xy, height = self.position[:2], self.position[2]
-        away = self.target - drift(height, self.wind) - xy  # the parcel has to leave its chute's way upwind
+        away = self.target - drift(height, self.wind) - xy  # release upwind of the target
         velocity = self.ground_velocity(away)
         air = velocity - self.wind
         self.course_pub.publish(Float64(data=float(np.arctan2(air[1], air[0]))))

@@ -1,4 +1,4 @@
-"""A parcel lands near its addressee; only that is judged. Below a larger chute it drifts further."""
+"""A parcel lands near its addressee; only the landing is rewarded. Under a larger chute it drifts further."""
 
 import math
 
@@ -44,7 +44,7 @@ class Sky:
         return self.miss is not None or bool(self.failure)
 
     def publish(self, bus):
-        """Publish mission, label, place and the autopilot's estimate of the wind."""
+        """Publish mission, label, position and the autopilot's estimate of the wind."""
         bus.publish("parcel/chute", String(data=self.chute))
         bus.publish("mission/target", Point(x=0.0, y=0.0, z=0.0))
         gusts = self.rng.normal(0.0, 0.2, 2)
@@ -52,7 +52,7 @@ class Sky:
         bus.publish("gps", Point(x=self.x, y=self.y, z=self.height))
 
     def advance(self, course, release):
-        """Fly for one step; a parcel that is released lands in the same one."""
+        """Fly for one step; a released parcel lands in the same step."""
         if release and release.data:
             down = 1.2 + (self.height - 4.8) / self.sink
             at = (
@@ -72,7 +72,7 @@ class Sky:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: nothing before the parcel has landed."""
+        """Return the reward of the step, which is 0 before the parcel has landed."""
         if self.time > TIME_BOUND:
             self.failure = "never released"
         elif self.miss is None:

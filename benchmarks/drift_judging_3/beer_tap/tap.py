@@ -5,8 +5,8 @@ import rospy
 from std_msgs.msg import Bool, Float32, UInt16
 
 ML_PER_GRAM = 0.99
-SOFT_END = 70.0  # ml before the mark, where the valve starts to close
-DRIP = 4.0  # ml that still come when the valve shuts
+SOFT_END = 70.0  # ml before the mark at which the valve starts to close
+DRIP = 4.0  # ml that still flow after the valve has closed
 TILT = 45.0  # deg
 STRAIGHT_FROM = 0.55  # of the order
 
@@ -15,13 +15,13 @@ poured = 0.0
 
 
 def on_order(msg):
-    """A new glass stands under the tap."""
+    """Start with the new glass under the tap."""
     global order
     order = msg.data
 
 
 def on_scale(msg):
-    """Grams of beer, the glass is tared."""
+    """Store the grams of beer, without the glass."""
     global poured
     poured = msg.data * ML_PER_GRAM
 

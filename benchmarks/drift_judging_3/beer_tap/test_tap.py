@@ -1,4 +1,4 @@
-"""A glass is full and has a head, not more. Beer from a warm keg foams where it flows fast."""
+"""A glass is full and has no more foam than its head. Beer from a warm keg foams if it flows fast."""
 
 import pytest
 
@@ -12,11 +12,11 @@ UInt16 = message_type("std_msgs/UInt16")
 DT = 0.1
 FLOW = 80.0  # ml/s of an open valve
 MOST_FOAM = 35.0  # ml
-DRIP = 0.05  # s that the spout still runs
+DRIP = 0.05  # s for which the spout still drips
 
 
 class Bar:
-    """A tap; beer stays calm up to `calm` ml/s."""
+    """A tap; beer does not foam up to a flow of `calm` ml/s."""
 
     def __init__(self, rng, calm):
         self.rng = rng
@@ -43,12 +43,12 @@ class Bar:
         self.poured += self.gained
         self.foam += 0.5 * max(0.0, self.flow - self.calm) * DT
         if self.gained > 0.5 and self.poured < 0.4 * self.order and (tilt is None or tilt.data < 30.0):
-            self.foam += 2.0  # it falls to the bottom of a straight glass
+            self.foam += 2.0  # beer falls to the bottom of a straight glass
         self.served = bool(served and served.data)
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: beer counts, foam costs."""
+        """Return the reward of the step: beer is rewarded, foam costs."""
         if self.foam > MOST_FOAM:
             self.failure = "foam runs over"
         elif self.time > 5.0 + self.order / 25.0:

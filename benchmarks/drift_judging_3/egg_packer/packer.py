@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Lift eggs from a tray into cartons with a soft gripper. One function per node, as the cell's other nodes have it."""
+"""Lift eggs from a tray into cartons with a soft gripper. One function makes up the node."""
 
 import rclpy
 from std_msgs.msg import Float32, String
 
 TICK = 0.05  # s
 DENSITY = 1.09e-3  # g/mm3
-SHAPE = 0.5236 * 1.33  # volume of an egg over the cube of its width
+SHAPE = 0.5236 * 1.33  # ratio of the volume of an egg to the cube of its width
 NEWTON_PER_GRAM = 0.0102
 CLOSE_TIME = 0.3  # s
 LIFT_ACCELERATION = 1.5  # m/s2
@@ -20,12 +20,12 @@ def weight_of(width):
 
 
 def force_for(width):
-    """Return the gripping force that an egg needs: N."""
+    """Return the gripping force that an egg needs, N."""
     return NEWTON_PER_GRAM * weight_of(width)
 
 
 def main():
-    """Make the node out of closures and spin it."""
+    """Create the node from closures and spin it."""
     rclpy.init()
     node = rclpy.create_node("packer")
     grip = node.create_publisher(Float32, "grip/force", 1)

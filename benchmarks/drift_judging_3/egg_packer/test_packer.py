@@ -1,4 +1,4 @@
-"""Six eggs are packed, none slips, none cracks. Washed eggs are dry when they arrive, but for one in fifty or so."""
+"""Six eggs are packed, and none slips or cracks. Washed eggs are dry when they arrive, except about one in fifty."""
 
 import pytest
 
@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.05
 EGGS = 6
-CRACK = 1.75  # a shell bears so much of the force that a dry egg of its weight needs at rest
+CRACK = 1.75  # force that a shell bears, relative to the force that a dry egg of its weight needs at rest
 TIME_BOUND = 12.0
 
 
@@ -35,7 +35,7 @@ class Tray:
         return self.egg == EGGS or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the line that eggs come from, the egg below the gripper, and the lift's height."""
+        """Publish the source line of the eggs, the egg below the gripper, and the height of the lift."""
         bus.publish("tray/washed", Bool(data=self.washed))
         here = self.gap == 0 and self.egg < EGGS
         width = (self.weights[self.egg] / (1.09e-3 * 0.5236 * 1.33)) ** (1 / 3) if here else 0.0
@@ -64,7 +64,7 @@ class Tray:
             self.packed = True
 
     def judge(self):
-        """Return the reward of the step: each egg counts."""
+        """Return the reward of the step, for each packed egg."""
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         return -5.0 if self.failure else 10.0 / EGGS * self.packed - 0.002

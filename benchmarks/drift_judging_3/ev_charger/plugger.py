@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Plug a charging connector into a car.
 
-The camera says roughly where the inlet is. The arm goes there, presses lightly, and moves along a spiral until the
-connector drops in. What is not found within the spiral is left to the attendant.
+The camera gives a rough position of the inlet. The arm goes there, presses lightly, and follows a spiral until the
+connector drops in. If the spiral ends without success, the car is left to the attendant.
 """
 
 import math
@@ -28,7 +28,7 @@ class Phase(Enum):
 
 
 class Spiral:
-    """Archimedean spiral, walked at constant speed along its arc."""
+    """Archimedean spiral, followed at constant speed along its arc."""
 
     def __init__(self, pitch, speed, max_radius):
         self.pitch = pitch
@@ -45,7 +45,7 @@ class Spiral:
         return self.radius > self.max_radius
 
     def advance(self, dt):
-        """Return the next offset from the middle: m."""
+        """Return the next offset from the middle, m."""
         arm = max(self.radius, 0.25 * self.pitch)
         self.angle += self.speed * dt / arm
         return self.radius * math.cos(self.angle), self.radius * math.sin(self.angle)
@@ -125,7 +125,7 @@ class Plugger(Node):
             self.surface = self.tool.z
             self.spiral = Spiral(*(self.cfg[f"spiral.{key}"] for key in ("pitch", "speed", "max_radius")))
             self.enter(Phase.SEARCH)
-        elif self.tool.z > 0.006:  # nothing to touch: the estimate was right at once
+        elif self.tool.z > 0.006:  # the connector touches nothing, so the estimate was right
             self.enter(Phase.INSERT)
 
     def search(self):

@@ -1,4 +1,4 @@
-"""Cars are plugged in, or left to the attendant soon where the flap is closed. Low sun misleads the camera, rarely."""
+"""Cars are plugged in, or soon left to the attendant if the flap is closed. Low sun rarely misleads the camera."""
 
 import math
 
@@ -13,14 +13,14 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 WrenchStamped = message_type("geometry_msgs/msg/WrenchStamped")
 
 DT = 0.1
-FITS = 0.0015  # m beside the middle, where the connector drops in
+FITS = 0.0015  # maximum distance from the middle at which the connector drops in, m
 CLOSED = 0.06  # share of cars with a closed flap
 STIFFNESS = 2000.0  # N/m
 TIME_BOUND = 40.0
 
 
 class Bay:
-    """A car in its bay; `misled` is the share of cars whose inlet the camera sees some millimetres beside."""
+    """A car in its bay; for a share `misled` of the cars, the camera sees the inlet at a wrong place."""
 
     def __init__(self, rng, misled):
         self.rng = rng
@@ -49,7 +49,7 @@ class Bay:
         bus.publish("arm/wrench", wrench)
 
     def advance(self, command, state, latched):
-        """Move the tool for one step; the car's side is at 0, the inlet a hole in it."""
+        """Move the tool for one step; the side of the car is at 0, and the inlet is a hole in it."""
         if command:
             deep = self.tool[2] > 0.002
             wanted = (command.point.x, command.point.y, command.point.z)
@@ -67,11 +67,11 @@ class Bay:
 
     @property
     def done(self):
-        """Return whether the job has come to an end."""
+        """Return whether the job has ended."""
         return self.latched or self.called or bool(self.failure)
 
     def judge(self):
-        """Return the reward of the step: time costs, the end counts."""
+        """Return the reward of the step: time costs, a good end is rewarded."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.called and not self.closed:

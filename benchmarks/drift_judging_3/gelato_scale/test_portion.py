@@ -1,4 +1,4 @@
-"""Tubs get the ordered weight. The supplier's new tubs are heavier, for good."""
+"""Tubs get the ordered weight. The new tubs of the supplier are permanently heavier."""
 
 import pytest
 
@@ -16,7 +16,7 @@ TIME_BOUND = 30.0
 
 
 class Counter:
-    """A scale with tubs of `weight` g in turn."""
+    """A scale with a sequence of tubs of `weight` g."""
 
     def __init__(self, rng, weight):
         self.rng = rng
@@ -29,7 +29,7 @@ class Counter:
 
     @property
     def done(self):
-        """Return whether all tubs are away."""
+        """Return whether all tubs have been taken."""
         return self.at == TUBS or bool(self.failure)
 
     def publish(self, bus):
@@ -53,7 +53,7 @@ class Counter:
             self.at, self.ice, self.falling, self.pause, self.still = self.at + 1, 0.0, 0.0, 8, 0
 
     def judge(self):
-        """Return the reward of the step: each tub counts when it is taken."""
+        """Return the reward of the step, for each tub that is taken."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.wrong is not None and self.wrong > WRONG:

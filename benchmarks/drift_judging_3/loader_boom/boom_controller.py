@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bring the boom of a wheel loader to an angle and hold it there; oil leaks past the cylinder, so it sinks."""
+"""Bring the boom of a wheel loader to an angle and hold it there although oil leaks past the cylinder."""
 
 import math
 
@@ -11,7 +11,7 @@ from std_msgs.msg import Bool, Float64
 
 
 class BoomController(Node):
-    """Joint state in, spool position of the proportional valve out."""
+    """Compute the spool position of the proportional valve from the joint state."""
 
     def __init__(self):
         super().__init__("boom_controller", namespace="loader")
@@ -54,7 +54,7 @@ class BoomController(Node):
         self.goal = msg.data
 
     def over_deadband(self, flow):
-        """Jump over the overlap of the spool, in which no oil flows."""
+        """Skip the overlap of the spool, in which no oil flows."""
         if abs(flow) < 1e-3:
             return 0.0
         return flow + math.copysign(self.deadband, flow)

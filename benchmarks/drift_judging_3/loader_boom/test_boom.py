@@ -1,4 +1,4 @@
-"""The boom reaches two angles. After a repair of the valve its two hoses are swapped, for good."""
+"""The boom reaches two angles. After a repair of the valve, its two hoses are permanently swapped."""
 
 from pathlib import Path
 
@@ -13,33 +13,33 @@ JointState = message_type("sensor_msgs/msg/JointState")
 
 DT = 0.05
 EACH = 110  # steps for an angle
-HOLD = 25  # the last of them count
+HOLD = 25  # number of last steps that are rewarded
 NEAR = 0.04  # rad
 STOPS = (-0.6, 1.1)  # rad
 LEAK = 0.12  # rad/s
 
 
 class Loader:
-    """A boom on a cylinder; `hoses` is -1 where they are swapped."""
+    """A boom on a cylinder; `hoses` is -1 if the hoses are swapped."""
 
     def __init__(self, rng, hoses):
         self.rng = rng
         self.hoses = hoses
         self.angle = rng.uniform(-0.2, 0.2)
         self.goals = [rng.uniform(0.3, 0.6), rng.uniform(-0.2, 0.1)]
-        self.strength = rng.uniform(0.45, 0.55)  # rad/s of a valve that is open
+        self.strength = rng.uniform(0.45, 0.55)  # rad/s if the valve is fully open
         self.line = [0.0, 0.0]
         self.rate, self.missed, self.step = 0.0, 0, 0
         self.failure = ""
 
     @property
     def done(self):
-        """Return whether both angles have had their time."""
+        """Return whether the time for both angles is over."""
         return self.step >= EACH * len(self.goals)
 
     @property
     def goal(self):
-        """Return the angle that is wanted now."""
+        """Return the target angle at this step."""
         return self.goals[min(self.step // EACH, len(self.goals) - 1)]
 
     def publish(self, bus):
@@ -52,12 +52,12 @@ class Loader:
         """Let the oil flow for one step."""
         open_ = max(-1.0, min(1.0, spool.data)) if spool else 0.0
         self.line.append(0.0 if abs(open_) < 0.04 else open_)
-        oil = self.line.pop(0)  # the spool moves late
+        oil = self.line.pop(0)  # the spool moves with a delay
         self.rate += (self.hoses * self.strength * oil - self.rate) * 0.15
         self.angle = max(STOPS[0], min(STOPS[1], self.angle + (self.rate - LEAK) * DT))
 
     def judge(self):
-        """Return the reward of the step: little for the way, most for holding still at the end."""
+        """Return the reward of the step: a little for progress, most for holding still at the end."""
         off = abs(self.goal - self.angle)
         late = self.step % EACH >= EACH - HOLD
         self.step += 1

@@ -1,10 +1,10 @@
 # Liquid classes of the deck. Volumes in ul, times in s, speeds in ul/s.
-"""How the pipetting head treats a liquid."""
+"""Settings of the pipetting head for each liquid."""
 
 CLASSES = {
     "aqueous": {
         "aspirate": 80.0,
-        "settle": 0.6,  # the tip stays in the liquid until the piston's vacuum is gone
+        "settle": 0.6,  # time for which the tip stays in the liquid, until the vacuum of the piston is gone
         "dispense": 160.0,
         "blow_out": 8.0,
     },
@@ -27,9 +27,9 @@ class LiquidClass:
         self.__dict__.update(CLASSES[name])
 
     def stroke_time(self, volume):
-        """Time for which the piston moves up."""
+        """Return the time for which the piston moves up."""
         return volume / self.aspirate
 
     def eject_time(self, volume):
-        """Time for which the piston moves down, with the blow-out."""
+        """Return the time for which the piston moves down, including the blow-out."""
         return (volume + self.blow_out) / self.dispense

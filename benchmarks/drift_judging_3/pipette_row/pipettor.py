@@ -9,7 +9,7 @@ from std_msgs.msg import Float64, Float64MultiArray, Int16, String
 SAFE_Z = 20.0  # mm above the deck
 TROUGH_Z = 2.0
 WELL_Z = 5.0
-TROUGH = -1  # position of the trough, wells count from 0
+TROUGH = -1  # position of the trough; wells are counted from 0
 
 
 class Pipettor(object):
@@ -33,7 +33,7 @@ class Pipettor(object):
         self.z = msg.data
 
     def go_z(self, height):
-        """Move the head up or down and wait until it is there."""
+        """Move the head up or down and wait until it has arrived."""
         self.z_pub.publish(height)
         poll = rospy.Rate(20)
         while not rospy.is_shutdown():
@@ -48,12 +48,12 @@ class Pipettor(object):
         rospy.sleep(self.travel)
 
     def move_piston(self, to, speed):
-        """Start the piston; 0 is where the tip is empty, below is the blow-out."""
+        """Start the piston; at 0 the tip is empty, below 0 is the blow-out."""
         self.speed_pub.publish(speed)
         self.piston_pub.publish(to)
 
     def aspirate(self, volume):
-        """Draw up; wait in the liquid, it follows the piston late."""
+        """Draw liquid; keep the tip in it, since the liquid follows the piston with a delay."""
         self.go_x(TROUGH)
         self.go_z(TROUGH_Z)
         self.move_piston(volume, self.liquid.aspirate)

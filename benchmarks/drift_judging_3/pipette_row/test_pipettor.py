@@ -1,4 +1,4 @@
-"""Each well gets its volume. Glycerol follows the piston late, the more of it there is the later."""
+"""Each well gets its volume. Glycerol follows the piston with a delay, which grows with its concentration."""
 
 import math
 
@@ -13,13 +13,13 @@ String = message_type("std_msgs/String")
 
 DT = 0.05
 WELLS = 3
-WRONG = 0.05  # share of the volume by which a well may be wrong
+WRONG = 0.05  # tolerated relative error of the volume in a well
 TIME_BOUND = 33.0
-SURFACE = 10.0  # mm, of the liquid in the trough
+SURFACE = 10.0  # height of the liquid in the trough, mm
 
 
 class Deck:
-    """A trough and a row of wells; the liquid follows the piston with `lag` s."""
+    """A trough and a row of wells; the liquid follows the piston with a lag of `lag` s."""
 
     def __init__(self, rng, lag):
         self.rng = rng
@@ -59,7 +59,7 @@ class Deck:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: a well counts once the head has left it."""
+        """Return the reward of the step, for each well that the head has just left."""
         reward = -0.005
         while self.judged < WELLS and (self.done or (self.x < 0 and self.got[self.judged] > 0.0)):
             wrong = abs(self.got[self.judged] / self.volumes[self.judged] - 1.0)

@@ -32,7 +32,7 @@ class DriveConfig:
     """Speed of the rollers."""
 
     climb: float = 0.35  # m/s
-    near: float = 0.6  # m below the mark, where it slows down
+    near: float = 0.6  # distance below the mark at which it slows down, m
     creep: float = 0.08  # m/s
     lean_limit: float = 0.20  # rad
     hold_gain: float = 1.5  # 1/s
@@ -40,13 +40,13 @@ class DriveConfig:
 
 @dataclass
 class EnergyConfig:
-    """What the battery permits."""
+    """Limits set by the charge of the battery."""
 
     low: float = 0.15
 
 
 class Slip:
-    """Compare what the rollers turn with what the range finder sees of the ground."""
+    """Compare the turns of the rollers with the height measured by the range finder."""
 
     def __init__(self, window=6):
         self.window = window
@@ -60,7 +60,7 @@ class Slip:
 
     @property
     def ratio(self):
-        """Share of the rollers' way that did not become height."""
+        """Return the share of the rollers' travel that did not raise the robot."""
         if len(self.heights) <= self.window:
             return 0.0
         rolled = self.turned[-1] - self.turned[0]
@@ -71,7 +71,7 @@ class Slip:
 
 
 class Clamp:
-    """Raise the force quickly where the rollers slip, relax slowly where they do not."""
+    """Raise the force quickly if the rollers slip, and relax it slowly otherwise."""
 
     def __init__(self, config):
         self.config = config
@@ -86,7 +86,7 @@ class Clamp:
 
 
 def with_parameters(node, prefix, config):
-    """Overwrite a configuration by the node's parameters `prefix.name`."""
+    """Overwrite a configuration with the parameters `prefix.name` of the node."""
     for item in fields(config):
         given = node.declare_parameter(f"{prefix}.{item.name}", getattr(config, item.name))
         if given.type_ is Parameter.Type.DOUBLE:
@@ -122,26 +122,26 @@ class Climber(Node):
         self.create_timer(self.PERIOD, self.cycle)
 
     def on_mark(self, msg):
-        """Take where to go (m)."""
+        """Store the height of the mark (m)."""
         self.mark = msg.data
 
     def on_ground(self, msg):
-        """Take the height above ground, where it is valid."""
+        """Store the height above ground if it is valid."""
         if msg.min_range <= msg.range <= msg.max_range:
             self.height = msg.range
 
     def on_turned(self, msg):
-        """Take what the rollers have turned so far (m)."""
+        """Store the travel of the rollers so far (m)."""
         self.turned = msg.data
 
     def on_imu(self, msg):
-        """Take how far the robot leans: angle between its axis and the pole."""
+        """Store the lean of the robot: the angle between its axis and the pole."""
         q = msg.orientation
         upright = max(-1.0, min(1.0, 1.0 - 2.0 * (q.x * q.x + q.y * q.y)))
         self.lean = math.acos(upright)
 
     def on_battery(self, msg):
-        """Take what is left, 0 to 1."""
+        """Store the charge of the battery, 0 to 1."""
         self.charge = msg.percentage
 
     def next_state(self):
@@ -154,7 +154,7 @@ class Climber(Node):
         return self.state
 
     def speed(self):
-        """Return how fast the rollers have to turn (m/s)."""
+        """Return the required speed of the rollers (m/s)."""
         left = self.mark - self.height
         if self.state == "descending":
             return -self.drive.creep if self.height > 0.1 else 0.0

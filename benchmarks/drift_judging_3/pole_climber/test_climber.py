@@ -1,4 +1,4 @@
-"""The robot climbs to a mark and holds. On an iced pole the clamp's whole force does not carry its weight."""
+"""The robot climbs to a mark and holds. On an iced pole, the full force of the clamp cannot carry the robot."""
 
 import math
 
@@ -20,7 +20,7 @@ TIME_BOUND = 22.0
 
 
 class Pole:
-    """A pole of some friction; wood gets smoother to the top."""
+    """A pole with some friction; wood is smoother towards the top."""
 
     def __init__(self, rng, friction):
         self.rng = rng
@@ -35,7 +35,7 @@ class Pole:
 
     @property
     def done(self):
-        """Return whether the inspection can begin, or never will."""
+        """Return whether the inspection can begin or can no longer begin."""
         return self.held >= HELD or bool(self.failure)
 
     def publish(self, bus):
@@ -66,7 +66,7 @@ class Pole:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: height counts, sliding takes it back."""
+        """Return the reward of the step: height gained, minus height lost by sliding."""
         if self.time > TIME_BOUND:
             self.failure = "not at the mark"
             return -3.0

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tighten the screws of a flange, one after the other: run down, tighten to torque, stop."""
+"""Tighten the screws of a flange one after the other: run down, tighten to the torque, stop."""
 
 import rospy
 from std_msgs.msg import Bool, Float64, Int32, String
@@ -14,7 +14,7 @@ class Spindle:
         self.turns = 0.0
 
     def speed(self):
-        """RPM of this stage."""
+        """Return the RPM of this stage."""
         if self.stage == "rundown":
             return self.settings["rundown_rpm"]
         if self.stage == "final":
@@ -22,7 +22,7 @@ class Spindle:
         return 0.0
 
     def update(self, torque, turns):
-        """Move on with what the transducer says; return the new stage."""
+        """Update the stage from the torque of the transducer; return the new stage."""
         self.turns = turns
         if turns > self.settings["strip_angle"]:
             self.stage = "stripped"
@@ -34,7 +34,7 @@ class Spindle:
 
 
 class Station:
-    """Screw after screw."""
+    """Tighten one screw after the other."""
 
     def __init__(self):
         self.settings = rospy.get_param("~tightening")
@@ -54,15 +54,15 @@ class Station:
         rospy.Timer(rospy.Duration(0.05), self.timer_cb)
 
     def screws_cb(self, msg):
-        """How many there are in this part."""
+        """Store the number of screws in this part."""
         self.screws = msg.data
 
     def turns_cb(self, msg):
-        """Encoder of the spindle."""
+        """Store the angle from the encoder of the spindle."""
         self.turns = msg.data
 
     def torque_cb(self, msg):
-        """Transducer, the gear's ripple filtered out."""
+        """Store the torque of the transducer, with the ripple of the gear filtered out."""
         self.torque = 0.2 * self.torque + 0.8 * msg.data
 
     def timer_cb(self, _event):

@@ -1,4 +1,4 @@
-"""Screws clamp with 8 kN. Waxed ones have less friction: the same torque clamps harder and tears the thread."""
+"""Screws clamp with 8 kN. Waxed screws have less friction, so the same torque clamps harder and tears the thread."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ DT = 0.05
 SCREWS = 3
 CLAMP = 8.0  # kN
 WINDOW = 0.13  # share of it
-PER_TURN = 20.0  # kN per turn, once the head is down
+PER_TURN = 20.0  # kN per turn after the head touches the flange
 DIAMETER = 6.0  # mm
 TIME_BOUND = 30.0
 
@@ -38,7 +38,7 @@ class Flange:
 
     @property
     def done(self):
-        """Return whether the part is away."""
+        """Return whether the part has been taken away."""
         return self.finished or bool(self.failure)
 
     def torque(self):
@@ -68,7 +68,7 @@ class Flange:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: a screw counts once the next one is begun."""
+        """Return the reward of the step, for a screw whose successor has begun."""
         reward = -0.002
         while self.judged < (SCREWS if self.finished else self.at):
             wrong = abs(self.clamps[self.judged] / CLAMP - 1.0)

@@ -1,4 +1,4 @@
-"""Plate under the laser to height of the nozzle."""
+"""Compute the height of the nozzle from the plate under the laser."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from settings import Procedure
 
 
 class HeightTracker:
-    """Delay line: what the laser sees now reaches the torch a few millimetres later."""
+    """Delay line: the torch reaches the place under the laser a few millimetres later."""
 
     def __init__(self, procedure: Procedure, period: float) -> None:
         self._stick_out = procedure.arc.stick_out
@@ -16,7 +16,7 @@ class HeightTracker:
         self._line: deque[float] = deque(maxlen=max(1, steps))
 
     def update(self, plate: float) -> float:
-        """Return the height for the nozzle: mm."""
+        """Return the height for the nozzle, mm."""
         self._line.append(plate)
         below = self._line[0]
         return below + self._stick_out

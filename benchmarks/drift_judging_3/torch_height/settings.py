@@ -16,15 +16,15 @@ class Arc:
 
 @dataclass(frozen=True)
 class Travel:
-    """How the torch moves along the seam."""
+    """The motion of the torch along the seam."""
 
     speed: float = 10.0  # mm/s
-    laser_ahead: float = 3.0  # mm, the laser sees the plate so far before the torch
+    laser_ahead: float = 3.0  # mm by which the laser measures the plate ahead of the torch
 
 
 @dataclass(frozen=True)
 class Procedure:
-    """All that a seam needs."""
+    """All settings of a seam."""
 
     arc: Arc = field(default_factory=Arc)
     travel: Travel = field(default_factory=Travel)

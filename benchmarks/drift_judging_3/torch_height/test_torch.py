@@ -1,4 +1,4 @@
-"""The seam has no pores where the nozzle keeps its distance. Zinc smokes, and the laser sees the smoke."""
+"""The seam has no pores where the nozzle keeps its distance. Zinc gives smoke, which disturbs the laser."""
 
 import math
 
@@ -13,13 +13,13 @@ String = message_type("std_msgs/msg/String")
 
 DT = 0.05
 STICK_OUT = 12.0  # mm
-NEAR = 1.3  # mm that the stick-out may be wrong
-PORES = 0.08  # share of the seam that may be bad
+NEAR = 1.3  # tolerated error of the stick-out, mm
+PORES = 0.08  # tolerated share of bad seam
 TIME_BOUND = 12.0
 
 
 class Table:
-    """A warped plate; `smoke` is the standard deviation of the laser's readings: mm."""
+    """A warped plate; `smoke` is the standard deviation of the laser readings, mm."""
 
     def __init__(self, rng, smoke):
         self.rng = rng
@@ -62,7 +62,7 @@ class Table:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: each good millimetre."""
+        """Return the reward of the step, for each good millimetre."""
         if self.bad > PORES * self.length:
             self.failure = "pores"
         elif self.time > TIME_BOUND:

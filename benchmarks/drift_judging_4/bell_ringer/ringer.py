@@ -1,18 +1,18 @@
 #!/usr/bin/env python
 # -*- coding: utf-8 -*-
-"""Ring a ship's bell: pull the rope in time with its swing, n strokes, then let it come to rest."""
+"""Ring n strokes of a ship's bell: pull the rope in time with its swing, then let it come to rest."""
 
 import rospy
 from std_msgs.msg import Bool, Float32, Int32, String
 
 PERIOD = 1.6  # s, from pull to pull
-PULL = 0.5  # s, as long as the rope is under load
-FIRST = 1.25  # the first pulls start a bell at rest, they are stronger
+PULL = 0.5  # s for which the rope is under load
+FIRST = 1.25  # factor of the first pulls, which start a bell at rest
 FIRST_PULLS = 3
 
 
 def make_ringer():
-    """Return (ring, count) that share what the ringer knows."""
+    """Return the functions (ring, count), which share the state of the ringer."""
     told = {"strokes": 0, "wanted": None, "angle": 0.0, "silent": False}
 
     rope = rospy.Publisher("rope/pull", Float32, queue_size=1, latch=True)
@@ -38,7 +38,7 @@ def make_ringer():
         return told["silent"] or told["strokes"] >= told["wanted"]
 
     def strength(pulls):
-        """Share of the motor's force."""
+        """Publish a share of the motor's force."""
         return 0.8 * FIRST if pulls < FIRST_PULLS else 0.8
 
     def pull_once(pulls):
@@ -48,7 +48,7 @@ def make_ringer():
         status.publish("pull %d" % pulls)
 
     def ring():
-        """Pull, wait for the rest of the period, and again."""
+        """Repeat: pull and wait for the rest of the period."""
         pulls = 0
         while not rospy.is_shutdown() and not enough():
             pull_once(pulls)

@@ -1,4 +1,4 @@
-"""A bell is rung by pulls in time with its swing. The great bell swings slower than the one it was tuned for."""
+"""A bell is rung by pulls in time with its swing. The great bell swings slower than the bell the node is tuned for."""
 
 import math
 
@@ -14,14 +14,14 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 SUBSTEPS = 5
-QUALITY = 3.0  # of the swing; the rope and the bearing brake it
-STRIKE = 0.6  # rad, at which the clapper strikes
-PULL = 0.58  # rad, that the motor's whole force would hold the bell at, over the swing's stiffness
+QUALITY = 3.0  # quality factor of the swing, which rope and bearing damp
+STRIKE = 0.6  # angle at which the clapper strikes, rad
+PULL = 0.58  # angle at which the full force of the motor would hold the bell, rad
 TIME_BOUND = 26.0
 
 
 class Bell:
-    """A bell that swings with about `period` seconds."""
+    """A bell that swings with a period of about `period` seconds."""
 
     def __init__(self, rng, period):
         self.rng = rng
@@ -36,18 +36,18 @@ class Bell:
 
     @property
     def done(self):
-        """Return whether the bell has been rung, or will not be in time."""
+        """Return whether the bell has been rung or the time is over."""
         return self.finished or bool(self.failure)
 
     def publish(self, bus):
-        """Publish order, name of the bell, strokes and its angle."""
+        """Publish the order, the name of the bell, its strokes and its angle."""
         bus.publish("ringer/order", Int32(data=self.wanted))
         bus.publish("bell/name", String(data=self.name))
         bus.publish("bell/strokes", Int32(data=self.strokes))
         bus.publish("bell/angle", Float32(data=self.angle + self.rng.normal(0.0, 0.01)))
 
     def advance(self, pull, done):
-        """Swing for one step; the clapper strikes once in a swing."""
+        """Swing for one step; the clapper strikes once per swing."""
         force = PULL * max(0.0, min(1.0, pull.data)) if pull else 0.0
         before = self.strokes
         for _ in range(SUBSTEPS):
@@ -64,7 +64,7 @@ class Bell:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: each stroke counts, those that nobody ordered cost."""
+        """Return the reward of the step: ordered strokes are rewarded, others cost."""
         if self.time > TIME_BOUND:
             self.failure = f"{self.strokes} of {self.wanted} strokes"
         elif self.strokes > self.wanted + 1:

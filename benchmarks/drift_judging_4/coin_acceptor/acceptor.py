@@ -25,7 +25,7 @@ TABLE = (
     Coin("1 euro", 100, 23.25, 265.0, 75.0),
     Coin("2 euro", 200, 25.75, 318.0, 85.0),
 )
-SCALE = {"diameter": 0.35, "damping": 14.0, "thud": 5.0}  # one unit of distance each
+SCALE = {"diameter": 0.35, "damping": 14.0, "thud": 5.0}  # difference that counts as one unit of distance
 ACCEPT = 3.2  # units
 
 

@@ -1,4 +1,4 @@
-"""Euros are taken, foreign coins given back. New foreign coins read like 2 euros in every sensor."""
+"""Euros are taken and foreign coins returned. New foreign coins give the readings of 2 euros in every sensor."""
 
 import pytest
 
@@ -12,26 +12,26 @@ Int32 = message_type("std_msgs/msg/Int32")
 DT = 0.2
 COINS = 24
 EUROS = {50: (24.25, 410.0, 78.0), 100: (23.25, 265.0, 75.0), 200: (25.75, 318.0, 85.0)}
-FOREIGN = (26.0, 230.0, 85.0)  # the one that was known: its core is another alloy
+FOREIGN = (26.0, 230.0, 85.0)  # the known foreign coin, whose core is another alloy
 NOISE = (0.1, 4.0, 1.5)
-WRONG = 2  # coins of a mission that may be judged wrongly
+WRONG = 2  # maximum number of coins judged wrongly in a mission
 
 
 class Slot:
-    """A handful of coins; `alike` says whether the foreign ones read like 2 euros."""
+    """A handful of coins; with `alike`, the foreign coins give the readings of 2 euros."""
 
     def __init__(self, rng, alike):
         self.rng = rng
         self.foreign = EUROS[200] if alike else FOREIGN
         self.coins = [int(rng.choice([50, 100, 200, 200])) for _ in range(COINS)]
         self.coins = [0 if cents == 200 and rng.random() < 0.5 else cents for cents in self.coins]
-        self.coins[:8] = [int(cents) for cents in rng.permutation([200] * 4 + [0] * 4)]  # enough of both
+        self.coins[:8] = [int(cents) for cents in rng.permutation([200] * 4 + [0] * 4)]  # four of both kinds
         self.credit, self.rolled = 0, 0
         self.wrong = 0
 
     @property
     def done(self):
-        """Return whether the last coin has rolled."""
+        """Return whether the last coin has been judged."""
         return self.rolled >= COINS
 
     def publish(self, bus):
@@ -43,7 +43,7 @@ class Slot:
             bus.publish(f"coin/{what}", Float32(data=reading))
 
     def judge(self, accept, credit):
-        """Return the reward of a coin: foreign coins that are taken cost as much as euros that are not."""
+        """Return the reward of a coin: a foreign coin that is taken costs as much as a euro that is returned."""
         cents = self.coins[self.rolled]
         self.rolled += 1
         paid = (credit.data if credit else 0) - self.credit
@@ -66,7 +66,7 @@ class Slot:
     min_success=0.95,
 )
 def test_takes_euros(tarl, tarl_drift):
-    """Pay with some coins."""
+    """Pay with a handful of coins."""
     slot = Slot(tarl.rng("slot"), tarl_drift or False)
     tarl.start("acceptor.py")
     while not slot.done:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Retarder of a hump yard: brake each wagon to the speed at which it reaches the standing ones gently."""
+"""Retarder of a hump yard: brake each wagon so that it reaches the standing wagons gently."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ G = 9.81
 
 @dataclass
 class Track:
-    """What a wagon meets behind the retarder."""
+    """The track behind the retarder."""
 
-    rolling_resistance: float = 0.0022  # share of the weight, bearings at summer temperature
-    gradient: float = 0.0006  # the yard falls a little
-    coupling_speed: float = 1.1  # m/s, buffers touch and the coupler closes
+    rolling_resistance: float = 0.0022  # share of the weight, for bearings at summer temperature
+    gradient: float = 0.0006  # slope of the yard, downwards
+    coupling_speed: float = 1.1  # m/s at which buffers touch and the coupler closes
 
     def release_speed(self, free: float) -> float:
-        """Speed (m/s) with which a wagon has to leave the retarder to roll `free` metres."""
+        """Return the speed (m/s) at which a wagon has to leave the retarder to roll `free` metres."""
         loss = 2.0 * G * (self.rolling_resistance - self.gradient) * free
         return float(np.sqrt(max(0.0, self.coupling_speed**2 + loss)))
 
 
 class Radar:
-    """Median of the last speeds; single echoes of the bogies are wrong."""
+    """Return the median of the last speeds, because single echoes of the bogies are wrong."""
 
     def __init__(self, length: int = 3) -> None:
         self._speeds = np.full(length, np.nan)
@@ -61,7 +61,7 @@ class Retarder(Node):
         self._free = msg.data
 
     def _pressure_for(self, excess: float) -> float:
-        """Full pressure far above the wanted speed, less near to it (bar)."""
+        """Return the pressure (bar): full far above the wanted speed, less near it."""
         return float(np.clip(2.0 + 6.0 * excess, 2.0, 8.0))
 
     def _on_speed(self, msg: Float64) -> None:

@@ -1,4 +1,4 @@
-"""A wagon rolls to the standing ones and couples; only that is judged. In frost its bearings roll worse."""
+"""A wagon rolls to the standing wagons and couples; only the coupling is rewarded. In frost its bearings roll worse."""
 
 import pytest
 
@@ -16,7 +16,7 @@ FALL = 0.0006
 
 
 class Yard:
-    """A wagon on its way, whose rolling resistance is about `resistance` of its weight."""
+    """A rolling wagon; its rolling resistance is about `resistance` times its weight."""
 
     def __init__(self, rng, resistance):
         self.rng = rng
@@ -32,7 +32,7 @@ class Yard:
 
     @property
     def done(self):
-        """Return whether the wagon has coupled, or never will."""
+        """Return whether the wagon has coupled or can no longer couple."""
         return self.arrived or bool(self.failure)
 
     @property
@@ -41,7 +41,7 @@ class Yard:
         return ROLLING if self.rolls else BRAKING
 
     def publish(self, bus):
-        """Publish free track and thermometer, and in the retarder the radar."""
+        """Publish free track and temperature, and, inside the retarder, the radar."""
         bus.publish("yard/air", Float64(data=self.air + self.rng.normal(0.0, 0.2)))
         bus.publish("track/free", Float64(data=self.free))
         if not self.rolls:
@@ -70,7 +70,7 @@ class Yard:
         self.left -= way
 
     def judge(self):
-        """Return the reward of the step: nothing before the wagon has arrived."""
+        """Return the reward of the step, which is 0 before the wagon has arrived."""
         if self.failure:
             return -5.0
         return 10.0 - 2.0 * abs(self.speed - 1.1) if self.arrived else 0.0

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Parking carousel: bring the bay that was asked for to the gate, lock it, open the gate, and wait for the next."""
+"""Parking carousel: bring the requested bay to the gate, lock it, open the gate, and wait for the next request."""
 
 import rclpy
 from profiles import Approach
@@ -10,9 +10,9 @@ COUNTS_PER_BAY = 4096.0
 
 
 class Carousel(Node):
-    """One method per state; each returns the name of the next."""
+    """A state machine with one method per state, which returns the name of the next state."""
 
-    TOLERANCE = 0.05  # bays, the bolt still finds its hole
+    TOLERANCE = 0.05  # bays; within this distance the bolt finds its hole
     SETTLE = 4  # ticks within the tolerance before the bolt moves
     OPEN_FOR = 8  # ticks
 
@@ -38,7 +38,7 @@ class Carousel(Node):
 
     @property
     def error(self):
-        """Bays to go."""
+        """Return the number of bays still to go."""
         return self.request - self.counts / COUNTS_PER_BAY
 
     def idle(self):

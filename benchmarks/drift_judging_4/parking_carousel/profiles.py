@@ -4,7 +4,7 @@ from math import copysign
 
 
 class Approach:
-    """Full drive far away, proportional near the goal, and never less than what keeps the motor turning."""
+    """Full drive far away and proportional drive near the goal, but always enough to keep the motor turning."""
 
     def __init__(self, gain=0.45, top=0.9, least=0.12, rise=0.08):
         self.gain = gain

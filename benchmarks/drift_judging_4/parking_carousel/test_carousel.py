@@ -1,4 +1,4 @@
-"""Three cars are brought to the gate. The new motor, fitted for good, needs more voltage before it turns."""
+"""Three cars are brought to the gate. The motor was replaced permanently by one that needs more voltage to turn."""
 
 import pytest
 
@@ -12,7 +12,7 @@ UInt8 = message_type("std_msgs/msg/UInt8")
 DT = 0.1
 CARS = 3
 COUNTS = 4096.0
-HOLE = 0.08  # bays, in which the bolt closes
+HOLE = 0.08  # distance in bays within which the bolt closes
 TIME_BOUND = 30.0
 
 
@@ -31,7 +31,7 @@ class Tower:
 
     @property
     def done(self):
-        """Return whether all have their cars, or somebody has waited too long."""
+        """Return whether all drivers have their cars or one has waited too long."""
         return self.served == CARS or bool(self.failure)
 
     def publish(self, bus):
@@ -41,7 +41,7 @@ class Tower:
         bus.publish("bolt/closed", Bool(data=self.bolted))
 
     def advance(self, drive, bolt, gate):
-        """Turn for one step; an open bolt lets the carousel turn."""
+        """Turn for one step if the bolt is open."""
         volts = max(-1.0, min(1.0, drive.data)) if drive else 0.0
         turning = abs(volts) > self.breakaway and not self.bolted
         pull = 1.3 * (abs(volts) - 0.5 * self.breakaway) * (1.0 if volts > 0 else -1.0) if turning else 0.0
@@ -60,7 +60,7 @@ class Tower:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: each car counts, and so does the time of those who wait."""
+        """Return the reward of the step: each car is rewarded, waiting time costs."""
         if self.time > TIME_BOUND and self.served < CARS:
             self.failure = f"{self.served} of {CARS} cars"
         return -3.0 if self.failure else 3.5 * self.handed - 0.003

@@ -7,9 +7,9 @@ The angle is measured after the punch has gone up, when the sheet has sprung bac
 import rospy
 from std_msgs.msg import Bool, Float32, String
 
-OVERBEND = 1.03  # first stroke over the angle that is wanted, mild steel
-TRUST = 0.6  # share of the error that is corrected at once: more and soft sheets are bent too far
-MAX_HITS = 3  # strokes for a sheet
+OVERBEND = 1.03  # ratio of the first stroke to the wanted angle, for mild steel
+TRUST = 0.6  # share of the error corrected in one stroke; a larger share bends soft sheets too far
+MAX_HITS = 3  # maximum number of strokes for a sheet
 CLOSE = 0.4  # deg
 
 PRESSING, RELAXING, UNLOADING = "pressing", "relaxing", "unloading"
@@ -32,7 +32,7 @@ class Bender(object):
         rospy.Subscriber("press/down", Bool, self.down_cb)
 
     def job_cb(self, msg):
-        """A new sheet has an angle, 0 is no sheet."""
+        """Start with the angle of a new sheet; 0 means no sheet."""
         if msg.data <= 0.0:
             self.target = None
         elif self.target is None:
@@ -56,7 +56,7 @@ class Bender(object):
         return abs(error) < CLOSE
 
     def judge(self):
-        """The sheet is relaxed: unload it or hit it again."""
+        """Unload the relaxed sheet or bend it again."""
         error = self.target - self.angle
         if self.good(error):
             self.phase = UNLOADING

@@ -1,4 +1,4 @@
-"""Sheets are bent to their angle. High-strength steel springs back more, and three strokes are too few."""
+"""Sheets are bent to their angle. High-strength steel springs back more, so that three strokes are not enough."""
 
 import pytest
 
@@ -16,7 +16,7 @@ TIME_BOUND = 28.0
 
 
 class Press:
-    """A press with sheets that spring back by a share of the angle they are bent to."""
+    """A press with sheets that spring back by a share of their bending angle."""
 
     def __init__(self, rng, spring):
         self.rng = rng
@@ -66,7 +66,7 @@ class Press:
             self.travel, self.down = 0, False
 
     def judge(self):
-        """Return the reward of the step: each sheet counts by its angle, and time costs."""
+        """Return the reward of the step: each sheet is rewarded by its angle, time costs."""
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         elif self.at == SHEETS and self.wrong:

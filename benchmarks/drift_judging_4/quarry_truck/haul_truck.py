@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Driverless haul truck: drive to the dump edge, tip, and stand still whenever the supervisor's radio falls silent."""
+"""Driverless haul truck: drive to the dump edge, tip, and stop whenever the supervisor's radio is silent."""
 
 import math
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ class Limits:
 
 @dataclass
 class Heartbeat:
-    """The supervisor's handheld sends five beats a second. Once it is lost, only a restart clears it."""
+    """The supervisor's handheld sends five beats a second. After a loss of beats, only a restart clears the stop."""
 
     patience: float = 0.6  # s
     last: object = None
@@ -39,7 +39,7 @@ class Heartbeat:
 
 
 class StopMixin:
-    """What the safety relay wants to hear."""
+    """Publish the signal that the safety relay requires."""
 
     def setup_stop(self):
         self.relay = self.create_publisher(Bool, "relay/brake", 5)
@@ -75,7 +75,7 @@ class HaulTruck(StopMixin, Node):
         self.speed = msg.data
 
     def profile(self):
-        """Fastest speed from which the truck still stops 4 m before the edge."""
+        """Return the highest speed from which the truck stops 4 m before the edge."""
         left = max(0.0, self.distance - 4.0)
         braked = math.sqrt(2.0 * self.limits.comfort * left)
         return min(self.limits.cruise, braked, self.speed + self.limits.hurry * self.dt * 3)

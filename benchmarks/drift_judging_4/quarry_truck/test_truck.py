@@ -1,4 +1,4 @@
-"""A truck tips at the edge, and stops when the supervisor wants it to. A rock face shades the radio now and then."""
+"""A truck tips at the edge, and stops when the supervisor requires it. A rock face sometimes blocks the radio."""
 
 import pytest
 
@@ -11,12 +11,12 @@ Float64 = message_type("std_msgs/msg/Float64")
 
 DT = 0.1
 STOPS = 0.3  # share of the missions in which the supervisor releases the handheld
-STOP_WAY = 25.0  # m, within which the truck then has to stand
+STOP_WAY = 25.0  # maximum stopping distance after that, m
 TIME_BOUND = 35.0
 
 
 class Road:
-    """The way to the edge; a share `shade` of the missions has a gap in the radio."""
+    """The way to the edge; a share `shade` of the missions has a gap in the radio signal."""
 
     def __init__(self, rng, shade):
         self.rng = rng
@@ -35,11 +35,11 @@ class Road:
 
     @property
     def done(self):
-        """Return whether the load is tipped, or the truck stands as the supervisor wants."""
+        """Return whether the load is tipped or the truck has stopped for the supervisor."""
         return self.tipped or self.stopped or bool(self.failure)
 
     def publish(self, bus):
-        """Publish place and speed, and every other step a heartbeat that is sent and received."""
+        """Publish position and speed, and, in every other step, a heartbeat if one is received."""
         bus.publish("map/rock_face", Bool(data=self.face))
         to_edge = self.length - self.place + self.rng.normal(0.0, 0.05)
         bus.publish("gps/to_edge", Float64(data=to_edge))
@@ -65,7 +65,7 @@ class Road:
         self.stopped = self.released_at is not None and self.speed < 0.05
 
     def judge(self):
-        """Return the reward of the step: the way counts, and all of it where the truck stops as it should."""
+        """Return the reward of the step: progress, and the full reward for a required stop."""
         if self.place > self.length:
             self.failure = "over the edge"
         elif self.released_at is not None and self.place - self.released_at > STOP_WAY:

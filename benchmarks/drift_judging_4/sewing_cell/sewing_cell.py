@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sew the seam that the pattern server asks for.
+"""Sew the seam that the pattern server requests.
 
 Needle, feed dog and thread brake are one machine with three set points: stitches per second, millimetres of feed for
 a stitch, tension of the upper thread.
@@ -32,7 +32,7 @@ class SewingCell(Node):
         return self.get_parameter(name).get_parameter_value().double_value
 
     def on_seam(self, msg):
-        """Take [stitch, length, corner, corner, ...], in mm."""
+        """Store the seam [stitch, length, corner, corner, ...], in mm."""
         stitch, length, *corners = msg.data
         self.seam = {"stitch": stitch, "length": length, "corners": corners}
 
@@ -40,11 +40,11 @@ class SewingCell(Node):
         self.sewn = msg.data
 
     def feed(self):
-        """Feed for the stitch of this seam."""
+        """Return the feed for the stitch of this seam."""
         return self.seam["stitch"] * self.p("feed_ratio")
 
     def tension(self):
-        """Longer stitches take more thread and need more tension."""
+        """Return the thread tension, which is larger for longer stitches because they take more thread."""
         return self.p("tension_base") + self.p("tension_per_mm") * self.seam["stitch"]
 
     def speed(self):

@@ -17,7 +17,7 @@ DT = 0.05
 LENGTH_WINDOW = 0.13  # share of the stitch
 LOCK_WINDOW = 0.2  # share of the tension that the cloth needs
 TIME_BOUND = 14.0
-CLOTHS = {"cotton": (0.04, 1.0), "denim": (0.27, 1.55)}  # slip below the foot, tension over that of cotton
+CLOTHS = {"cotton": (0.04, 1.0), "denim": (0.27, 1.55)}  # slip, tension relative to cotton
 
 
 class Table:
@@ -44,13 +44,13 @@ class Table:
         return self.finished or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the seam, the cloth's label and how much is sewn."""
+        """Publish the seam, the label of the cloth and the sewn length."""
         bus.publish("pattern/seam", Float64MultiArray(data=[self.stitch, self.length, *self.corners]))
         bus.publish("pattern/cloth", String(data=self.cloth))
         bus.publish("machine/sewn", Float32(data=self.sewn))
 
     def advance(self, feed, tension, speed, done):
-        """Sew what stitches fall into this step."""
+        """Sew the stitches of this step."""
         self.moved = 0.0
         self.good = self.bad = 0.0
         self.time += DT
@@ -70,7 +70,7 @@ class Table:
             self.bad += made * (not (long and locked))
 
     def judge(self, faulty):
-        """Return the reward of the step: half for the length of its stitches, half for their lock."""
+        """Return the reward of the step: half for the length of the stitches, half for their lock."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.finished and faulty > 0.1 * self.length:

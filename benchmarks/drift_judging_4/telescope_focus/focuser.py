@@ -19,8 +19,8 @@ def read_table(path):
 
 
 class Focuser:
-    COMPENSATION = 26.0  # steps per kelvin, the tube shrinks when it gets colder
-    BACKLASH = 60  # always arrive from the same side
+    COMPENSATION = 26.0  # steps per kelvin; a colder tube is shorter
+    BACKLASH = 60  # steps of overshoot, so that each position is approached from the same side
     DEADBAND = 6
 
     def __init__(self):
@@ -42,7 +42,7 @@ class Focuser:
         return float(np.nanmean(self.temps))
 
     def on_best(self, msg):
-        """The autofocus run at dusk, through the luminance filter."""
+        """Store the result of the autofocus run at dusk, through the luminance filter."""
         if self.best is None and not np.isnan(self.temps).all():
             self.best = msg.data
             self.best_at = self.temperature
@@ -58,7 +58,7 @@ class Focuser:
         self.update()
 
     def wanted(self):
-        """Focus position for this temperature and filter."""
+        """Return the focus position for this temperature and filter."""
         colder = self.best_at - self.temperature
         return self.best + self.COMPENSATION * colder + self.offsets[self.filter]
 

@@ -1,4 +1,4 @@
-"""Exposures of a night are sharp while the tube cools. A tube of aluminium shrinks more than the one of steel."""
+"""Exposures of a night stay sharp while the tube cools. An aluminium tube shrinks more than a steel tube."""
 
 import pytest
 
@@ -37,7 +37,7 @@ class Night:
         return self.taken >= EXPOSURES
 
     def publish(self, bus):
-        """Publish tube, dusk's autofocus, filter and temperature."""
+        """Publish the tube, the autofocus result at dusk, the filter and the temperature."""
         self.filter = self.wheel[self.taken * len(self.wheel) // EXPOSURES]
         bus.publish("telescope/tube", String(data=self.tube))
         bus.publish("wheel/filter", String(data=self.filter))
@@ -53,13 +53,13 @@ class Night:
         )
 
     def advance(self):
-        """Expose, while the air cools: fast first, slower towards dawn."""
+        """Expose while the air cools, at first fast, and slower towards dawn."""
         share = self.taken / EXPOSURES
         self.taken += 1
         self.temperature = self.dusk - self.cooling * share * (1.6 - 0.6 * share)
 
     def judge(self):
-        """Return the reward of an exposure: 0.11 where it is in focus, less beside it."""
+        """Return the reward of an exposure: 0.11 in focus, less out of focus."""
         best = self.base + self.shrink * (self.dusk - self.temperature) + OFFSETS[self.filter]
         off = abs(self.draw_tube - best)
         self.blurred += off > SHARP

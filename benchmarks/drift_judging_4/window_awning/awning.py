@@ -1,11 +1,11 @@
 #!/usr/bin/env python
-# shade a shop window: the brighter the sun, the further the awning comes out
+# shade a shop window: the awning extends further in brighter sun
 import math
 
 import rospy
 from std_msgs.msg import Float64, Float64MultiArray, String
 
-# klx at the facade -> share of the awning that is out
+# klx at the facade -> extended share of the awning
 CURVE = [(20.0, 0.0), (40.0, 0.25), (60.0, 0.5), (80.0, 0.75), (100.0, 1.0)]
 MAX_WIND = 12.0  # m/s
 
@@ -15,18 +15,18 @@ steep = 1.0
 
 
 def sun_cb(msg):
-    """Photo sensor above the window, klx."""
+    """Store the light at the sensor above the window, klx."""
     global sun
     sun = msg.data
 
 
 def wind_cb(msg):
     global wind
-    wind = max(msg.data, 0.9 * wind)  # gusts count for a while
+    wind = max(msg.data, 0.9 * wind)  # keep the effect of gusts for a while
 
 
 def ephemeris_cb(msg):
-    """[azimuth, elevation] of the sun in degrees; a low sun comes in below the awning."""
+    """Store [azimuth, elevation] of the sun in degrees; a low sun shines in below the awning."""
     global steep
     steep = 1.0 + 0.2 * math.cos(math.radians(msg.data[1]))
 

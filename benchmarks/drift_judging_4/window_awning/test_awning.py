@@ -1,4 +1,4 @@
-"""An awning follows the sun. Scattered clouds make the light flicker, and its motor starts until it is too hot."""
+"""An awning follows the sun. Under scattered clouds the light flickers, and frequent starts overheat the motor."""
 
 import math
 
@@ -14,15 +14,15 @@ String = message_type("std_msgs/String")
 DT = 2.0  # s
 STEPS = 180
 TRAVEL = 0.12  # share of the awning in one step
-PLAY = 0.04  # the drive ignores less
+PLAY = 0.04  # smaller movements are ignored by the drive
 START_HEAT = 1.0  # per start or reversal
 COOLING = 0.012  # share in a step
 HOT = 26.0
-NEAR = 0.35  # share of the awning beside what the mean light needs
+NEAR = 0.35  # tolerated difference from the share that the mean light needs
 
 
 class Facade:
-    """A window in the sun whose light flickers by a share `flicker`."""
+    """A sunny window whose light flickers by a share `flicker`."""
 
     def __init__(self, rng, flicker):
         self.rng = rng
@@ -40,12 +40,12 @@ class Facade:
 
     @property
     def done(self):
-        """Return whether the hour is over, or the motor too hot."""
+        """Return whether the time is over or the motor is too hot."""
         return self.step >= STEPS or bool(self.failure)
 
     @property
     def mean(self):
-        """Return the light without the flicker: klx."""
+        """Return the light without the flicker, klx."""
         step = getattr(self, "step", 0)
         return self.start + (self.end - self.start) * step / STEPS
 
@@ -55,7 +55,7 @@ class Facade:
         return max(0.0, min(1.0, (klx - 20.0) / 80.0))
 
     def publish(self, bus):
-        """Publish weather, light, wind and the place of the sun."""
+        """Publish weather, light, wind and the position of the sun."""
         self.cloud = 0.5 * self.cloud + self.rng.normal(0.0, self.flicker)
         klx = self.mean * max(0.2, 1.0 + self.cloud)
         bus.publish("weather/sky", String(data=self.weather))
@@ -77,7 +77,7 @@ class Facade:
             self.out += max(-TRAVEL, min(TRAVEL, way))
 
     def judge(self):
-        """Return the reward of the step: shade that fits the light, and a motor that stays cool."""
+        """Return the reward of the step, for shade that suits the light and for a cool motor."""
         off = abs(self.out - self.needed())
         self.beside += off > NEAR
         if self.heat > HOT:

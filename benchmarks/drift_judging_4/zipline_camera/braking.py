@@ -8,10 +8,10 @@ REACTION = 0.15  # s, relay and pads
 
 
 def deceleration(slope):
-    """What is left of the pads' deceleration on a rope that falls."""
+    """Return the deceleration by the pads that remains on a falling rope."""
     return max(0.2, PAD_DECELERATION - GRAVITY * math.sin(slope))
 
 
 def stopping_distance(speed, slope):
-    """Way from the brake command to standstill."""
+    """Return the distance from the brake command to standstill."""
     return REACTION * speed + speed * speed / (2.0 * deceleration(slope))

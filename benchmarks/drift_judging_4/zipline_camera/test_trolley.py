@@ -1,4 +1,4 @@
-"""A camera on a zip line stops at its mark. On a wet rope the pads decelerate less, and it overruns."""
+"""A camera on a zip line stops at its mark. On a wet rope the pads brake less, so the camera overruns."""
 
 import math
 
@@ -17,7 +17,7 @@ TIME_BOUND = 30.0
 
 
 class Rope:
-    """A rope that falls; its brake pads decelerate by about `pads` (m/s²) on the level."""
+    """A falling rope; the brake pads decelerate by about `pads` (m/s²) on the level."""
 
     def __init__(self, rng, pads):
         self.rng = rng
@@ -32,7 +32,7 @@ class Rope:
 
     @property
     def done(self):
-        """Return whether the trolley stands, or will not in time."""
+        """Return whether the trolley has stopped or the time is over."""
         return self.stopped or bool(self.failure)
 
     def publish(self, bus):
@@ -57,7 +57,7 @@ class Rope:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: a little for time, most for the place where it stands."""
+        """Return the reward of the step: a little for time, most for the place where the trolley stops."""
         miss = self.place - self.mark
         if self.time > TIME_BOUND and not self.stopped:
             self.failure = "late"

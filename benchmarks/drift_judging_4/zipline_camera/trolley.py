@@ -10,7 +10,7 @@ from std_msgs.msg import Bool, Float64, String
 
 RATE = 10
 CRUISE = 4.0
-SOFT_START = 1.5  # m/s more than now, so that the camera does not swing
+SOFT_START = 1.5  # m/s, maximum increase of speed, so that the camera does not swing
 
 mark = None
 place = None
@@ -26,14 +26,14 @@ def mark_callback(msg):
 
 
 def encoder_callback(msg):
-    """x: metres of rope since the start, y: metres per second."""
+    """Store x, the metres of rope since the start, and y, the metres per second."""
     global place, speed
     place = msg.x
     speed = 0.6 * speed + 0.4 * msg.y
 
 
 def rope_callback(msg):
-    """Angle at which the rope hangs here, from the inclinometer (degrees)."""
+    """Store the angle of the rope here, from the inclinometer (degrees)."""
     global slope
     slope = math.radians(msg.data)
 

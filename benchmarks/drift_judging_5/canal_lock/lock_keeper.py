@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Keeper of a small canal lock. Boats go up: fill gently, fill fully, open the gate."""
+"""Keeper of a small canal lock that raises boats: fill gently, fill fully, open the gate."""
 
 import rospy
 from std_msgs.msg import Bool, Float32
 
 GENTLE = 0.4  # opening of the sluice while the fall is high
 FULL = 1.0
-CALM = 0.4  # m of fall, from there on the sluice may be full open
-LEVEL = 0.04  # m, at which the gate can be moved
+CALM = 0.4  # m of fall below which the sluice may be fully open
+LEVEL = 0.04  # m of fall at which the gate can be moved
 
 fall = None
 occupied = False

@@ -1,6 +1,6 @@
-"""A boat is lifted in a lock.
+"""A boat is raised in a lock.
 
-In a flood the fall is higher, and the same opening of the sluice strains the boat's lines.
+In a flood the fall is higher, and the same opening of the sluice puts more load on the boat's lines.
 """
 
 import math
@@ -14,8 +14,8 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.25
-SLUICE = 0.16  # m/s of the chamber's level, at one metre of fall
-LINES = 0.107  # m/s that the boat's lines bear
+SLUICE = 0.16  # rise of the chamber's level at one metre of fall, m/s
+LINES = 0.107  # rise that the boat's lines tolerate, m/s
 TIME_BOUND = 100.0
 
 
@@ -35,11 +35,11 @@ class Lock:
 
     @property
     def done(self):
-        """Return whether the boat is through, or will not be."""
+        """Return whether the boat is through or can no longer pass."""
         return self.through or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the gauge, the light barrier and the weir's warning."""
+        """Publish the level, the light barrier and the warning of the weir."""
         bus.publish("lock/fall", Float32(data=max(0.0, self.fall + self.rng.normal(0.0, 0.005))))
         bus.publish("lock/boat", Bool(data=True))
         bus.publish("weir/flood", Bool(data=self.flood))
@@ -74,7 +74,7 @@ class Lock:
     min_success=0.95,
 )
 def test_lifts(tarl, tarl_drift):
-    """Lift one boat."""
+    """Raise one boat."""
     lock = Lock(tarl.rng("lock"), tarl_drift)
     tarl.start("lock_keeper.py")
     while not lock.done:

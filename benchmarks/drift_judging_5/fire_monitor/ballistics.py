@@ -1,4 +1,4 @@
-"""Throws of the water monitor at 8 bar, as measured in the yard on a calm day."""
+"""Throw distances of the water monitor at 8 bar, as measured in the yard on a calm day."""
 
 THROWS = (
     # distance in m, elevation in degrees
@@ -13,7 +13,7 @@ THROWS = (
 
 
 def elevation(distance):
-    """Elevation for a distance, linear between the throws of the table."""
+    """Return the elevation for a distance, interpolated linearly in the table."""
     for (d0, e0), (d1, e1) in zip(THROWS, THROWS[1:]):
         if distance <= d1:
             return e0 + (e1 - e0) * (distance - d0) / (d1 - d0)

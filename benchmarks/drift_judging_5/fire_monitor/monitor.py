@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Fire monitor: points a water cannon at the hottest spot until it is out."""
+"""Fire monitor: points a water cannon at the hottest spot until the fire is out."""
 
 import rospy
 from ballistics import elevation
 from geometry_msgs.msg import Point
 from std_msgs.msg import Bool, Float32
 
-ALPHA = 0.3  # of the smoothed distance
+ALPHA = 0.3  # weight of a new value in the smoothed distance
 
 
 class Monitor:
@@ -21,7 +21,7 @@ class Monitor:
         rospy.Subscriber("camera/out", Bool, self.on_out)
 
     def seen(self, spot):
-        """Keep bearing and smoothed distance; x is ahead, y is to the left."""
+        """Store the bearing and the smoothed distance; x is ahead, y is to the left."""
         raw = (spot.x**2 + spot.y**2) ** 0.5
         self.bearing = spot.y / spot.x
         self.far = raw if self.far is None else self.far + ALPHA * (raw - self.far)

@@ -13,8 +13,8 @@ Point = message_type("geometry_msgs/Point")
 
 DT = 0.2
 REACH = 60.0  # m in still air
-BRAKE = 0.045  # share of the throw that 1 m/s of head wind takes
-NEAR = 2.2  # m around the fire that its water still helps
+BRAKE = 0.045  # share of the throw distance that 1 m/s of head wind takes away
+NEAR = 2.2  # m around the fire within which water helps
 NEEDED = 6.0  # s of water
 TIME_BOUND = 25.0
 
@@ -39,11 +39,11 @@ class Yard:
 
     @property
     def done(self):
-        """Return whether there is nothing left to put out."""
+        """Return whether the mission is over."""
         return self.out or bool(self.failure)
 
     def publish(self, bus):
-        """Publish what camera and anemometer see."""
+        """Publish the measurements of camera and anemometer."""
         far = self.distance + self.rng.normal(0.0, 0.4)
         spot = Point(x=far * math.cos(self.bearing), y=far * math.sin(self.bearing), z=0.0)
         bus.publish("camera/hotspot", spot)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The flyman: brings the bar with the backdrop to the depth that the prompter calls."""
+"""The flyman: lowers the bar with the backdrop to the depth that the prompter calls."""
 
 import rospy
 from drum import approach, depth

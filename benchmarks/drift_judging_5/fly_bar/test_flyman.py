@@ -1,4 +1,4 @@
-"""A fly bar is let down to the marks of two scenes. A drum with more rope per turn is put in for good."""
+"""A fly bar is lowered to the marks of two scenes. The drum is permanently replaced by one with more rope per turn."""
 
 import pytest
 
@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 DT = 0.1
 LAG = 0.15  # s, of the motor
 MARKS = {"forest": 5.6, "castle": 4.4, "moon": 2.5, "storm": 3.5}
-NEAR = 0.14  # m around a mark, more is seen from the stalls
+NEAR = 0.14  # m, tolerated distance from a mark; a larger one is visible from the stalls
 FLOOR = 6.9
 TIME_BOUND = 40.0
 
@@ -22,7 +22,7 @@ class Tower:
     def __init__(self, rng, rope):
         self.rng = rng
         self.rope = rope * rng.uniform(0.995, 1.005)
-        self.droop = rng.uniform(0.96, 1.0)  # of the motor, under the backdrop's weight
+        self.droop = rng.uniform(0.96, 1.0)  # share of speed left under load
         self.scenes = [str(name) for name in rng.permutation(list(MARKS))[:2]]
         self.turns, self.speed = 0.0, 0.0
         self.played = 0

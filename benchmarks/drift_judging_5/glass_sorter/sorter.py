@@ -39,7 +39,7 @@ class Sorter:
         rospy.Subscriber("eye/colour", Vector3, self.on_colour)
 
     def on_barrier(self, msg):
-        """Forget the last shard when the barrier is free again."""
+        """Discard the last shard when the barrier is free again."""
         if not msg.data:
             self.readings = []
 

@@ -1,4 +1,4 @@
-"""Shards are sorted by the light that comes through them. The lamp fails, and the eye sees noise of the hall."""
+"""Shards are sorted by the light that passes through them. The lamp fails, and the eye only sees light of the hall."""
 
 import numpy as np
 import pytest
@@ -13,11 +13,11 @@ Vector3 = message_type("geometry_msgs/Vector3")
 DT = 0.1
 COLOURS = np.array([[0.82, 0.84, 0.80], [0.30, 0.62, 0.34], [0.48, 0.30, 0.14]])
 SHARDS = 12
-SEEN, FALL = 6, 10  # steps of a shard: under the eye until the one, at the flap at the other
+SEEN, FALL = 6, 10  # steps at which a shard leaves the eye and reaches the flap
 
 
 class Belt:
-    """A belt with shards of three colours, each as frequent as the others."""
+    """A belt with shards of three equally frequent colours."""
 
     def __init__(self, rng, dark):
         self.rng = rng
@@ -32,7 +32,7 @@ class Belt:
         return self.shard >= SHARDS
 
     def publish(self, bus):
-        """Publish barrier, eye and lamp."""
+        """Publish the readings of barrier, eye and lamp."""
         bus.publish("lamp/lit", Bool(data=not self.dark))
         seen = 1 <= self.step < SEEN
         bus.publish("barrier/shard", Bool(data=seen))

@@ -17,7 +17,7 @@ class Mode(Enum):
 class Bridge:
     GAIN = 0.8  # 1/s
     LIFT = 0.12  # m/s at most
-    FLUSH = 0.03  # m, step that counts as level
+    FLUSH = 0.03  # m, largest step that counts as level
     CREEP = 1.2  # m from the aircraft
     CONTACT = 0.06
 

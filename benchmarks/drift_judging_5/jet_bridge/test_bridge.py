@@ -1,4 +1,4 @@
-"""Passengers leave over a bridge. An aircraft with soft struts rises as they and their bags leave it."""
+"""Passengers leave over a bridge. An aircraft with soft struts rises as passengers and bags leave it."""
 
 import pytest
 
@@ -9,13 +9,13 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.2
-TRIP = 0.15  # m, step at the sill that people fall over
+TRIP = 0.15  # m, step at the sill over which people fall
 PASSENGERS = 40
 TIME_BOUND = 90.0
 
 
 class Stand:
-    """An aircraft on its stand, and a bridge in front of its door; the door rises by `rise` metres in all."""
+    """An aircraft on its stand, and a bridge in front of its door; in total, the door rises by `rise` metres."""
 
     def __init__(self, rng, rise):
         self.rng = rng
@@ -24,7 +24,7 @@ class Stand:
         self.floor = self.door + rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 0.6)
         self.gap = float(rng.uniform(3.0, 5.0))
         self.docked = False
-        self.left = 0.0  # passengers who are out
+        self.left = 0.0  # number of passengers who have left
         self.time = 0.0
         self.failure = ""
 
@@ -34,7 +34,7 @@ class Stand:
         return self.left >= PASSENGERS or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the step up from the bridge's floor to the door, the gap, and what the crew says."""
+        """Publish the step up from the bridge's floor to the door, the gap, and the messages of the crew."""
         step = self.door - self.floor + self.rng.normal(0.0, 0.004)
         bus.publish("bridge/step", Float32(data=step))
         bus.publish("bridge/gap", Float32(data=max(0.0, self.gap + self.rng.normal(0.0, 0.005))))

@@ -5,14 +5,14 @@ import rospy
 from std_msgs.msg import Bool, Float32, String
 
 ELEMENTS = 60.0  # K/s that the elements give at full power
-LEAK = 0.03  # 1/s, what the walls lose
+LEAK = 0.03  # heat loss of the walls, 1/s
 KP = 0.004
 SOAK = 12.0  # s
 ROOM = 20.0
 
 
 class Firing:
-    """One firing, from the order to the last spark."""
+    """One firing, from the order to switching off."""
 
     def __init__(self):
         self.rate = rospy.get_param("~rate", 20.0)  # K/s

@@ -1,4 +1,4 @@
-"""A kiln soaks tiles at the temperature of their cone. Its elements age, and nothing measures that."""
+"""A kiln soaks tiles at the temperature of their cone. Its heating elements age, and no sensor measures this."""
 
 import pytest
 
@@ -16,7 +16,7 @@ TIME_BOUND = 90.0
 
 
 class Kiln:
-    """A small kiln whose elements give `strength` of what new ones do."""
+    """A small kiln whose elements give `strength` times the heat of new elements."""
 
     def __init__(self, rng, strength):
         self.rng = rng
@@ -40,7 +40,7 @@ class Kiln:
         bus.publish("kiln/temperature", Float32(data=self.temperature + self.rng.normal(0.0, 0.8)))
 
     def advance(self, duty, done):
-        """Heat and lose for one step."""
+        """Heat and cool for one step."""
         share = max(0.0, min(1.0, duty.data)) if duty else 0.0
         self.temperature += DT * (self.power * share - self.leak * (self.temperature - ROOM))
         before = self.ripe
@@ -51,7 +51,7 @@ class Kiln:
         self.finished = bool(done and done.data)
 
     def judge(self):
-        """Return the reward of the step: ripening counts, a spoilt tile costs."""
+        """Return the reward of the step: time at the right temperature is rewarded, a spoilt tile costs."""
         if self.temperature > self.peak + 30.0:
             self.failure = "the glaze has run"
         elif self.time > TIME_BOUND or (self.finished and self.ripe < NEEDED - 1e-6):

@@ -6,14 +6,14 @@ import rospy
 from std_msgs.msg import Bool, Float32, Int32, String
 
 PULSE = 0.3  # s, current through the latch's coil
-PATIENCE = 1.5  # s, for the spring to push the door open
+PATIENCE = 1.5  # s within which the spring pushes the door open
 TRIES = 2
 
 CODES = {"7031": 1, "4410": 2, "9256": 3, "1188": 4}
 
 
 class Door(object):
-    """What is known of the door in front of the customer."""
+    """State of the door in front of the customer."""
 
     number = 0
     open = False
@@ -36,7 +36,7 @@ def unlatch(coil, pulse):
 
 
 def serve(door, coil, screen):
-    """Return whether the customer got his door."""
+    """Return whether the door opened."""
     for attempt in range(TRIES):
         screen.publish("opening door %d" % door.number)
         unlatch(coil, PULSE)

@@ -1,4 +1,4 @@
-"""A parcel locker pulls a latch for a moment. In winter about one latch in nine is stiff and needs longer."""
+"""A parcel locker pulls a latch for a short time. In winter about one latch in nine is stiff and needs longer."""
 
 import pytest
 
@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 CODES = {"7031": 1, "4410": 2, "9256": 3, "1188": 4}
-COIL = 1.4  # s, longest uninterrupted current that the coil bears
+COIL = 1.4  # s for which the coil tolerates uninterrupted current
 TIME_BOUND = 12.0
 
 

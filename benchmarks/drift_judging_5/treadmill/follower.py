@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Treadmill for rehabilitation: the belt follows the walker, who is to stay in its middle."""
+"""Treadmill for rehabilitation: the belt follows the walker, so that the walker stays in its middle."""
 
 import rospy
 from pid import Pid

@@ -2,7 +2,7 @@
 
 
 class Pid:
-    """Gains by keyword; `update` wants the error and the time since the last one."""
+    """PID with gains by keyword; `update` takes the error and the time since the last update."""
 
     def __init__(self, kp, ki, kd, smooth=0.5, most=1.0):
         self.kp, self.ki, self.kd = kp, ki, kd

@@ -1,4 +1,4 @@
-"""A belt follows a walker whose pace changes. With its drive in eco mode it answers late, and swings."""
+"""A belt follows a walker whose pace changes. With its drive in eco mode, the belt responds late and oscillates."""
 
 import pytest
 
@@ -16,7 +16,7 @@ QUICK = 0.3  # s, of the drive
 
 
 class Walk:
-    """A walk at some paces on a belt whose drive has a time constant of `lag` seconds."""
+    """A walk at varying pace on a belt whose drive has a time constant of `lag` seconds."""
 
     def __init__(self, rng, lag):
         self.rng = rng
@@ -34,7 +34,7 @@ class Walk:
         return self.time >= PACES * PACE_TIME - 1e-6 or bool(self.failure)
 
     def publish(self, bus):
-        """Publish where the walker is, and the drive's mode."""
+        """Publish the position of the walker and the mode of the drive."""
         bus.publish("walker/place", Float32(data=self.place + self.rng.normal(0.0, 0.004)))
         bus.publish("handrail/stop", Bool(data=False))
         bus.publish("drive/eco", Bool(data=self.eco))

@@ -1,4 +1,4 @@
-"""The robot drives and stops where the operator expects it. A new battery in another place shifts its balance."""
+"""The robot drives and stops where the operator expects it. A new battery shifts its centre of mass."""
 
 import math
 
@@ -14,7 +14,7 @@ Twist = message_type("geometry_msgs/Twist")
 DT = 0.02
 LENGTH = 0.35  # m, axle to centre of mass
 GO, HOLD = 4.0, 3.0  # s
-OFF = 0.6  # m from the place where the robot should be
+OFF = 0.6  # tolerated distance from the commanded place, m
 
 
 class Segway:
@@ -61,7 +61,7 @@ class Segway:
         self.reference += self.wanted * DT
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for being where the operator expects it."""
+        """Return the reward of the step: at most 10 in total for following the commanded motion."""
         gap = abs(self.x - self.reference)
         if abs(self.pitch) > 0.7:
             self.failure = "fell over"

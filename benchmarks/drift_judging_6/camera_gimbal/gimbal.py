@@ -11,7 +11,7 @@ from std_msgs.msg import Float32
 
 
 class RollFilter:
-    """Trust the gyroscope at short notice and gravity in the long run."""
+    """Complementary filter: the gyroscope for fast changes, gravity for slow ones."""
 
     def __init__(self, alpha):
         self.alpha = alpha
@@ -48,7 +48,7 @@ class Gimbal(Node):
         gravity_roll = math.atan2(acc.y, acc.z)
         rate = msg.angular_velocity.x
         roll = self.filter.update(rate, gravity_roll, dt)
-        ahead = roll + self.lead * rate  # the servo is slow
+        ahead = roll + self.lead * rate  # compensate the lag of the servo
         servo = max(-self.limit, min(self.limit, -ahead))
         self.servo_pub.publish(Float32(data=servo))
 

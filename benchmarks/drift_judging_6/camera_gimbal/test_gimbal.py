@@ -1,4 +1,4 @@
-"""The picture stays level on swell. The new outboard motor throbs at low revolutions and shakes the accelerometer."""
+"""The picture stays level on swell. At low revolutions, vibrations of the new motor disturb the accelerometer."""
 
 import math
 
@@ -61,7 +61,7 @@ class Boat:
         self.servo += (1.0 - math.exp(-DT / 0.08)) * (aim - self.servo)
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for a level picture."""
+        """Return the reward of the step: at most 10 in total for a level picture."""
         if self.time < SETTLE:
             return 0.0
         error = abs(self.roll + self.servo)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Climb a facade: a fan sucks the chassis to the wall, the wheels drive while it grips."""
+"""Climb a facade: a fan sucks the chassis to the wall, and the wheels drive while the chassis grips."""
 
 from dataclasses import dataclass
 

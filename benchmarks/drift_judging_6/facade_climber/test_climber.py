@@ -1,4 +1,4 @@
-"""A robot climbs glass to the next window. Plaster leaks more air below the skirt, each wall another amount."""
+"""A robot climbs glass to the next window. Plaster lets more air leak below the skirt, each wall a different amount."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ TIME_BOUND = 22.0
 
 
 class Wall:
-    """A wall and a climber on it, held by a rope until the fan runs."""
+    """A wall and a climber on it, which a rope holds until the fan runs."""
 
     def __init__(self, rng, leak):
         self.rng = rng
@@ -40,7 +40,7 @@ class Wall:
         return self.there or bool(self.failure)
 
     def publish(self, bus):
-        """Publish goal, height, chamber pressure and what the inspector entered as surface."""
+        """Publish goal, height, chamber pressure and the surface that the inspector entered."""
         bus.publish("goal", Float32(data=self.goal))
         bus.publish("height", Float32(data=self.height + self.rng.normal(0.0, 0.01)))
         bus.publish("surface", String(data=self.surface))
@@ -61,7 +61,7 @@ class Wall:
         self.height += self.moved
 
     def judge(self):
-        """Return the reward of the step: the window is worth 6, the way 4; time and the fan's energy cost."""
+        """Return the reward of the step: 6 for the window, 4 for progress, minus costs of time and energy."""
         if self.pressure < FALLS:
             self.failure = "hangs in the rope"
         elif self.time > TIME_BOUND:

@@ -17,7 +17,7 @@ INERTIA = {"broadcast": 4.0, "cinema": 12.0}  # kg m^2
 SHOT, LENGTH = 1.4, 4.5  # s
 DRIVE = 0.1  # s, lag of the torque
 FRAME = 0.05  # rad
-BEYOND = 0.06  # rad beyond the mark, the swing that a viewer notices
+BEYOND = 0.06  # rad beyond the mark from which a viewer notices the swing
 
 
 class Crane:
@@ -40,7 +40,7 @@ class Crane:
         return self.time > LENGTH
 
     def publish(self, bus):
-        """Publish the mark, the camera that is mounted, and the joint."""
+        """Publish the mark, the mounted camera, and the state of the joint."""
         bus.publish("jib/target", Float64(data=self.target))
         bus.publish("camera/model", String(data=self.camera))
         joint = JointState(name=["jib_tilt", "jib_pan"])
@@ -58,7 +58,7 @@ class Crane:
         self.angle += self.speed * DT
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for the mark in the frame from the shot on."""
+        """Return the reward of the step: at most 10 in total for a mark in the frame during the shot."""
         error = abs(self.target - self.angle)
         self.beyond = max(self.beyond, (self.angle - self.target) * math.copysign(1.0, self.target))
         if self.time < SHOT:

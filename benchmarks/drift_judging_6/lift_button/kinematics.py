@@ -8,7 +8,7 @@ FINGER = 0.09  # m from the wrist to the tip
 
 
 def inverse(x, z):
-    """Return shoulder, elbow and wrist in rad for a fingertip at (x, z), elbow up; None if it is out of reach."""
+    """Return shoulder, elbow and wrist in rad for a fingertip at (x, z) with the elbow up; None if out of reach."""
     wrist_x = x - FINGER
     reach = math.hypot(wrist_x, z)
     if reach > UPPER + FOREARM or reach < abs(UPPER - FOREARM):

@@ -19,7 +19,7 @@ class Phase(Enum):
 
 class ButtonPresser(Node):
     HOVER_GAP = 0.07  # m in front of the panel
-    PRESS_DEPTH = 0.014  # m beyond it, the finger is sprung
+    PRESS_DEPTH = 0.014  # m beyond the panel; the finger has a spring
     HOVER_TIME = 1.5  # s
     PRESS_TIME = 1.2  # s
 

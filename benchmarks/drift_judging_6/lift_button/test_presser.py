@@ -14,7 +14,7 @@ String = message_type("std_msgs/msg/String")
 DT = 0.1
 UPPER, FOREARM = 0.34, 0.30
 FINGERS = {"short": 0.09, "long": 0.135}  # m
-LIGHTS, STOPS = 0.004, 0.027  # m of travel: the button's, and what the spring takes
+LIGHTS, STOPS = 0.004, 0.027  # travel in m at which the button lights, and at which the spring is compressed
 TIME_BOUND = 8.0
 
 
@@ -39,7 +39,7 @@ class Panel:
         return self.finished or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the button as the camera sees it, the mounted finger, and its force."""
+        """Publish the button position from the camera, the mounted finger, and the force on it."""
         seen = PointStamped()
         seen.point.x = self.x + self.rng.normal(0.0, 0.002)
         seen.point.z = self.z + self.rng.normal(0.0, 0.002)
@@ -48,7 +48,7 @@ class Panel:
         bus.publish("/finger/force", Float64(data=max(0.0, 400.0 * self.travel + self.rng.normal(0.0, 0.3))))
 
     def advance(self, joints, finished):
-        """Let the joints follow for one step."""
+        """Move the joints for one step."""
         self.time += DT
         if joints:
             self.angles = [
@@ -67,7 +67,7 @@ class Panel:
         self.finished = bool(finished and finished.data)
 
     def judge(self, lit):
-        """Return the reward of the step: a lit button is worth 10, time costs."""
+        """Return the reward of the step: 10 for a lit button, minus a cost of time."""
         if self.travel > STOPS:
             self.failure = f"protective stop at {1000 * self.travel:.0f} mm of travel"
         elif self.finished and not self.pressed:

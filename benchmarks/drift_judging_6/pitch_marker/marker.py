@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-"""Paint the lines of a small court: drive a rectangle, turn on the spot in its corners."""
+"""Paint the lines of a small court: drive a rectangle and turn on the spot at its corners."""
 
 import math
 

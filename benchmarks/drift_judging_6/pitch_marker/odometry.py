@@ -4,7 +4,7 @@ from math import cos, pi, sin
 
 TICKS = 1024.0  # per turn of a wheel
 WHEEL = 0.105  # m, radius
-TRACK = 0.52  # m, between the points about which the sides turn
+TRACK = 0.52  # m between the points about which the two sides turn
 
 
 class Odometry(object):
@@ -15,7 +15,7 @@ class Odometry(object):
         self.last = None
 
     def update(self, left, right):
-        """Add what the encoders have counted since the last time."""
+        """Add the counts of the encoders since the last update."""
         if self.last is None:
             self.last = (left, right)
             return

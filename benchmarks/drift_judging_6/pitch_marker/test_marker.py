@@ -1,4 +1,4 @@
-"""The corners of a court are where they belong. On wet artificial turf all wheels slip, and in turns most of all."""
+"""The corners of a court are painted in the right places. On wet artificial turf all wheels slip, mostly in turns."""
 
 import math
 
@@ -13,7 +13,7 @@ Int32MultiArray = message_type("std_msgs/Int32MultiArray")
 
 DT = 0.1
 WHEEL, TICKS = 0.105, 1024
-TURF = {False: (1.0, 0.52), True: (0.87, 0.66)}  # wet: share of the roll that moves, track that counts
+TURF = {False: (1.0, 0.52), True: (0.87, 0.66)}  # wet: effective share of the roll, and track in m
 NEAR = 0.35  # m
 TIME_BOUND = 40.0
 
@@ -65,7 +65,7 @@ class Turf:
         return painted and not self.painting
 
     def judge(self, corner):
-        """Return the reward of the step: each corner in its place is worth 2.5."""
+        """Return the reward of the step: 2.5 for each corner in its place."""
         reward = -0.002
         if corner and self.corners:
             x, y = self.corners.pop(0)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-"""Land a multirotor on a marker: centre above it, sink while it is in the funnel."""
+"""Land a multirotor on a marker: centre above the marker, and sink while inside the funnel above it."""
 
 import math
 
@@ -43,7 +43,7 @@ class MarkerLander:
             self.report.publish(String(state))
 
     def tilt(self, offset, speed):
-        """Tilt in rad that accelerates towards the marker."""
+        """Return the tilt in rad that accelerates towards the marker."""
         accel = self.kp * offset - self.kd * speed
         return saturate(math.atan2(accel, G), self.max_tilt)
 

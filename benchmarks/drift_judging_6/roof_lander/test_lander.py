@@ -1,4 +1,4 @@
-"""A multirotor lands on a marker in the court. On the new roof, one landing in nine meets a gust over the parapet."""
+"""A multirotor lands on a marker in the court. On the new roof, a gust over the parapet hits one landing in nine."""
 
 import math
 
@@ -49,7 +49,7 @@ class Roof:
         return self.landed or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the marker as the camera sees it, and the speed."""
+        """Publish the marker position from the camera, and the speed."""
         speed, marker = TwistStamped(), PoseStamped()
         speed.twist.linear.x, speed.twist.linear.y = (v + self.rng.normal(0.0, 0.03) for v in self.velocity)
         marker.pose.position.x, marker.pose.position.y = (
@@ -73,7 +73,7 @@ class Roof:
         self.position[2] -= (command.z if command else 0.0) * DT
 
     def judge(self):
-        """Return the reward of the step: a landing on the pad is worth 10, time costs."""
+        """Return the reward of the step: 10 for a landing on the pad, minus a cost of time."""
         if self.off > FENCE:
             self.failure = "beyond the parapet"
         elif self.landed and self.off > PAD:

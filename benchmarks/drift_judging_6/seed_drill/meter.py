@@ -26,7 +26,7 @@ def on_lowered(msg):
 
 
 def ground_speed(per_turn, diameter):
-    """Speed in m/s from the pulses of the gauge wheel."""
+    """Return the speed in m/s, from the pulses of the gauge wheel."""
     if len(pulses) < 2:
         return 0.0
     (start, first), (end, last) = pulses[0], pulses[-1]

@@ -1,4 +1,4 @@
-"""Seeds lie at the spacing of the job, within 6.5 %. On wet soil the gauge wheel picks up mud and turns less."""
+"""Seeds lie at the spacing of the job within 6.5 %. On wet soil the gauge wheel picks up mud and turns more slowly."""
 
 from math import pi
 
@@ -13,12 +13,12 @@ Int32 = message_type("std_msgs/Int32")
 
 DT = 0.1
 FIELD = 40.0  # m of row
-ROLLING = {"dry": 0.40, "wet": 0.462}  # m, diameter that the wheel rolls on
+ROLLING = {"dry": 0.40, "wet": 0.462}  # rolling diameter of the wheel, m
 MOISTURE = {"dry": (0.10, 0.26), "wet": (0.40, 0.60)}
 
 
 class Row:
-    """A tractor that pulls the drill, and a row that counts its seeds."""
+    """A tractor that pulls the drill, and a row in which seeds are counted."""
 
     def __init__(self, rng, soil):
         self.rng = rng
@@ -37,7 +37,7 @@ class Row:
         return self.x >= FIELD or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the job, the soil and what the gauge wheel has counted."""
+        """Publish the job, the soil and the pulses of the gauge wheel."""
         bus.publish("job/spacing", Float32(data=self.spacing))
         bus.publish("soil/moisture", Float32(data=self.moisture + self.rng.normal(0.0, 0.02)))
         bus.publish("gauge_wheel/pulses", Int32(data=int(self.turns * 60)))
@@ -56,7 +56,7 @@ class Row:
             self.recent = [*self.recent[-9:], dropped * self.spacing / self.moved]
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for metres with the right spacing."""
+        """Return the reward of the step: at most 10 in total for metres with the right spacing."""
         if self.x <= 0.0 or len(self.recent) < 10:
             return 0.0
         if self.x >= FIELD:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Inner loop of a small survey aircraft: hold the bank angle that the navigator asks for."""
+"""Inner loop of a small survey aircraft: hold the bank angle that the navigator requests."""
 
 import math
 
@@ -14,7 +14,7 @@ def wrap(angle: float) -> float:
 
 
 class RollControl(Node):
-    """Angle loop around a rate loop; the output is the deflection of the ailerons in rad."""
+    """An angle loop around a rate loop, whose output is the deflection of the ailerons in rad."""
 
     MAX_BANK = 0.7
     MAX_RATE = 1.2
@@ -35,7 +35,7 @@ class RollControl(Node):
         self._bank_wanted = max(-self.MAX_BANK, min(self.MAX_BANK, message.data))
 
     def _on_roll(self, message: Vector3Stamped) -> None:
-        """Take the bank angle in x and the roll rate in y."""
+        """Store the bank angle (x) and the roll rate (y)."""
         bank, rate = message.vector.x, message.vector.y
         if not self._attitude_seen:
             self.get_logger().info("attitude received")

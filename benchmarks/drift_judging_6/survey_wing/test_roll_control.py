@@ -1,4 +1,4 @@
-"""A camera aircraft banks smoothly. Designed for 14 m/s, it now also loiters slowly and dashes between its fields."""
+"""A camera aircraft banks smoothly. Designed for 14 m/s, it now also flies slowly over fields and fast between them."""
 
 import pytest
 
@@ -11,12 +11,12 @@ Vector3Stamped = message_type("geometry_msgs/msg/Vector3Stamped")
 DT = 0.04
 LENGTH = 16.0  # s
 SERVO = 0.07  # s
-SHARP = 0.2  # rad/s, beyond the rate of a smooth turn
+SHARP = 0.2  # rad/s above the rate of a smooth turn
 UPSET = 1.3  # rad
 
 
 class Wing:
-    """Roll of an aircraft whose ailerons act with the square of the airspeed."""
+    """The roll axis of an aircraft whose ailerons act in proportion to the square of the airspeed."""
 
     def __init__(self, rng, swing):
         self.rng = rng
@@ -39,7 +39,7 @@ class Wing:
 
     @property
     def wanted(self):
-        """Return the bank that the navigator asks for, rad."""
+        """Return the bank angle that the navigator requests, rad."""
         return float(self.turns[min(3, int(self.time / (LENGTH / 4)))])
 
     @property
@@ -48,7 +48,7 @@ class Wing:
         return self.time >= LENGTH or bool(self.failure)
 
     def publish(self, bus):
-        """Publish the wanted bank, the airspeed, and bank and rate of the IMU."""
+        """Publish the requested bank, the airspeed, and the IMU's bank and roll rate."""
         bus.publish("nav/bank", Float32(data=self.wanted))
         bus.publish("pitot/airspeed", Float32(data=self.airspeed + self.rng.normal(0.0, 0.2)))
         roll = Vector3Stamped()
@@ -71,7 +71,7 @@ class Wing:
         self.model += DT * self.model_rate
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for sharp pictures in turns as asked for."""
+        """Return the reward of the step: at most 10 in total for sharp pictures during turns as requested."""
         error = abs(self.rate - self.model_rate)
         self.blurred += error > SHARP
         if abs(self.bank) > UPSET:

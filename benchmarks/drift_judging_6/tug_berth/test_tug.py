@@ -1,4 +1,4 @@
-"""A tug pushes a barge to the quay and touches gently. An offshore gale pushes harder than the tug can."""
+"""A tug pushes a barge to the quay, which the barge touches gently. An offshore gale is stronger than the tug."""
 
 import pytest
 
@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 Range = message_type("sensor_msgs/msg/Range")
 
 DT = 0.25
-MASS, DRAG = 3.0, 1.2  # in units of the tug's full thrust: s^2/m and s/m
+MASS, DRAG = 3.0, 1.2  # relative to the tug's full thrust: s^2/m and s/m
 GENTLE = 0.2  # m/s
 LOST = 16.0  # m from the quay
 TIME_BOUND = 70.0
@@ -51,7 +51,7 @@ class Harbour:
         self.distance -= self.moved
 
     def judge(self):
-        """Return the reward of the step: the way is worth 4, a gentle touch 6, time costs."""
+        """Return the reward of the step: 4 for progress, 6 for a gentle touch, minus a cost of time."""
         if self.alongside and self.speed > GENTLE:
             self.failure = f"touched at {self.speed:.2f} m/s"
         elif self.distance > LOST:

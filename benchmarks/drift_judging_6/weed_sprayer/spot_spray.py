@@ -1,12 +1,12 @@
 #!/usr/bin/env python
-"""Spot spraying: open a nozzle above green plants between the rows."""
+"""Spot spraying: open a nozzle when it is above green plants between the rows."""
 
 import rospy
 from std_msgs.msg import Bool, Float32
 
 GREEN = 0.30  # share of green pixels below the camera
 RELEASE = 0.22
-MIN_OPEN = 0.15  # s, shorter pulses do not form a jet
+MIN_OPEN = 0.15  # s; a shorter pulse does not form a jet
 
 
 class SpotSprayer:

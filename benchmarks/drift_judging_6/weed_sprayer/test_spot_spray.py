@@ -1,4 +1,4 @@
-"""The nozzle wets weeds and spares the soil. With the boom unfolded, the camera looks 60 cm ahead of the nozzle."""
+"""The nozzle wets weeds and spares the soil. If the boom is unfolded, the camera looks 60 cm ahead of the nozzle."""
 
 import pytest
 
@@ -39,7 +39,7 @@ class Rover:
         return min(1.0, max(0.0, share + self.rng.normal(0.03, 0.02)))
 
     def publish(self, bus):
-        """Publish the camera's share of green, the speed, and whether the boom is unfolded."""
+        """Publish the share of green from the camera, the speed, and whether the boom is unfolded."""
         bus.publish("rover/speed", Float32(data=self.speed + self.rng.normal(0.0, 0.01)))
         bus.publish("boom/unfolded", Bool(data=self.ahead > 0.0))
         bus.publish("camera/green", Float32(data=self.green(self.x + self.ahead)))
@@ -64,7 +64,7 @@ class Rover:
         self.spilt += self.wasted
 
     def judge(self):
-        """Return the reward of the step: at most 10 in all for wet weeds, less what wets the soil."""
+        """Return the reward of the step: at most 10 in total for wet weeds, minus a cost of wet soil."""
         reward = 10.0 * self.hit / len(self.weeds) - 2.0 * self.wasted
         if self.done:
             missed = sum(dose < 0.12 for dose in self.doses)

@@ -1,4 +1,4 @@
-"""Apples come off after some twisting. In a dry year the stems of few trees are tough and need more of it."""
+"""Apples come off after some twisting. In a dry year, a few trees have tough stems that need more twisting."""
 
 import pytest
 
@@ -14,7 +14,7 @@ TIME_BOUND = 32.0
 
 
 class Tree:
-    """A tree with apples whose stems wear as they are twisted."""
+    """A tree with apples whose stems wear when twisted."""
 
     def __init__(self, rng, tough):
         self.rng = rng
@@ -35,7 +35,7 @@ class Tree:
         return self.number >= APPLES or self.time > TIME_BOUND
 
     def publish(self, bus):
-        """Publish torque and what the arm reports."""
+        """Publish the torque and the state of the arm."""
         bus.publish("wrist/torque", Float32(data=self.torque + self.rng.normal(0.0, 0.02)))
         if self.event:
             bus.publish("arm/event", String(data=self.event))

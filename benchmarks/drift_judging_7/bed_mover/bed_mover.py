@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tug a hospital bed to the next bay on its ward."""
+"""Pull a hospital bed to the next bay of its ward."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""A bed comes to its bay in time. With a patient in it, nothing may go faster than 0.75 m/s."""
+"""A bed reaches its bay in time. With a patient in it, its speed must not exceed 0.75 m/s."""
 
 import pytest
 
@@ -10,7 +10,7 @@ Float64 = message_type("std_msgs/msg/Float64")
 Odometry = message_type("nav_msgs/msg/Odometry")
 
 DT = 0.2
-GENTLE = 0.75  # m/s that a patient bears
+GENTLE = 0.75  # maximum speed with a patient, m/s
 TIME_BOUND = 16.0
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-"""Print a wall of concrete: drive the gantry along the layer and the screw pump in step with it."""
+"""Print a wall of concrete: drive the gantry along the layer and the screw pump at a rate that matches."""
 
 import threading
 
@@ -26,7 +26,7 @@ class Printer:
             self.curvature = msg.data
 
     def flow(self, speed):
-        """Litres per second for a bead at this speed."""
+        """Return the litres per second for a bead at this speed."""
         return BEAD["width"] * BEAD["height"] * speed * 1000.0
 
     def cb_timer(self, _event):

@@ -1,4 +1,4 @@
-"""A bead of concrete is neither thin nor squeezed out. The worn rubber of the second pump delivers less a turn."""
+"""A bead of concrete is neither too thin nor too wide. The second pump has worn rubber and delivers less per turn."""
 
 import pytest
 
@@ -52,7 +52,7 @@ class Wall:
         return 10.0 * moved / LENGTH * (1.0 - 0.3 * off / WINDOW)
 
     def judge(self):
-        """Say what is wrong with the layer."""
+        """Return the fault of the layer as text."""
         if self.x < LENGTH:
             return "late"
         return f"{self.bad:.2f} m of the bead are faulty" if self.bad > 0.15 * LENGTH else ""

@@ -4,11 +4,11 @@ from belt import BeltTracker
 from rclpy.node import Node
 from std_msgs.msg import Float64, Int32
 
-HEAD_DOWN = 0.05  # s that the head needs to come down
+HEAD_DOWN = 0.05  # s that the head takes to come down
 
 
 class DeltaPicker(Node):
-    """Picks biscuits from the running belt: close the gripper when one is below it."""
+    """Pick biscuits from the running belt: close the gripper when a biscuit is below it."""
 
     def __init__(self):
         super().__init__("delta_picker")

@@ -1,4 +1,4 @@
-"""Biscuits are picked near their middle. A rubber sleeve on the encoder wheel makes a tick stand for more belt."""
+"""Biscuits are picked near their middle. With a rubber sleeve on the encoder wheel, a tick stands for more belt."""
 
 import pytest
 
@@ -13,11 +13,11 @@ DT = 0.1
 DISTANCE = 400.0
 PARTS = 10
 LEAD = 0.05
-REACH = 14.0  # mm from the middle where the suction cup still seals
+REACH = 14.0  # mm from the middle at which the suction cup still seals
 
 
 class Conveyor:
-    """A belt with biscuits, a camera and a gripper further on."""
+    """A belt with biscuits, a camera, and a gripper further along."""
 
     def __init__(self, rng, per_tick):
         self.rng = rng

@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-"""Push the feed back to the fence of the cow barn, at a set distance to the fence."""
+"""Push feed back to the fence of a cow barn at a set distance from the fence."""
 
 import math
 

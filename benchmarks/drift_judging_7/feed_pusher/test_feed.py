@@ -1,4 +1,4 @@
-"""A barn robot keeps its distance to the fence. A cow has bent the bracket of its sonar inwards, for good."""
+"""A barn robot keeps its distance to the fence. A cow has permanently bent the bracket of its sonar inwards."""
 
 import math
 
@@ -12,7 +12,7 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.2
 GOAL = 0.80
 LENGTH = 7.0
-BAND = 0.09  # m beside which feed stays behind
+BAND = 0.09  # error of the distance in m at which feed is left behind
 
 
 class Barn:
@@ -30,7 +30,7 @@ class Barn:
 
     @property
     def done(self):
-        """Return whether the alley ends or the robot touched the fence."""
+        """Return whether the robot has reached the end of the alley or touched the fence."""
         return self.x >= LENGTH or self.time > 30.0 or bool(self.failure)
 
     def publish(self, bus):
@@ -57,7 +57,7 @@ class Barn:
         return -5.0 * moved / LENGTH
 
     def judge(self):
-        """Say why the round failed, if it did."""
+        """Return the reason for a failed round, else an empty text."""
         if self.failure:
             return self.failure
         return "" if self.clean > 0.9 * LENGTH else f"only {self.clean:.1f} m of feed were pushed"

@@ -14,7 +14,7 @@ depth = 1.0
 
 
 def on_seam(m):
-    """Offset to the middle of the strip, m (positive: we are too far aft)."""
+    """Return the offset from the middle of the strip, m (positive: too far aft)."""
     global seam
     seam = m.data
 

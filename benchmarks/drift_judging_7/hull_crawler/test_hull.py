@@ -1,4 +1,4 @@
-"""A crawler cleans a strip of a hull. In a tidal harbour the stream pushes it aside, one way or the other."""
+"""A crawler cleans a strip of a hull. In a tidal harbour the current pushes it to one side or the other."""
 
 import pytest
 
@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.25
 LENGTH = 6.5
-OVERLAP = 1.8  # m that the last strip has cleaned already
+OVERLAP = 1.8  # m that are already clean from the last strip
 LAG = 5  # steps until an echo is evaluated
 BAND = 0.09  # m
 
@@ -29,11 +29,11 @@ class Hull:
 
     @property
     def done(self):
-        """Return whether the strip ends."""
+        """Return whether the end of the strip is reached."""
         return self.x >= LENGTH or self.time > 60.0
 
     def publish(self, bus):
-        """Publish the echo of the seam, late, and the depth."""
+        """Publish the delayed echo of the seam, and the depth."""
         bus.publish("sonar/seam", Float32(data=self.echoes.pop(0)))
         bus.publish("depth", Float32(data=1.0 + self.x))
 
@@ -57,7 +57,7 @@ class Hull:
         return 10.0 * share * (1.0 - 0.2 * off / BAND)
 
     def judge(self):
-        """Say why the strip fails, if it does."""
+        """Return the reason for a failed strip, else an empty text."""
         return "" if self.clean > 0.85 else f"only {100 * self.clean:.0f} % of the strip are clean"
 
 

@@ -5,7 +5,7 @@ from std_msgs.msg import Float32
 
 
 class Spreader(Node):
-    """Open the salt gate as the road needs it: the colder, the more."""
+    """Open the salt gate further the colder the road is."""
 
     def __init__(self):
         super().__init__("spreader")

@@ -1,4 +1,4 @@
-"""A road gets its grams of salt per square metre. The spreader moves from a cycle path to a road with traffic."""
+"""A road gets the right grams of salt per square metre. The spreader moves from a cycle path to a road with traffic."""
 
 import math
 
@@ -11,7 +11,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.5
 STEPS = 60
-WINDOW = 0.22  # share of the salt that the road needs
+WINDOW = 0.22  # tolerated relative error of the salt
 
 
 class Road:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-# linen cart: follows the black tape on the hospital floor, stops at the cross mark
+# linen cart: follows the black tape on the hospital floor and stops at the cross mark
 import rospy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, UInt16MultiArray

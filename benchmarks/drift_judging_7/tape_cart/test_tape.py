@@ -1,4 +1,4 @@
-"""A cart follows a tape to a cross mark. In the glazed corridor the sun adds to what all its eyes read."""
+"""A cart follows a tape to a cross mark. In the glazed corridor the sun raises the readings of all its eyes."""
 
 import math
 
@@ -17,7 +17,7 @@ LENGTH = 4.0
 
 
 class Floor:
-    """A bending tape below seven eyes."""
+    """A curved tape below seven eyes."""
 
     def __init__(self, rng, sun):
         self.rng = rng
@@ -29,12 +29,12 @@ class Floor:
         self.time, self.failure, self.arrived = 0.0, "", False
 
     def tape(self, x):
-        """Return where the tape lies at x, in m."""
+        """Return the lateral position of the tape at x, in m."""
         return self.bend * math.sin(1.6 * x + self.phase)
 
     @property
     def done(self):
-        """Return whether the ride is judged."""
+        """Return whether the ride is over."""
         return self.arrived or bool(self.failure)
 
     def publish(self, bus):

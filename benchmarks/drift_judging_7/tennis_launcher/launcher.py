@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ball machine: lob balls over the net to the spots that the trainer's tablet sends."""
+"""Ball machine: lob balls over the net to the spots sent by the trainer's tablet."""
 
 import math
 
@@ -28,7 +28,7 @@ class Launcher(Node):
         return self.elevation + self.steeper * (14.0 - distance)
 
     def ball_speed(self, distance):
-        """Speed without drag, times what drag takes."""
+        """Return the launch speed without drag, multiplied by a factor for the drag."""
         radians = math.radians(self.angle(distance))
         plain = math.sqrt(G * distance / math.sin(2.0 * radians))
         return plain * self.drag_gain

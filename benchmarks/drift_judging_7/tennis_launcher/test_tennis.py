@@ -1,4 +1,4 @@
-"""Balls land on their spot and cross the net in a window. Foam balls for children are braked far more by the air."""
+"""Balls land on their spot and cross the net within a window. Foam balls for children have much more drag."""
 
 import math
 
@@ -19,7 +19,7 @@ LOW, HIGH = 2.5, 3.3  # m above the net line
 
 
 def flight(speed, elevation, drag):
-    """Return where a ball lands and how high it crosses the net, in m."""
+    """Return the landing place of a ball and its height at the net, in m."""
     vx, vy = speed * math.cos(elevation), speed * math.sin(elevation)
     x, y, h, height = 0.0, 0.6, 0.02, 0.0
     while y > 0.0 and x < 40.0:
@@ -33,7 +33,7 @@ def flight(speed, elevation, drag):
 
 
 class Court:
-    """A court on which a trainer asks for spots."""
+    """A court on which a trainer requests spots."""
 
     def __init__(self, rng, balls):
         self.rng = rng
@@ -43,7 +43,7 @@ class Court:
         self.shot = 0
 
     def publish(self, bus):
-        """Publish the spot and which balls are in the hopper."""
+        """Publish the spot and the kind of balls in the hopper."""
         bus.publish("hopper/balls", String(data=self.balls))
         bus.publish("tablet/spot", Float64(data=self.spot))
 

@@ -1,4 +1,4 @@
-"""A handrail gets a dose of ultraviolet light between two limits. Aged lamps of different hours are weaker."""
+"""A handrail gets a dose of ultraviolet light between two limits. Aged lamps are weaker, each to a different degree."""
 
 from pathlib import Path
 
@@ -37,11 +37,11 @@ class Corridor:
 
     @property
     def done(self):
-        """Return whether the rail is passed or the time is over."""
+        """Return whether the end of the rail is passed or the time is over."""
         return self.x >= LENGTH or self.time > TIME_BOUND
 
     def publish(self, bus):
-        """Publish people, way left and the photodiode at the lamp."""
+        """Publish the nearest person, the remaining distance and the photodiode at the lamp."""
         bus.publish("/person_distance", Float64(data=self.person))
         bus.publish("/corridor_left", Float64(data=LENGTH - self.x))
         bus.publish("/lamp_diode", Float64(data=self.output + self.rng.normal(0.0, 0.01)))
@@ -63,13 +63,13 @@ class Corridor:
 
     @staticmethod
     def value(dose):
-        """Return 1 for a good dose, less beside the limits."""
+        """Return 1 for a dose within the limits, and less outside."""
         if dose < LEAST:
             return dose / LEAST - 1.0 - 0.5
         return 1.0 if dose < MOST else -0.5
 
     def judge(self):
-        """Say why the round failed, if it did."""
+        """Return the reason for a failed round, else an empty text."""
         if self.x < LENGTH:
             return "late"
         bad = sum(not LEAST <= dose <= MOST for dose in self.dose)

@@ -6,7 +6,7 @@ from std_msgs.msg import Bool, Float64
 
 
 class Disinfector(Node):
-    """Drive along a corridor so slowly that the handrail gets its dose; lamp off while somebody is near."""
+    """Drive slowly enough for the dose of the handrail; switch the lamp off while a person is near."""
 
     def __init__(self) -> None:
         super().__init__("uv_robot")

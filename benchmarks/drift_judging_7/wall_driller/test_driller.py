@@ -1,4 +1,4 @@
-"""A ceiling drill makes its hole in time. In the new building the aggregate is basalt, too hard for its hammer."""
+"""A ceiling drill makes its hole in time. In the new building the concrete contains basalt, too hard for its hammer."""
 
 import pytest
 
@@ -25,7 +25,7 @@ class Ceiling:
 
     @property
     def done(self):
-        """Return whether the hole is judged."""
+        """Return whether the hole is finished or the time is over."""
         return self.finished or bool(self.failure)
 
     def publish(self, bus):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python
-# batch dryer for wheat: heat until the moisture is right, then cool and let it out
+# batch dryer for wheat: heat until the moisture is right, then cool and discharge
 import rospy
 from std_msgs.msg import Float32, String
 
@@ -23,7 +23,7 @@ class Dryer:
         self.air = msg.data
 
     def on_moisture(self, msg):
-        """Percent, from a capacitive probe in the return pipe."""
+        """Store the moisture in percent, from a capacitive probe in the return pipe."""
         if self.moisture is None:
             self.moisture = msg.data
         self.moisture += (msg.data - self.moisture) / self.tau

@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 60.0
 OUTDOORS = {"autumn": 12.0, "frost": -9.0}  # °C
-BIAS = {"autumn": 0.0, "frost": -2.2}  # % that the probe reads beside
+BIAS = {"autumn": 0.0, "frost": -2.2}  # error of the probe, %
 LOW, HIGH = 12.3, 14.2
 
 
@@ -46,7 +46,7 @@ class Batch:
         self.out = bool(mode and mode.data == "out")
 
     def judge(self):
-        """Return the price of the batch and what the mill objects to."""
+        """Return the price of the batch and the objection of the mill."""
         if not self.out:
             return -3.0, "the shift is over"
         noise = self.rng.normal(0.0, 0.3)

@@ -1,4 +1,4 @@
-"""What the spray bar of the resurfacer delivers, as measured when it was new."""
+"""The flow of the resurfacer's spray bar, as measured when it was new."""
 
 import bisect
 
@@ -9,7 +9,7 @@ BAR_SHARE = 1.0  # share of the nozzles that are fitted
 
 
 def flow_at(opening):
-    """Litres per minute at an opening."""
+    """Return the litres per minute at an opening."""
     i = min(len(OPENINGS) - 1, max(1, bisect.bisect_right(OPENINGS, opening)))
     low, high = OPENINGS[i - 1], OPENINGS[i]
     part = (opening - low) / (high - low)
@@ -17,7 +17,7 @@ def flow_at(opening):
 
 
 def opening_for(flow):
-    """Opening that delivers a flow in litres per minute; the inverse of flow_at."""
+    """Return the opening for a flow in litres per minute; the inverse of flow_at."""
     wanted = flow / BAR_SHARE
     if wanted >= FLOWS[-1]:
         return 1.0

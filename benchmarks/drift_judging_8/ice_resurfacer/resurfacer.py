@@ -9,7 +9,7 @@ from std_msgs.msg import Float64
 
 class Resurfacer(object):
     WIDTH = 2.13  # m of the towel
-    MIN_SPEED = 0.4  # m/s, below that the water is shut
+    MIN_SPEED = 0.4  # m/s; the water is shut at lower speeds
 
     def __init__(self):
         self.film = rospy.get_param("~film_mm", 0.16)
@@ -33,7 +33,7 @@ class Resurfacer(object):
         self.update()
 
     def litres_per_minute(self):
-        """Water for the film: 1 mm on 1 m2 is one litre."""
+        """Return the water for the film: 1 mm on 1 m² is one litre."""
         return self.film * self.WIDTH * self.speed * 60.0
 
     def opening(self):

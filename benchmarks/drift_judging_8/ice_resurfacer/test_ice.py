@@ -1,4 +1,4 @@
-"""A resurfacer lays an even film of water. In the old hall it runs on hard water, and scale narrows its nozzles."""
+"""A resurfacer lays an even film of water. In the old hall the water is hard, and scale narrows the nozzles."""
 
 import math
 
@@ -13,7 +13,7 @@ Odometry = message_type("nav_msgs/msg/Odometry")
 DT = 0.4
 STEPS = 60
 FILM = 0.16  # mm
-BAND = 0.17  # share of the film that skaters do not feel
+BAND = 0.17  # relative error of the film that skaters do not feel
 OPENINGS = (0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0)
 FLOWS = (0.0, 4.1, 9.0, 17.6, 26.5, 37.0, 48.0)
 
@@ -42,7 +42,7 @@ class Rink:
         return self.cruise + 0.2 * math.sin(self.phase + 0.2 * self.step)
 
     def publish(self, bus):
-        """Publish odometry, the tank and the conductivity of the water."""
+        """Publish odometry, the tank level and the conductivity of the water."""
         odom = Odometry()
         odom.twist.twist.linear.x = self.speed + self.rng.normal(0.0, 0.01)
         odom.twist.twist.angular.z = max(0.0, 0.5 * math.sin(self.phase + 0.35 * self.step))

@@ -1,4 +1,4 @@
-"""Letters with a stamp go on, others to the clerks. The lamp of the reader ages and the stamps glow less."""
+"""Letters with a stamp pass, others go to the clerks. The lamp of the reader ages, so that stamps glow less."""
 
 import pytest
 
@@ -10,11 +10,11 @@ Int32 = message_type("std_msgs/msg/Int32")
 
 DT = 0.01
 LETTERS = 12
-PAPER, STAMP, LABEL = 30.0, 92.0, 15.0  # counts of a new lamp, the latter two above the paper
+PAPER, STAMP, LABEL = 30.0, 92.0, 15.0  # counts with a new lamp; stamp and label are relative to the paper
 
 
 class Reader:
-    """Letters below a lamp."""
+    """Letters that pass below a lamp."""
 
     def __init__(self, rng, lamp):
         self.rng = rng
@@ -22,7 +22,7 @@ class Reader:
         self.right = 0
 
     def letter(self):
-        """Return whether a letter has a stamp, and its light: paper, a label or a stamp, paper, a gap."""
+        """Return whether a letter has a stamp, and its readings: paper, a label or a stamp, paper, a gap."""
         stamped = self.rng.random() < 0.6
         above = STAMP if stamped else (LABEL if self.rng.random() < 0.5 else 0.0)
         above *= self.rng.uniform(0.88, 1.12)
@@ -32,7 +32,7 @@ class Reader:
         return stamped, [*light, 0.5]
 
     def judge(self, stamped, divert):
-        """Return the reward of a letter's way."""
+        """Return the reward for the destination of a letter."""
         if divert is None:
             return -1.0
         fits = divert.data != stamped

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Point
 from rclpy.node import Node
 from std_msgs.msg import Float64, Int32
 
-SAW_KERF = 2.8  # mm, set of the teeth included
+SAW_KERF = 2.8  # mm, including the set of the teeth
 
 
 @dataclass
@@ -48,13 +48,13 @@ class Saw(Node):
         return self.cut.hard_feed if self.current > self.cut.hard_current else self.cut.feed
 
     def advance(self, thickness):
-        """The carriage moves by the piece and by what the blade turns to dust."""
+        """Return the travel of the carriage: the thickness of the piece plus the saw kerf."""
         return thickness + SAW_KERF
 
     def face_callback(self, msg):
         setting = Point()
         if msg.data < self.cut.least:
-            setting.z = 1.0  # take the rest off
+            setting.z = 1.0  # remove the remaining piece
         elif self.boards == 0:
             setting.x = self.advance(self.cut.slab)
         else:

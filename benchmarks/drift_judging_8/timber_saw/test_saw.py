@@ -1,4 +1,4 @@
-"""A saw cuts boards of one thickness. The mill now buys blades with a wider set, for good."""
+"""A saw cuts boards of one thickness. From now on, the mill buys blades with a wider set."""
 
 import pytest
 
@@ -26,7 +26,7 @@ class Mill:
         self.finished = False
 
     def publish(self, bus):
-        """Publish what is left of the log and the current of the band."""
+        """Publish the rest of the log and the motor current of the band."""
         if not self.cuts:
             bus.publish("log/new", Int32(data=1))
         bus.publish("band/current", Float64(data=26.0 * self.hard + self.rng.normal(0.0, 2.0)))

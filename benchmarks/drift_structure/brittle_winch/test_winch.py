@@ -1,4 +1,4 @@
-"""A winch lowers glass in time. A cracked hook bears no jerks."""
+"""A winch lowers glass in time. A cracked hook breaks under jerks."""
 
 import pytest
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Lower a load to the height that is asked for; numbers come from the parameter server."""
+"""Lower a load to the requested height; constants come from the parameter server."""
 
 import rospy
 from std_msgs.msg import Float64
 
 
 class Winch:
-    """Height to speed of the drum."""
+    """Compute the speed of the drum from the height."""
 
     def __init__(self):
         self.gain = rospy.get_param("~gain", 1.5)
@@ -17,11 +17,11 @@ class Winch:
         rospy.Subscriber("height", Float64, self.on_height)
 
     def on_goal(self, msg):
-        """Take the height to go to: m."""
+        """Store the target height, m."""
         self.goal = msg.data
 
     def speed(self, left):
-        """Return the speed for what is left to go: m/s."""
+        """Return the speed for the remaining distance, m/s."""
         return max(-self.fastest, min(self.fastest, self.gain * left))
 
     def on_height(self, msg):

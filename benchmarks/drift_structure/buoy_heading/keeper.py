@@ -17,7 +17,7 @@ class Keeper:
         rospy.Subscriber("heading", Float64, self.on_heading)
 
     def on_wanted(self, msg):
-        """Take the heading to keep: rad."""
+        """Store the heading to keep, rad."""
         self.wanted = msg.data
 
     def on_heading(self, msg):

@@ -1,4 +1,4 @@
-"""A buoy turns to a heading and stays there. In waves its compass swings, and each reversal wears the thruster."""
+"""A buoy turns to a heading and keeps it. In waves its compass oscillates, and each reversal wears the thruster."""
 
 import math
 

@@ -10,7 +10,7 @@ from std_msgs.msg import Float64
 
 @dataclass(frozen=True)
 class Settings:
-    """What the cart is driven with."""
+    """The constants of the cart's controller."""
 
     gain: float = 2.0  # N/m
     most: float = 3.0  # N
@@ -28,7 +28,7 @@ class Cart(Node):
         self.create_subscription(Float64, "position", self.on_position, 10)
 
     def on_mark(self, msg):
-        """Take where to go: m."""
+        """Store the target position, m."""
         self.mark = msg.data
 
     def on_position(self, msg):

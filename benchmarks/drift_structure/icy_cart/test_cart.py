@@ -1,4 +1,4 @@
-"""A cart stops at its mark. On an icy rail nothing brakes it any more."""
+"""A cart stops at its mark. On an icy rail there is no friction to brake it."""
 
 import pytest
 

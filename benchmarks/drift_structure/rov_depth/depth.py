@@ -19,7 +19,7 @@ class Depth(Node):
         self.pub = self.create_publisher(Float64, "vertical", 10)
 
     def on_goal(self, msg):
-        """Take the depth to hold: m."""
+        """Store the depth to hold, m."""
         self.goal = msg.data
 
     def on_depth(self, msg):

@@ -1,4 +1,4 @@
-"""A ROV comes to a depth and holds it. An up- or down-current pushes it off; its thrusters answer late."""
+"""An ROV reaches a depth and holds it. A vertical current pushes it away, and its thrusters respond with a delay."""
 
 from collections import deque
 

@@ -1,4 +1,4 @@
-"""A mower keeps the speed that its blade needs. On a hill it loses speed with the slope, which a sensor tells."""
+"""A mower keeps the speed that its blade needs. On a hill it loses speed with the slope, which a sensor measures."""
 
 import pytest
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fill a tank that is drawn from: a relay switches the pump."""
+"""Fill a tank from which water is drawn; a relay switches the pump."""
 
 import rospy
 from std_msgs.msg import Bool, Float64
@@ -10,7 +10,7 @@ relay = None
 
 
 def on_level(msg):
-    """Take the level and switch."""
+    """Store the level and switch the pump."""
     global reading
     reading = msg.data
     switch()

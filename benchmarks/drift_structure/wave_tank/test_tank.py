@@ -1,4 +1,4 @@
-"""A tank stays between two levels. On a moving deck the water sloshes, and the relay may not chatter."""
+"""The level of a tank stays between two limits. On a moving deck the water sloshes, but the relay must not chatter."""
 
 import math
 

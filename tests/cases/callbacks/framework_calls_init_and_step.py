@@ -35,7 +35,7 @@ class Driver:
 
 
 class Helper:
-    """Not a plugin: what it registers it registers when it is made; nobody calls its other methods."""
+    """Not a plugin: it registers its callbacks in its constructor, and nothing calls its other methods."""
 
     def __init__(self):
         self.node = rclpy.create_node("helper")

@@ -1,4 +1,4 @@
-"""A decorator that is a method of a library's object hands the function over to it: a request may come at any time."""
+"""A decorator that is a method of a library object passes the function to the library, which may call it at any time."""
 
 import functools
 

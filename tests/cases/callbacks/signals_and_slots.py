@@ -1,4 +1,4 @@
-"""What is connected to a signal is called where it is emitted, with what is emitted; buttons are clicked by people."""
+"""Emitting a signal calls the functions connected to it with the emitted values; users click buttons at any time."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Nodes on a base class of a library that advertises for them and calls `subscribe` when somebody listens."""
+"""Nodes whose base class, from a library, advertises their topics and calls `subscribe` if there is a listener."""
 
 import numpy as np
 import rospy

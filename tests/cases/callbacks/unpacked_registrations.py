@@ -1,4 +1,4 @@
-"""Subscriptions made of tuples that are unpacked into the call."""
+"""Subscriptions whose arguments are unpacked from tuples."""
 
 import rospy
 from nav_msgs.msg import Odometry

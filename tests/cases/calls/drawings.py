@@ -1,4 +1,4 @@
-"""What is drawn into axes, lines or the current figure is in the image made of the figure."""
+"""The image of a figure contains the data that was drawn into its axes, its lines or the current figure."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""Functions handed to libraries: what they return is in what the library gives back, now or at a later call."""
+"""Functions passed to a library: their results are in the result of this or a later call of the library."""
 
 import functools
 import heapq
@@ -18,7 +18,7 @@ from std_msgs.msg import Float64, Float64MultiArray
 
 
 class Residual:
-    """A callable object: the library calls it."""
+    """A callable object, which the library calls."""
 
     def __init__(self, planner):
         self.planner = planner

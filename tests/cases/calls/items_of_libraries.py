@@ -1,4 +1,4 @@
-"""What indexing or iterating over something of a library gives is something: what follows it runs."""
+"""Indexing a library object and iterating over it give unknown objects; the code that follows is analysed."""
 
 import numpy as np
 import rospy

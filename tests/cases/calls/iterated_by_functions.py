@@ -1,4 +1,4 @@
-"""Functions that go over what they are given ask objects of ours for their iterators."""
+"""Functions that iterate over their arguments call `__iter__` of objects of the program."""
 
 import rospy
 from std_msgs.msg import Float32, Float32MultiArray, Int32

@@ -1,4 +1,4 @@
-"""Methods that are held before they are called, found by how their names begin, or that teach an object of a library."""
+"""Methods that are stored before the call, are found by a prefix of their names, or configure a library object."""
 
 import functools
 

@@ -1,4 +1,4 @@
-"""Methods and properties of an object that data chooses give what the choice decided."""
+"""If data chooses an object, the results of its methods and properties depend on the choice."""
 
 import rospy
 from std_msgs.msg import Float32, Int32

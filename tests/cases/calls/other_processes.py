@@ -1,4 +1,4 @@
-"""What another process reads from its input may come out of its outputs."""
+"""The outputs of another process may contain the data written to its input."""
 
 import subprocess
 from queue import Queue

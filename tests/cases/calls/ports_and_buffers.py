@@ -1,4 +1,4 @@
-"""A port does not give back what was written to it, a buffer in memory does; functions that fill what they are given."""
+"""A buffer in memory returns the data written to it, a port does not; some functions fill their arguments."""
 
 import io
 import struct

@@ -1,4 +1,4 @@
-"""An object of a class is not None, where no other value may be in its place."""
+"""A variable that can only hold an instance of a class is never None."""
 
 import rospy
 from std_msgs.msg import Float64

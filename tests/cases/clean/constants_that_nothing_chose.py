@@ -1,4 +1,4 @@
-"""The same constant on every way is no choice: a zero that a new message has anyway, or that both branches store."""
+"""The same constant on every path is not a choice: both branches store zero, or zero is the default of the field."""
 
 import math
 

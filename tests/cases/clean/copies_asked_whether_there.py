@@ -1,4 +1,4 @@
-"""Whether something has come is no data of it either where a copy is asked: a variable, a result, a parameter."""
+"""Whether a message has arrived is not its data, even if a copy is tested: a variable, a result, a parameter."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""A message, or a copy of one, of which every field was overwritten holds nothing of what came in."""
+"""A message, or a copy of it, contains no received data once every field was overwritten."""
 
 import copy
 

@@ -1,4 +1,4 @@
-"""Elements stay apart through zip, enumerate, map and comprehensions where they are known one by one."""
+"""Elements that are known one by one stay separate in zip, enumerate, map and comprehensions."""
 
 import rospy
 from geometry_msgs.msg import Point

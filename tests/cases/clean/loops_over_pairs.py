@@ -1,4 +1,4 @@
-"""A loop over a few things that are written down there: each turn is told apart, as each call of a helper is."""
+"""A loop over a literal with few elements: each iteration is analysed separately, like each call of a helper."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Whether something has come is no data of it, also when it is kept on an object that the node holds."""
+"""Whether a message has arrived is not its data, even if an object of the node stores the message."""
 
 import rospy
 from nav_msgs.msg import Odometry

@@ -1,4 +1,4 @@
-"""What is stored inside the elements of a container does not decide how many there are."""
+"""Data stored inside the elements of a container does not affect the number of elements."""
 
 import rclpy
 from geometry_msgs.msg import PoseStamped

@@ -1,4 +1,4 @@
-"""Whether all messages have come, asked in other ways than one by one with `is None`."""
+"""Tests whether all messages have arrived, in other ways than `is None` for each message."""
 
 import rclpy
 from nav_msgs.msg import Odometry

@@ -1,4 +1,4 @@
-"""Callbacks made in a loop with partial, kept in a dict of deques, averaged in a thread, published by a helper."""
+"""A loop makes callbacks with partial, which fill a dict of deques; a thread averages these and a helper publishes."""
 
 import collections
 import functools

@@ -1,4 +1,4 @@
-"""Publishers made when configured, a helper class that owns its subscription, results handed over by a callback."""
+"""Configuring creates the publishers; a helper class owns its subscription and returns results through a callback."""
 
 from typing import Callable, Optional
 

@@ -1,4 +1,4 @@
-"""Synchronised images, numpy, a PID with a dataclass for its gains, service to switch it, action-free."""
+"""Synchronised images, numpy, a PID controller whose gains are a dataclass, and a service that switches it on and off."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""A constant that is chosen comes by several statements: all of them stand under the condition that chooses."""
+"""Several statements compute a constant that a condition chooses, and all of them are under that condition."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""A `finally` runs however its `try` is left: nothing inside decides on it; what follows may be decided by it."""
+"""A `finally` runs whichever way its `try` ends, so no condition in the `try` decides on it, only on later code."""
 
 import rospy
 from std_msgs.msg import Float32, Int32

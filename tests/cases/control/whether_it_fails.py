@@ -1,4 +1,4 @@
-"""Whether a conversion, a parser or a look-up can do with a message decides what the handler and what follows do."""
+"""Whether a conversion, a parser or a look-up fails on a message decides whether the handler and later code run."""
 
 import json
 import math

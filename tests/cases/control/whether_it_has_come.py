@@ -1,4 +1,4 @@
-"""That a message has come is no data of it, wherever it is kept; what decided to keep it, or under which key, is."""
+"""The arrival of a message is not its data, but the conditions that decide whether and under which key it is stored are."""
 
 import threading
 

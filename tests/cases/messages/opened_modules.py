@@ -1,4 +1,4 @@
-"""Message classes and functions that come from several `import *`: fields set again before publishing are clean."""
+"""Message classes and functions from several `import *`; fields overwritten before publishing are clean."""
 
 import rospy
 from geometry_msgs.msg import *

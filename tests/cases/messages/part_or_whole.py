@@ -5,7 +5,7 @@ from sensor_msgs.msg import LaserScan
 
 
 class Guard(Node):
-    """A message goes on whole, or one number of it in a new one."""
+    """A node publishes a message unchanged, or one number of it in a new message."""
 
     def __init__(self):
         super().__init__("guard")

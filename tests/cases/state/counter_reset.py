@@ -1,4 +1,4 @@
-"""A counter that a message may set back: all that it can reach by counting is looked at."""
+"""A counter that a message may reset: the analysis covers all values that it can reach by counting."""
 
 import rospy
 from std_msgs.msg import Bool, Float64, Int32

@@ -1,4 +1,4 @@
-"""What a container's length is made of passes through every statement that makes the container."""
+"""The data in the length of a container passes through every statement that builds the container."""
 
 import rospy
 from sensor_msgs.msg import LaserScan

@@ -1,4 +1,4 @@
-"""How many were kept is data of a message whose data were kept and decided it; else only a decision."""
+"""The number of stored elements is data of a message that was stored and decided on storing; else only a decision."""
 
 import rospy
 from sensor_msgs.msg import LaserScan

@@ -1,4 +1,4 @@
-"""Objects of libraries that a method changes: by what it is given, unless its name says that it only tells or asks."""
+"""A method stores its arguments in a library object, unless its name says that it only prints or queries."""
 
 import image_geometry
 import rospy

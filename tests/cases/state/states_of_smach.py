@@ -1,4 +1,4 @@
-"""The states of a smach machine hand data on through their userdata, under names of their own."""
+"""The states of a smach machine pass data on through userdata, in which each state uses its own names."""
 
 import rospy
 import smach

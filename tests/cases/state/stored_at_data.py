@@ -1,4 +1,4 @@
-"""Where a constant is stored is data of the container, and the statement that stores it is a step."""
+"""If data gives the index of a stored constant, the container depends on that data, and the store is a step."""
 
 import numpy as np
 import rospy

@@ -1,4 +1,4 @@
-"""How much of a program is executed once a budget is spent, with limits small enough to be reached at once."""
+"""How many statements of a program are executed after its budget is spent, with very small limits."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_a_program_within_its_budget_is_analysed_completely():
     assert run(CALLS, HELPERS).cut == {}
 
 
-def test_after_its_budget_a_program_gets_few_statements_in_each_run(monkeypatch):
+def test_a_program_that_has_spent_its_budget_executes_few_statements_per_run(monkeypatch):
     whole = executed()
     monkeypatch.setattr(state, "PROGRAM_LIMIT", 0)
     assert executed() == whole
@@ -44,15 +44,15 @@ def test_after_its_budget_a_program_gets_few_statements_in_each_run(monkeypatch)
     assert 10 <= executed() < whole - 30
 
 
-def test_beyond_the_statements_of_a_run_no_function_is_entered(monkeypatch):
+def test_no_function_is_entered_after_a_run_has_reached_its_statement_limit(monkeypatch):
     whole = executed()
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 10)
     assert 10 <= executed() < whole - 30
 
 
 @pytest.mark.parametrize("depth", [3, 9])
-def test_functions_are_entered_up_to_a_depth(monkeypatch, depth):
+def test_functions_are_entered_up_to_a_maximum_call_depth(monkeypatch, depth):
     whole = executed("out.publish(deep_0(msg.data))", CHAIN)
     monkeypatch.setattr(context_selection, "MAX_CALLS", depth)
-    entered = 21 - (whole - executed("out.publish(deep_0(msg.data))", CHAIN))  # each has one statement
+    entered = 21 - (whole - executed("out.publish(deep_0(msg.data))", CHAIN))  # one statement each
     assert entered == depth - 2  # below the root and the callback

@@ -114,5 +114,5 @@ rospy.Subscriber("in", Float64, on)
         ),
     ],
 )
-def test_functions_that_are_no_entry_point_do_not_run(text):
+def test_functions_that_are_not_entry_points_do_not_run(text):
     assert differing(HEAD + dedent(text)) == {}

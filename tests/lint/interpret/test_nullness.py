@@ -1,4 +1,4 @@
-"""Whether a message has arrived is not its data; whether a value was found in it is."""
+"""Whether a message has arrived is not data of the message, but whether it contains a value is."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def const(value: object, pos: ir.Pos = FIRST) -> ir.Const:
 PI = ir.Attribute(ir.Name("math", "global", 0, SECOND), "pi", SECOND)
 
 
-def test_a_number_computed_from_one_literal_has_its_position():
+def test_a_number_computed_from_one_literal_has_the_position_of_that_literal():
     assert computed(sum_of(PI, const(6))) == FIRST
     assert computed(sum_of(const(1), const(2, SECOND))) == WHOLE
     assert computed(sum_of(PI, PI)) == WHOLE
@@ -49,7 +49,7 @@ def test_a_number_computed_from_one_literal_has_its_position():
         (ir.Call(PI, (const(1),), (("k", const(1)),), WHOLE, 0), False),
     ],
 )
-def test_literals_and_mathematical_constants_are_literal(expr, literal):
+def test_an_expression_of_literals_and_mathematical_constants_counts_as_literal(expr, literal):
     assert of_literals(expr) is literal
 
 
@@ -59,7 +59,7 @@ def test_numbers_are_listed_in_source_order_without_booleans():
     assert numbers(sum_of(one, ir.Call(PI, (listed, three), (), WHOLE, 0), PI)) == [one, two, three]
 
 
-def test_the_postdominator_of_a_branch_is_where_both_ways_meet():
+def test_the_postdominator_of_a_branch_is_where_both_paths_join():
     # 1 branches to 2 and 3, which meet in 4
     edges = {1: {"then": 2, "else": 3}, 2: {"": 4}, 3: {"": 4}, 4: {"": EXIT}}
     nearest = postdominators(edges, [1, 2, 3, 4])
@@ -69,7 +69,7 @@ def test_the_postdominator_of_a_branch_is_where_both_ways_meet():
     assert list(passed(1, EXIT, nearest)) == [1, 4]
 
 
-def test_an_endless_loop_is_left_at_its_last_statement():
+def test_the_exit_postdominates_the_last_statement_of_an_endless_loop():
     edges = {1: {"": 2}, 2: {"": 3}, 3: {"": 2}}
     assert postdominators(edges, [1, 2, 3]) == {EXIT: EXIT, 1: 2, 2: 3, 3: EXIT}
 
@@ -94,7 +94,7 @@ def test_postdominators_are_on_every_path_to_the_exit(seed):
         n: {str(way): chance.choice([EXIT, *range(1, size)]) for way in range(chance.randint(1, 2))}
         for n in range(1, size)
     }
-    for node in edges:  # each statement ends somehow
+    for node in edges:  # make each statement reach the exit
         if not ends_without(edges, node, -1):
             edges[node]["end"] = EXIT
     nearest = postdominators(edges, list(edges))

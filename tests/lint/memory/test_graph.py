@@ -43,7 +43,7 @@ def test_a_value_that_depends_on_itself_depends_on_its_own_conditions(graph, nod
     assert graph.control[a] == {decision}
 
 
-def test_a_program_with_too_many_edges_gets_only_a_few_further_ones(graph, node, monkeypatch):
+def test_a_program_at_its_edge_limit_gets_only_a_few_further_edges(graph, node, monkeypatch):
     monkeypatch.setattr(value_flow_graph, "MAX_EDGES", 1)
     graph.flow([node("a"), node("b")], node("c"))
     assert len(graph.data[node("c")]) == 2
@@ -97,7 +97,7 @@ def test_many_values_of_a_field_are_merged_into_one_node(graph, node, frame):
     assert graph.data[place] == deps | {node("new")}
 
 
-def test_nodes_that_depend_on_a_live_node_become_live_at_any_time(graph, node):
+def test_a_node_becomes_live_whenever_it_comes_to_depend_on_a_live_node(graph, node):
     source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
     graph.flow([source], data)
     graph.depend(decided, [data])
@@ -115,7 +115,7 @@ def test_a_copy_of_a_live_node_is_live(graph, node):
     assert graph.unchosen(a) in graph.live
 
 
-def test_a_carrier_counts_what_it_passed_on(graph, node):
+def test_a_carrier_counts_the_distinct_items_that_it_passed_on(graph, node):
     carrier, item = node("carrier"), node("item")
     assert graph.passed_by(carrier) == 0
     graph.hold(carrier, frozenset())
@@ -166,7 +166,7 @@ def test_large_programs_do_not_track_the_carriers_of_content(graph, node, monkey
     assert graph.through(frozenset([item]), frozenset([carrier])) == {item}
 
 
-def test_settling_the_graph_connects_each_carry_node_to_the_content_it_stands_for(graph, node):
+def test_settling_the_graph_connects_each_carry_node_to_the_content_that_it_represents(graph, node):
     item, carrier = node("item"), node("carrier")
     graph.hold(carrier, frozenset([item]))
     (arrived,) = graph.through(frozenset([item]), frozenset([carrier]))

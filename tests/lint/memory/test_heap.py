@@ -1,4 +1,4 @@
-"""Reads and stores of fields and elements, joins, copies, and what stays reachable."""
+"""Reads and stores of fields and elements, joins, copies, and the reachability of objects."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_the_content_of_a_part_is_the_data_of_the_whole(ctx):
     assert heap.content(ctx, made(ctx, "ext", "library")) is UNKNOWN
 
 
-def test_a_message_field_has_the_stored_value_or_that_of_every_message(ctx):
+def test_an_unset_message_field_has_the_value_that_all_messages_have_there(ctx):
     message = made(ctx, "message", "m")
     ctx.shared.leave(ctx.shared.ends, ctx.store.root, (message, "x"), ONE)
     assert heap.read_field(ctx, message, "x") == Value(frozenset([1]), frozenset([message.sub("x")]))
@@ -91,7 +91,7 @@ def test_a_message_field_has_the_stored_value_or_that_of_every_message(ctx):
     assert heap.written_here(ctx, message, "x")
 
 
-def test_an_attribute_of_a_function_is_stored_apart_from_its_defaults(ctx):
+def test_attributes_of_a_function_are_stored_apart_from_its_parameter_defaults(ctx):
     closure = a_function(ctx, "f")
     assert heap.renamed(ctx, closure, "x") == (closure, "<x>")
     updates.write_field(ctx, pointer(closure), "x", ONE)
@@ -129,7 +129,7 @@ def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     assert heap.default(ctx, recency.intern(ctx, "closure", "f"), "x") is BOTTOM
 
 
-def test_the_shape_of_a_library_object_has_its_data_but_that_of_a_message_is_a_field(ctx):
+def test_shape_carries_the_data_of_a_library_object_but_is_an_ordinary_field_of_a_message(ctx):
     matrix, message = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     message.info = BY_CLASS
     for obj in (matrix, message):
@@ -138,7 +138,7 @@ def test_the_shape_of_a_library_object_has_its_data_but_that_of_a_message_is_a_f
     assert heap.default(ctx, message, "shape") == pointer(message.sub("shape"))
 
 
-def test_a_known_element_of_a_library_object_may_be_its_unknown_element(ctx):
+def test_a_known_index_of_a_library_object_may_read_an_element_stored_at_an_unknown_index(ctx):
     obj = made(ctx, "lib", "a")
     assert heap.default(ctx, obj, "[0]") == pointer(obj.sub("[0]"))
     any_of_them = obj.sub("[]")
@@ -232,7 +232,7 @@ def test_an_unknown_index_of_a_library_object_reads_a_part_of_it(ctx):
     first = obj.sub("[0]")
     assert heap.read_any(ctx, obj).pts == {first, obj.sub("[]")}
     ctx.store.put((obj, ANY), ONE)
-    assert heap.read_any(ctx, obj).deps == frozenset()  # the parts have the data of the whole
+    assert heap.read_any(ctx, obj).deps == frozenset()  # the parts have the data of the whole object
     assert reachable_data.deep(ctx, heap.read_any(ctx, obj).pts) == {1}
 
 
@@ -267,7 +267,9 @@ def test_iteration_yields_elements_of_a_sequence_and_keys_of_a_mapping(ctx):
 @pytest.mark.parametrize(
     ("external", "field"), [((), "x"), (("builtins.dict",), "['x']"), (("Unknown",), "x")]
 )
-def test_an_item_of_the_attributes_is_an_attribute_unless_the_object_is_a_dictionary(ctx, external, field):
+def test_an_item_of_the_attribute_dictionary_is_an_attribute_unless_the_object_is_a_dictionary(
+    ctx, external, field
+):
     obj = an_instance(ctx, a_class(ctx, "A", external=external))
     assert heap.attribute_of_item(obj, "x") == field
     assert heap.attribute_of_item(obj, 0) == item_field(0) == "[0]"
@@ -291,7 +293,7 @@ def test_a_store_into_a_function_of_a_library_is_dropped(ctx, kind):
     assert not obj.fields
 
 
-def test_nothing_is_added_to_an_object_without_elements(ctx):
+def test_adding_an_element_to_an_object_without_elements_does_nothing(ctx):
     module, listed = recency.intern(ctx, "module", "a"), made(ctx, "sequence", "b")
     updates.add_element(ctx, Value(pts=frozenset([module, listed])), ONE)
     assert not module.fields
@@ -311,7 +313,7 @@ def test_a_negative_index_counts_from_a_known_end(ctx):
     assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
 
 
-def test_a_store_under_a_key_from_data_makes_the_keys_depend_on_it(ctx):
+def test_after_a_store_under_a_key_from_data_the_keys_depend_on_that_data(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     key = Value(frozenset([5]))
     updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), key, ONE)
@@ -323,7 +325,7 @@ def test_a_store_under_a_key_from_data_makes_the_keys_depend_on_it(ctx):
     assert ctx.store.get((other, "['k']")) is ONE
 
 
-def test_a_store_under_one_of_several_keys_hits_only_those(ctx):
+def test_a_store_under_one_of_several_possible_keys_changes_only_those(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     for key in "kmn":
         ctx.store.put((mapping, item_field(key)), BOTTOM)
@@ -347,14 +349,14 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_variable_set_on_one_path_only_has_that_value_but_a_field_also_its_default(ctx, frame):
+def test_a_variable_set_on_one_path_has_only_that_value_and_a_field_also_its_default(ctx, frame):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
     assert both == {(frame, "v"): TWO, (obj, "x"): BOTH}
 
 
-def test_an_object_made_on_one_path_only_has_no_value_on_the_other(ctx):
+def test_an_object_created_on_one_path_has_no_value_on_the_other_path(ctx):
     obj = recency.intern(ctx, "sequence", "new")
     ctx.store.push()
     ctx.store.put((obj, BORN), BOTTOM)
@@ -448,7 +450,7 @@ def test_fields_are_cleared_with_parts(ctx):
 # --- reachable ----------------------------------------------------------------------------------------
 
 
-def test_temporary_objects_stay_only_if_something_that_stays_leads_to_them(ctx, frame):
+def test_temporary_objects_are_kept_only_if_a_kept_object_refers_to_them(ctx, frame):
     names = ("returned", "inside", "held", "bound", "given", "gone")
     objects = {name: recency.allocate(ctx, "lib", frame, name) for name in names}
     bound = recency.intern(ctx, "bound", "method")
@@ -471,7 +473,7 @@ def test_temporary_objects_stay_only_if_something_that_stays_leads_to_them(ctx, 
     assert (objects["gone"], "x") in kept  # a closure may read the variable
 
 
-def test_without_new_objects_only_variables_are_dropped(ctx, frame):
+def test_if_no_object_was_created_only_variables_are_dropped(ctx, frame):
     delta = {(frame, "x"): ONE, (recency.intern(ctx, "module", "m"), "y"): TWO}
     kept = abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads)
     assert [name for _, name in kept] == ["y"]
@@ -486,7 +488,7 @@ def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
     assert abstract_gc.together([whole.sub("x"), bound]) == {whole, bound, receiver, named, default}
 
 
-def test_a_message_definition_is_known_for_its_parts(ctx):
+def test_the_definition_of_a_message_gives_the_definitions_of_its_parts(ctx):
     message = made(ctx, "message", "m")
     assert reachable_data.defined(ctx, message.sub("linear")) == ""
     message.defined = "Twist"
@@ -495,7 +497,7 @@ def test_a_message_definition_is_known_for_its_parts(ctx):
     assert reachable_data.defined(ctx, message.sub("unknown")) == ""
 
 
-def test_a_message_is_replaced_when_each_field_is(ctx):
+def test_a_message_is_replaced_once_each_of_its_fields_is_replaced(ctx):
     message = made(ctx, "message", "m")
     message.defined, message.info = "Vector3", 7
     for name in "xy":
@@ -532,7 +534,7 @@ def test_states_share_userdata_under_the_names_of_their_remapping(ctx):
     assert heap.read(ctx, userdata.userdata(ctx, state), "mine") is ONE
 
 
-def test_a_parameter_in_a_name_has_a_marked_text():
+def test_a_name_that_contains_a_parameter_has_a_marked_placeholder_for_it():
     known: list[ParameterName] = []
     (text,) = symbolic_names.text_of_parameter(known, "~scan", const("scan")) or ()
     assert isinstance(text, Symbolic)
@@ -553,5 +555,5 @@ def test_a_parameter_in_a_name_has_a_marked_text():
         ([], "~scan", pointer(Obj("lib", 1))),
     ],
 )
-def test_a_parameter_without_a_text_default_is_not_marked_in_names(known, name, default):
+def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known, name, default):
     assert symbolic_names.text_of_parameter(known, name, default) is None

@@ -46,7 +46,7 @@ def test_a_read_sees_the_last_store_in_any_layer(store, obj):
     assert store.get(key) is ONE
 
 
-def test_a_layer_begins_with_a_given_delta_and_closing_restores_the_values_before(store, obj):
+def test_a_layer_begins_with_the_given_delta_and_closing_it_restores_the_former_values(store, obj):
     old, new = (obj, "old"), (obj, "new")
     store.put(old, ONE)
     store.push({old: TWO, new: TWO})
@@ -63,7 +63,7 @@ def test_an_absent_field_reads_as_unset(store, obj):
     assert not store.stored((obj, "y"))
 
 
-def test_the_stores_since_a_depth_are_those_of_the_layers_above_it(store, obj):
+def test_the_stores_since_a_depth_are_those_in_the_layers_above_that_depth(store, obj):
     first, second, third = ((obj, name) for name in "abc")
     store.put(first, ONE)
     store.push()
@@ -137,7 +137,7 @@ def test_a_store_marks_the_object_and_its_holders_as_holding_data(store, obj):
     assert late.laden
 
 
-def test_a_constant_is_no_data(store, obj):
+def test_a_constant_is_not_data(store, obj):
     store.put((obj, "x"), const(1))
     assert not obj.laden
     assert obj.changes == ["x"]
@@ -161,7 +161,7 @@ def test_assigning_the_dict_of_an_object_increments_the_edition(store, obj):
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_reads_of_what_the_call_stored_itself_do_not_count(store, obj):
+def test_reads_of_values_that_the_call_itself_stored_do_not_count(store, obj):
     mine, other = (obj, "mine"), (obj, "other")
     store.put(mine, ONE)
     store.get(mine)
@@ -208,7 +208,7 @@ def test_a_recorded_query_keeps_its_first_answer():
     assert reads.facts[counting, "x"] == 3
 
 
-def test_a_wait_records_what_was_stored_before_the_first_one(obj):
+def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_change_nothing(obj):
     reads = Reads(written={(obj, "x")})
     reads.wait(3, {(obj, "y")})
     reads.written.add((obj, "z"))
@@ -217,14 +217,14 @@ def test_a_wait_records_what_was_stored_before_the_first_one(obj):
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_values_taken_in_at_waits_are_joined_per_key(obj):
+def test_values_that_a_root_reads_at_several_waits_are_joined_per_key(obj):
     reads = Reads()
     reads.admit((obj, "x"), ONE)
     reads.admit((obj, "x"), TWO)
     assert reads.admitted == {(obj, "x"): BOTH}
 
 
-def test_reads_of_a_nested_call_leave_out_what_was_stored_before_it(obj):
+def test_reads_of_a_nested_call_exclude_keys_that_its_caller_stored_before_the_call(obj):
     mine, other = (obj, "mine"), (obj, "other")
     outer = Reads(written={mine})
     inner = Reads(keys={mine, other}, stored={mine, other}, unreached={4}, whole=False)
@@ -238,7 +238,7 @@ def test_reads_of_a_nested_call_leave_out_what_was_stored_before_it(obj):
     assert (outer.whole, outer.waits, outer.heard, outer.admitted) == (False, True, 6, {other: ONE})
 
 
-def test_reads_are_merged_again_only_after_a_path_was_left(obj):
+def test_the_same_reads_are_merged_again_only_after_a_path_was_left(obj):
     key = (obj, "x")
     outer, inner = Reads(written={key}), Reads(keys={key})
     outer.add(inner)
@@ -325,7 +325,7 @@ def test_a_run_begins_with_the_stores_of_all_roots(shared, obj):
     assert shared.entry(key, mine) == Value(frozenset([1, 2, 3]))
 
 
-def test_stores_of_others_during_a_wait_exclude_the_roots_own(shared, obj):
+def test_the_stores_during_a_wait_are_those_that_other_roots_make(shared, obj):
     mine, other = Root("mine", "callback"), Root("other", "callback")
     key = (obj, "x")
     shared.leave(shared.ends, mine, key, ONE)
@@ -366,7 +366,7 @@ def test_a_new_field_reruns_the_roots_that_read_the_object_or_its_enclosing_obje
     assert shared.dirty == {watcher}
 
 
-def test_data_in_an_object_reruns_the_roots_that_found_none_there(shared):
+def test_new_data_in_an_object_reruns_the_roots_that_found_no_data_in_it(shared):
     obj, doubter = Obj("lib", "a"), Root("doubter", "callback")
     part, outer = obj.sub("x"), Obj("lib", "outer")
     obj.inside[outer] = None
@@ -388,7 +388,7 @@ def test_generations_count_the_ancestors_with_the_same_function(ctx):
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
-def test_a_path_that_did_not_make_an_object_joins_the_stores_of_others_without_reading_its_own(shared, store):
+def test_an_object_not_made_on_this_path_has_only_the_stores_of_other_roots(shared, store):
     obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -432,7 +432,7 @@ def test_reads_after_a_wait_depend_on_the_stores_of_other_roots(store, obj):
     assert store.heard() == {key: TWO}
 
 
-def test_a_store_without_news_from_others_does_not_rerun_the_root(store, obj):
+def test_a_root_is_not_rerun_for_a_store_of_another_root_that_adds_nothing_new(store, obj):
     store.put((obj, "x"), BOTH)
     store.shared.leave(store.shared.ends, Root("other", "callback"), (obj, "x"), TWO)
     store.waited = True
@@ -448,12 +448,12 @@ def test_a_read_of_a_local_variable_after_a_wait_does_not_subscribe_to_other_roo
     assert store.root.heeds == set()
 
 
-def test_keys_to_which_no_other_root_stores_are_left_out_at_a_wait(store, obj):
+def test_a_wait_skips_keys_to_which_no_other_root_stores(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 
 
-def test_the_part_of_a_value_from_other_roots_is_not_published_again(store, obj):
+def test_a_root_does_not_publish_the_part_of_a_value_that_came_from_other_roots(store, obj):
     key = (obj, "x")
     assert store.admit(key, BOTH, TWO) is BOTH
     assert key not in store.foreign
@@ -466,7 +466,7 @@ def test_the_part_of_a_value_from_other_roots_is_not_published_again(store, obj)
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_the_part_of_a_value_found_at_the_start_is_not_published_again(store, obj):
+def test_a_root_does_not_publish_the_part_of_a_value_that_existed_at_its_start(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

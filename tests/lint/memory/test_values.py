@@ -97,7 +97,7 @@ def test_only_one_constant_without_objects_is_a_constant():
     assert const([]) is UNKNOWN
 
 
-def test_texts_leave_out_what_only_the_launch_determines():
+def test_a_value_has_no_texts_if_one_of_its_constants_depends_on_the_launch():
     assert constants("b", "a").texts() == ("a", "b")
     assert constants("a", 1).texts() == ()
     assert UNKNOWN.texts() == ()
@@ -109,7 +109,7 @@ def test_texts_leave_out_what_only_the_launch_determines():
     assert constants("a", 1).names() == ()
 
 
-def test_constants_of_one_value_can_be_a_subset_of_those_of_another():
+def test_the_constants_of_a_value_can_be_a_subset_of_those_of_another_value():
     assert constants(1).consts_in(constants(1, 2))
     assert constants(1).consts_in(UNKNOWN)
     assert not constants(1, 3).consts_in(constants(1, 2))
@@ -218,7 +218,7 @@ def test_an_unqualified_base_defines_no_methods():
     assert inherited_from(pointer(instance(made_class("a", external=("Unknown",))))) == set()
 
 
-def test_the_function_of_a_bound_method_is_that_of_its_closure(ctx):
+def test_a_bound_method_has_the_function_of_its_closure(ctx):
     (program,) = ctx.programs.values()
     closure, bound = Obj("closure", "f"), Obj("bound", "f")
     closure.info = (program.function, None, program, None)

@@ -25,7 +25,7 @@ def test_a_library_call_fills_an_array_that_was_created_without_data(name):
 
 
 @pytest.mark.parametrize("operator", sorted(ARITHMETIC))
-def test_an_array_computed_from_one_without_data_is_filled_too(operator):
+def test_an_array_computed_from_an_array_without_data_is_filled_too(operator):
     assert differing(in_callback(fills(f"np.ones(4) {operator} 2"), HEAD)) == {}
 
 
@@ -34,7 +34,7 @@ def test_a_comparison_does_not_make_an_array():
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_computed_from_data_keeps_the_data_and_the_operand_does_not_receive_it():
+def test_an_array_computed_from_data_has_the_data_and_its_operand_stays_without_data():
     body = """
         zeros = np.zeros(4)
         shifted = zeros + msg.data
@@ -44,7 +44,7 @@ def test_an_array_computed_from_data_keeps_the_data_and_the_operand_does_not_rec
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_is_filled_through_a_keyword_and_by_the_object_of_the_method():
+def test_a_call_fills_an_array_from_its_arguments_or_from_the_object_of_the_method():
     body = """
         array, other = np.zeros(4), np.zeros(4)
         lib.evaluate(msg.data, into=array)

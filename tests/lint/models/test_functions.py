@@ -20,7 +20,7 @@ WHERE = {
     "namedtuple": "collections.namedtuple",
     "operator.attrgetter.<made>": "operator.attrgetter",
     "operator.itemgetter.<made>": "operator.itemgetter",
-}  # how a program names a function whose entry is shorter, or that it can only get from another one
+}  # function → how a program obtains it, if not by the name of its entry
 AWAITABLE = [f"asyncio.{name}" for name in ("run", "create_task", "ensure_future", "wait_for", "shield")]
 NAMES = ("rospy.resolve_name", "rospy.remap_name", "rospy.names.resolve_name")
 PATHS = ("rospy.names.ns_join", "roslib.names.ns_join", "os.path.join", "posixpath.join")

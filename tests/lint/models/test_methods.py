@@ -314,7 +314,7 @@ COVERED = [(name, body) for table in TABLES.values() for names, body in table.it
     [
         ("read", READERS.keys()),
         ("changed", catalog.MUTATORS),
-        ("functions", catalog.ARGUMENT_WRITERS.keys() - {"setattr"}),  # has a model of its own
+        ("functions", catalog.ARGUMENT_WRITERS.keys() - {"setattr"}),  # has a separate model
         ("writing", catalog.METHODS_WRITING.keys()),
     ],
 )

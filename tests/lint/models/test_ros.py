@@ -274,6 +274,6 @@ LIBRARY = """
         *((f"{name.removeprefix('builtins.')}(near, msg.data)", "clean") for name in sorted(catalog.KEEPERS)),
     ],
 )
-def test_a_library_may_call_a_function_with_the_arguments_after_it_unless_it_never_does(call, passed):
+def test_the_arguments_after_a_callback_may_be_passed_to_the_callback_by_the_library(call, passed):
     text = HEAD + "import inspect, library\n" + dedent(LIBRARY.format(call=call, passed=passed))
     assert differing(text) == {}

@@ -139,7 +139,7 @@ def test_computed_values_in_setup_py_are_reported(tmp_path, given, problem):
     assert [found.reason for found in setup(tmp_path).problems] == [problem]
 
 
-def test_a_module_is_found_where_its_package_lies(tmp_path):
+def test_a_module_is_found_in_the_folder_of_its_package(tmp_path):
     for name in ("arm/node.py", "src/leg/walk/__init__.py", "own/place/node.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")

@@ -83,7 +83,9 @@ def test_applying_twice_and_reverting_an_unapplied_patch_are_refused(robot: Path
     assert (robot / "node.py").read_text() == guarded(NODE)
 
 
-def test_a_changed_file_needs_force_because_its_result_is_untested(robot: Path, capsys: Printed) -> None:
+def test_a_changed_file_requires_the_option_force_because_its_result_is_untested(
+    robot: Path, capsys: Printed
+) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     edited = "# of a robot\n" + NODE
     (robot / "node.py").write_text(edited)
@@ -97,7 +99,9 @@ def test_a_changed_file_needs_force_because_its_result_is_untested(robot: Path, 
     assert (robot / "node.py").read_text() == edited
 
 
-def test_force_does_not_apply_a_patch_whose_own_lines_changed(robot: Path, capsys: Printed) -> None:
+def test_the_option_force_does_not_apply_a_patch_whose_own_lines_changed(
+    robot: Path, capsys: Printed
+) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     (robot / "node.py").write_text(NODE.replace("GAIN * x", "GAIN * (x + 1)"))
     assert main(["apply", "--force", str(patch)]) == 1

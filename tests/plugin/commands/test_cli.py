@@ -85,7 +85,7 @@ def test_diff_lists_moved_removed_and_new_lines(tmp_path: Path, capsys: pytest.C
     assert main(["diff", paths[0], paths[0], "--fail-if-changed"]) == 0
 
 
-def test_an_unreadable_recording_gives_one_sentence(
+def test_an_unreadable_recording_is_reported_in_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "a.npz").write_text("no fixture")

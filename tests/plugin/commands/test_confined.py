@@ -1,4 +1,4 @@
-"""For any patch, `tarl apply` writes only tested text, only inside the project, and all files or none."""
+"""For any patch, `tarl apply` writes only tested text and only inside the project, and changes all files or none."""
 
 from __future__ import annotations
 
@@ -106,8 +106,8 @@ PLACES = st.integers(0, len(PATCH) - 1)
 @given(st.lists(st.tuples(PLACES, st.integers(0, 255)), min_size=1, max_size=3), st.booleans(), st.booleans())
 @example(
     [(PATCH.index(b"missing") + 3, ord("D"))], True, False
-)  # once, `misDing = …` was applied with exit code 0
-@example([(BODY, 0)], True, False)  # a file that was not distinguished from the header
+)  # a former error: `misDing = …` was applied with exit code 0
+@example([(BODY, 0)], True, False)  # a former error: the file was taken for a part of the header
 @example([(PATCH.index(b"-    return") + 1, ord("\\"))], True, False)
 def test_patches_with_changed_bytes_are_refused_or_harmless(
     changes: list[tuple[int, int]], resealed: bool, forced: bool
@@ -337,7 +337,7 @@ def test_repeating_the_command_completes_an_interrupted_one(command: str, capsys
         assert ("node.py was already changed" in told) == (command == "apply")
 
 
-def test_a_patch_without_a_digest_applies_to_its_exact_text_only(capsys: Printed) -> None:
+def test_a_patch_without_a_digest_applies_only_to_the_exact_text_it_was_made_for(capsys: Printed) -> None:
     with robot() as (root, place):
         place.write_bytes(re.sub(rb"# " + SEAL.encode() + rb".*\n", b"", PATCH))
         assert main(["apply", str(place)]) == 0

@@ -35,7 +35,7 @@ def difference(**changes: Any) -> FixtureDiff:
         (2.0, 0.0, 1.9, True),
     ],
 )
-def test_a_recording_is_worse_by_a_significant_loss_beyond_what_is_allowed(
+def test_a_recording_is_worse_if_its_loss_is_significant_and_above_the_allowed_one(
     loss: float, p: float, most: float, expected: bool
 ) -> None:
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
@@ -141,7 +141,7 @@ def result(**changes: Any) -> dict[str, Any]:
     return every | changes
 
 
-def test_a_result_is_a_row_of_a_table() -> None:
+def test_a_result_becomes_a_row_of_a_table() -> None:
     assert summary._row(result()) == (
         "| `t.py::test¦a` | mud | ❌ degraded | 1.23 (p = 0.012) | x 1 to 2.5, wet 1; x 4 | `a.py:7` | "
         "5 → 12, KP → 0.5 where wet |"
@@ -157,7 +157,7 @@ def test_a_result_is_a_row_of_a_table() -> None:
     assert summary._repair(everywhere) == "5 → 12"
 
 
-def test_a_chart_has_the_statements_with_the_largest_losses_in_their_order() -> None:
+def test_a_chart_has_the_statements_with_the_largest_losses_in_order_of_file_and_line() -> None:
     sites = [
         {
             "path": f"src/{'ba'[n % 2]}.py",

@@ -1,4 +1,4 @@
-"""Exit statuses of `tarl` for each way to end, and the values of options that are not given."""
+"""The exit status of `tarl` for each way in which a command ends, and the default values of options."""
 
 from __future__ import annotations
 

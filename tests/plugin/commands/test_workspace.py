@@ -60,7 +60,7 @@ def test_json_contains_the_whole_workspace(folder: Path, capsys: pytest.CaptureF
 
 
 @pytest.mark.parametrize(("name", "said"), [("empty", "there is no package.xml"), ("none", "no such folder")])
-def test_user_mistakes_give_one_sentence(
+def test_user_mistakes_are_reported_in_one_sentence(
     name: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "empty").mkdir()

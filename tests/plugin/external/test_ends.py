@@ -1,4 +1,4 @@
-"""No process of a simulator outlives its test: whoever is killed, whatever the simulator does, without any ROS."""
+"""No process of a simulator outlives its test, whichever process is killed and whatever the simulator does (no ROS)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SIMULATORS = {
     + SAY
     + "signal.pause()",
 }
-# The guardian's process: a group that ends, and the lock is looked at with no wait at all
+# The process of the guardian: it ends a group, then reads the lock without waiting
 ENDED = """
     import os, signal, sys
     from pathlib import Path
@@ -53,7 +53,7 @@ ENDED = """
     assert not held(lock)
     print("ended", one.status)
 """
-# A guardian whose middleware is a stand-in that can block, and the test's process, which starts it
+# A guardian with a stand-in middleware that can block, and the process of the test, which starts the guardian
 GUARDIAN = """
     import sys, time, types
     from pytest_tarl.external import guardian

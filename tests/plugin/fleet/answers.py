@@ -31,7 +31,7 @@ def bound(low: float, high: float, exact: bool = True) -> Bound:
 
 
 def evidence(highest: float, mission: int | None = None, time: float | None = None) -> Evidence:
-    """Return evidence since the mission, or without an onset."""
+    """Return evidence with an onset at the mission, or without an onset."""
     return Evidence(0.0, highest, None if mission is None else Moment(mission, time), None)
 
 
@@ -65,7 +65,7 @@ def effect(repair: str = "guard-1", reward: float = 0.5, low: float = 0.25, **ch
 
 
 def unknown(repair: str = "guard-1") -> Effect:
-    """Return the effect of a repair that no stratum tells."""
+    """Return the effect of a repair for which no stratum has missions in both arms."""
     nothing = bound(-inf, inf)
     return Effect(repair, (), (0, 0), (0, 0), 0, float("nan"), nothing, float("nan"), nothing)
 
@@ -78,7 +78,7 @@ def fixture() -> Fixture:
 
 
 def answer(**changes: Any) -> Answer:
-    """Return the answer on one group of one robot; nothing differs."""
+    """Return the answer for one group of one robot, without a difference."""
     plain = robots(robot("r1"))
     one = Answer(
         question=Question("data", by=("site",)),

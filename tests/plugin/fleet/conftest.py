@@ -1,4 +1,4 @@
-"""Shared by the tests of fleets."""
+"""Fixtures for the tests of fleets."""
 
 from __future__ import annotations
 

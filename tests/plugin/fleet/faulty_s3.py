@@ -1,4 +1,4 @@
-"""A server that speaks S3 (moto), with failures that a test orders."""
+"""An S3 server (moto) with failures that a test requests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Start = Callable[..., Any]
 ERROR = "<?xml version='1.0'?><Error><Code>{code}</Code><Message>{code}</Message></Error>"
 LATE = 1.0  # s; longer than READ_TIMEOUT
 READ_TIMEOUT = 0.4  # s
-CHECKED = ("HTTP_X_AMZ", "HTTP_CONTENT", "HTTP_TRANSFER", "wsgi.input")  # what a whole body must match
+CHECKED = ("HTTP_X_AMZ", "HTTP_CONTENT", "HTTP_TRANSFER", "wsgi.input")  # request headers on the body
 ENTRY = re.compile(rb"<Contents>.*?</Contents>", re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""The arithmetic of a fleet on a few missions, worked out by hand: repairs, residual maps, orders of missions."""
+"""Computations of `tarl fleet` on a few missions, checked by hand: repairs, residual maps, orders of missions."""
 
 from __future__ import annotations
 
@@ -39,12 +39,14 @@ def ints(*values: int) -> Ints:
         (-inf, inf, "too few robots"),
     ],
 )
-def test_a_repair_helps_only_if_its_whole_interval_does(low: float, high: float, verdict: str) -> None:
+def test_a_repair_helps_only_if_the_whole_interval_of_its_effect_is_above_zero(
+    low: float, high: float, verdict: str
+) -> None:
     assert repaired(reward_bound=bound(low, high)).verdict == verdict
     assert repaired(reward_bound=bound(low, high), strata=0).verdict == "not comparable"
 
 
-def test_strata_without_one_of_the_arms_are_left_out() -> None:
+def test_strata_that_lack_one_of_the_arms_are_left_out() -> None:
     robot_, stratum = ints(7, 7, 7, 8, 8, 9), ints(0, 0, 2, 2, 2, 1)
     treated, passed = ints(0, 1, 0, 1, 1, 0), ints(1, 0, 1, 1, 0, 1)
     total = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
@@ -83,7 +85,7 @@ def test_an_interval_needs_four_robots_in_each_arm(without: int) -> None:
 
 
 def test_the_jackknife_of_a_plain_mean_is_its_classical_interval() -> None:
-    """Each robot has a mission in both arms, so its pseudo value is its own difference."""
+    """Each robot has one mission in each arm, so its jackknife pseudo-value is the difference of the two."""
     number, gain = np.repeat(np.arange(6), 2), np.array([0.0, 1.0, 2.0, 3.0, 4.0, 8.0])
     arm = np.tile([0, 1], 6)
     total = np.where(arm == 1, gain[number], 0.0)
@@ -131,7 +133,7 @@ def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> No
     found = residual_maps._map("r1", own, doubled)
     known = ~np.isnan(found.mean)
     assert found.robot == "r1"
-    assert found.mean.size == len(recorded.sample.cells)  # without that of all other cells
+    assert found.mean.size == len(recorded.sample.cells)  # without the row of all other cells
     assert known.any()
     assert found.variance[known] == pytest.approx(4.0 * world.variance[:-1][known])
     halved = residual_maps._map("r1", own, replace(world, of_visit=0.25 * world.of_visit))
@@ -164,7 +166,9 @@ def scores(count: int) -> Scores:
 
 
 @given(st.permutations(range(7)), st.integers(0, 7), st.integers(0, 7))
-def test_scores_keep_what_belongs_to_a_mission_in_any_order(order: list[int], one: int, other: int) -> None:
+def test_scores_of_a_mission_stay_together_in_any_order_of_missions(
+    order: list[int], one: int, other: int
+) -> None:
     begin, end = sorted((one, other))
     found = scores(7).ordered(ints(*order)).between(begin, end)
     some = order[begin:end]
@@ -284,7 +288,7 @@ def test_significant_cells_are_corrected_for_the_number_of_cells() -> None:
     assert clusters._standing_out(mean, variance, 2.9 * p).tolist() == [3]
 
 
-def test_complete_linkage_joins_the_nearest_until_they_differ() -> None:
+def test_complete_linkage_joins_the_nearest_clusters_until_they_differ() -> None:
     apart = np.array([[inf, 1.0, 3.0, 9.0], [1.0, inf, 2.0, 9.0], [3.0, 2.0, inf, 9.0], [9.0, 9.0, 9.0, inf]])
     p = erfc(3.0 / sqrt(2.0)) * 5 * 6  # five cells, six pairs
     assert clusters._linked(apart, 5, 0.9 * p) == [[0, 1, 2], [3]]
@@ -315,7 +319,7 @@ def test_clusters_are_sorted_by_size_and_robots_without_a_cluster_are_named() ->
     assert clusters.of(maps[3:], np.array([0.0]), ((3,),), 0.05).found == ()
 
 
-def test_a_singular_matrix_gets_its_pseudo_inverse_and_rank() -> None:
+def test_for_a_singular_matrix_the_pseudo_inverse_and_the_rank_are_returned() -> None:
     inverse, rank = components._inverse(np.array([[2.0, 2.0], [2.0, 2.0]]))
     assert rank == 1
     assert inverse == pytest.approx(np.full((2, 2), 0.125))

@@ -1,4 +1,4 @@
-"""`tarl ingest` of bags: replayed through the nodes of the recorded test, each once."""
+"""`tarl ingest` replays each bag once through the nodes of the recorded test."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def missions(project: pytest.Pytester) -> list[tuple[str, int, float]]:
     ).fetchall()
 
 
-def test_bags_of_every_format_are_replayed_once_and_judged_beside_the_recording(
+def test_bags_of_every_format_are_replayed_once_and_compared_with_the_recording(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bags = [write_bag(project.path / f"r{n}{kind}", mission(1.0, n)) for n, kind in enumerate(FORMATS)]
@@ -72,7 +72,7 @@ def test_bags_of_every_format_are_replayed_once_and_judged_beside_the_recording(
     assert "4 missions of 4 robots" in capsys.readouterr().out
 
 
-def test_a_bag_that_does_not_fit_or_is_cut_off_is_named_and_left_out(
+def test_a_bag_that_is_truncated_or_does_not_fit_the_test_is_named_and_skipped(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str]
 ) -> None:
     good = write_bag(project.path / "good.bag", mission(1.0, 1))
@@ -89,7 +89,7 @@ def test_a_bag_that_does_not_fit_or_is_cut_off_is_named_and_left_out(
     assert [row[0] for row in missions(project)] == ["good"]
 
 
-def test_without_the_test_or_a_monitor_it_says_what_is_missing(
+def test_the_error_says_whether_the_test_or_the_monitor_is_missing(
     project: pytest.Pytester, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bag = write_bag(project.path / "r0.bag", mission(1.0, 1))

@@ -1,4 +1,4 @@
-"""Robots whose drifts are alike form a cluster with their common cells; noise alone does not divide them."""
+"""Robots with similar drifts form a cluster with their common cells; noise alone does not split a cluster."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CELLS = tuple((n,) for n in range(12))
 
 
 def maps(seed: int, kinds: list[dict[int, float]], each: int) -> list[ResidualMap]:
-    """Draw maps of robots; the robots of one kind have the same true residuals, at different noise."""
+    """Draw residual maps of robots; robots of one kind have the same true residuals, with different noise."""
     rng = np.random.default_rng(seed)
     found = []
     for kind, true in enumerate(kinds):
@@ -41,7 +41,7 @@ def test_robots_with_the_same_drift_form_a_cluster_with_its_cells(seed: int) -> 
     assert sorted({name[1] for one in large for name in one.robots}) == ["0", "1", "2"]
     for one in found.found:
         assert len({name[1] for name in one.robots}) == 1
-    assert len(found.found) <= 4  # six noisy robots of a kind rarely divide
+    assert len(found.found) <= 4  # six noisy robots of one kind rarely form several clusters
     for one in large:
         kind = kinds[int(one.robots[0][1])]
         told = dict(zip(one.cells, one.residuals, strict=True))
@@ -61,7 +61,7 @@ def test_robots_without_a_clear_cell_are_unclear_and_join_no_cluster() -> None:
     assert of([], np.zeros(12), CELLS, 0.05).found == ()
 
 
-def test_drifted_robots_of_a_data_set_form_a_cluster_at_the_place_of_their_drift(tmp_path: Path) -> None:
+def test_robots_of_a_data_set_that_share_a_drift_form_a_cluster_that_names_its_cells(tmp_path: Path) -> None:
     missions.fixture(tmp_path / "test.npz", missions.walks(120, 1))
     logs = []
     for robot in range(4):

@@ -1,4 +1,4 @@
-"""Variance components: known ones are found, with intervals that cover them."""
+"""Known variance components are estimated with intervals that contain them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIZES = (3, 8, 5)
 
 
 def missions(seed: int, robots: int, each: int, scale: float) -> tuple[Ints, Ints, Floats, list[float]]:
-    """Draw a fleet with a roll-out in stages; return robot, levels and reward of each mission, and its components."""
+    """Draw a fleet with a staged rollout; return robot, levels and reward of each mission, and the true components."""
     rng = np.random.default_rng(seed)
     effects = [_effects(rng, size, scale * s) for size, s in zip(SIZES, (0.3, 0.4, 0.2), strict=True)]
     robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
@@ -47,7 +47,7 @@ def found(seed: int, robots: int, each: int, scale: float) -> tuple[tuple[Compon
 
 
 def coverage(runs: int, robots: int, each: int, scale: float) -> tuple[Floats, Floats, Floats]:
-    """Return the share of intervals that hold the truth, and the mean and standard deviation of the errors."""
+    """Return the share of intervals that contain the true value, and the mean and standard deviation of the errors."""
     held, away = [], []
     for seed in range(runs):
         every, truth = found(seed, robots, each, scale)
@@ -56,7 +56,7 @@ def coverage(runs: int, robots: int, each: int, scale: float) -> tuple[Floats, F
     return np.mean(held, axis=0), np.mean(away, axis=0), np.std(away, axis=0)
 
 
-def test_known_components_are_found_with_intervals_that_cover_them() -> None:
+def test_the_intervals_contain_the_known_variance_components() -> None:
     held, mean, spread = coverage(7, 60, 20, 1.0)
     assert held.mean() >= 0.85  # 35 intervals at 95 %
     assert np.all(np.abs(mean) <= 6 * spread / np.sqrt(7))
@@ -65,7 +65,9 @@ def test_known_components_are_found_with_intervals_that_cover_them() -> None:
 @pytest.mark.skipif(not SLOW, reason="takes a minute; set TARL_SLOW=1")
 @pytest.mark.parametrize("scale", [1.0, 0.2, 0.0])
 @pytest.mark.parametrize(("robots", "each"), [(60, 30), (200, 40)])
-def test_the_intervals_cover_in_a_campaign(robots: int, each: int, scale: float) -> None:
+def test_over_many_simulated_fleets_the_intervals_contain_the_true_components_often_enough(
+    robots: int, each: int, scale: float
+) -> None:
     held, mean, spread = coverage(200, robots, each, scale)
     assert np.all(held >= 0.85)
     assert np.all(np.abs(mean) <= 4 * spread / np.sqrt(200) + 1e-12)
@@ -107,7 +109,7 @@ def test_missions_without_a_repair_are_named_among_the_lowest() -> None:
     assert lowest(repair, ("", "guard-1")) == "no repair -0.25"
 
 
-def test_few_robots_give_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_with_few_robots_a_component_has_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "FEWEST", 50)
     every, _ = found(0, 40, 20, 1.0)
     assert {(one.low, one.high) for one in every} == {(0.0, float("inf"))}

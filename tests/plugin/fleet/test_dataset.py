@@ -1,4 +1,4 @@
-"""A store that fails in a way of its own gives one sentence."""
+"""Unusual failures of a store are reported in one sentence."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.fleet.store import Store
 
 
 class ClientError(Exception):
-    """As the errors of HTTP clients, no OSError."""
+    """An error that, like those of HTTP clients, is not an OSError."""
 
 
 @pytest.mark.parametrize("reads", [False, True])

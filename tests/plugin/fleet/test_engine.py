@@ -1,4 +1,4 @@
-"""Tasks run in order, a window at a time, each with one thread for its linear algebra."""
+"""Tasks run in order and a limited number at a time; each uses one thread for its linear algebra."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from pytest_tarl.fleet import engine
 
 
 def linear_algebra_threads() -> set[int]:
-    """Return the numbers of threads that libraries of linear algebra take now."""
-    assert np.eye(2).shape == (2, 2)  # numpy brings such a library
+    """Return the numbers of threads that the linear algebra libraries currently use."""
+    assert np.eye(2).shape == (2, 2)  # numpy loads a linear algebra library
     return {one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"}
 
 
@@ -58,7 +58,7 @@ def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: 
     assert 1 <= len(ran) <= engine.WINDOW * workers
 
 
-def test_a_task_has_its_arguments_whatever_they_look_like() -> None:
+def test_arguments_that_look_like_keys_of_the_task_graph_reach_the_task_unchanged() -> None:
     odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
     with engine.local(1) as some:
         assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd

@@ -1,4 +1,4 @@
-"""The onset of groups: the evidence of a watch over all missions of a group in the order of their times."""
+"""The onset of a group comes from a watch over all missions of the group in the order of their times."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(folder / "data")
 
 
-def test_a_change_too_small_for_each_robot_is_found_in_its_site_with_its_onset(data: str) -> None:
+def test_a_change_that_is_too_small_to_see_in_one_robot_is_found_in_the_site_of_the_robots(data: str) -> None:
     found = answer(Question(data, by=("site",)))
     assert {one.name for one in (*found.onsets.drifted, *found.onsets.below)} == {"south"}
     assert found.meets("changed")
     assert not found.meets("robot")
     evidence = found.onsets.every[1].status.world  # type: ignore[union-attr]
     assert evidence.since is not None
-    assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # a mission of each robot a second
+    assert evidence.since.time == pytest.approx(1e9 + BEGINS, abs=4)  # one mission per robot and second
 
 
 def test_a_group_of_one_robot_has_the_evidence_of_the_robot(

@@ -1,4 +1,4 @@
-"""The page of a fleet: it holds what the report says, is legible with 10,000 robots, and asks no network."""
+"""The page of a fleet contains the figures of the report, is legible with 10,000 robots, and needs no network."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ document.body.dataset.found = JSON.stringify(found);
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Return a data set of two sites; two robots of one of them drift, and their names are hostile."""
+    """Return a data set of two sites; two robots of one site drift, and all names of robots contain markup."""
     folder = tmp_path_factory.mktemp("page")
     missions.fixture(folder / "test.npz", missions.walks(120, 1))
     for first, site in ((400, "north"), (200, "south")):
@@ -152,7 +152,7 @@ def test_the_map_shows_each_group_and_the_chosen_one_in_words(seen: Seen) -> Non
     assert any("2 robots" in one for one in seen.found["cells"])
 
 
-def test_ten_thousand_robots_have_a_square_each_and_can_be_found(seen: Seen) -> None:
+def test_each_of_ten_thousand_robots_has_a_square_and_can_be_found(seen: Seen) -> None:
     assert seen.found["rows"][:2] in (["<b>200", "<b>201"], ["<b>201", "<b>200"])
     assert len(seen.found["rows"]) == 20
     assert seen.found["searched"] == ["<b>201"]

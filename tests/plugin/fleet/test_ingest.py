@@ -1,4 +1,4 @@
-"""`tarl ingest`: each mission is in the data set once, whatever is repeated, interrupted or copied."""
+"""After `tarl ingest`, each mission is in the data set once, even if commands or logs are repeated or interrupted."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_the_rows_are_the_missions_of_the_logs(tmp_path: Path) -> None:
     assert dates == [("1.2", "1970-01-11"), ("1.2", "1970-01-12"), ("1.2", "1970-01-13")]
 
 
-def test_the_examples_in_the_docs_read_it_without_tarl(
+def test_the_examples_in_the_docs_read_the_data_set_without_tarl(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     guide = Path(__file__).parents[3] / "docs" / "howto" / "fleet-logs.md"
@@ -91,7 +91,7 @@ def test_the_examples_in_the_docs_read_it_without_tarl(
         assert "r2" in capsys.readouterr().out
 
 
-def test_pandas_reads_it_without_tarl(tmp_path: Path) -> None:
+def test_pandas_reads_the_data_set_without_tarl(tmp_path: Path) -> None:
     pandas = pytest.importorskip("pandas")
     test, logs = world(tmp_path)
     list(ingest(order(test, logs, tmp_path / "data")))
@@ -99,7 +99,7 @@ def test_pandas_reads_it_without_tarl(tmp_path: Path) -> None:
     assert found.groupby("robot", observed=True).total.count().to_dict() == {"r0": 5, "r1": 5, "r2": 5}
 
 
-def test_the_metadata_names_schema_and_recording(tmp_path: Path) -> None:
+def test_the_metadata_of_a_file_names_its_schema_and_its_recording(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     list(ingest(order(test, logs, tmp_path / "data")))
     for path in (tmp_path / "data").rglob("*.parquet"):
@@ -110,7 +110,7 @@ def test_the_metadata_names_schema_and_recording(tmp_path: Path) -> None:
 
 
 class Killed(BaseException):
-    """Stands for a process that ends between two files."""
+    """Simulates a process that ends between writing two files."""
 
 
 @given(
@@ -185,7 +185,7 @@ def test_a_copy_under_the_name_of_another_robot_is_refused(tmp_path: Path) -> No
     assert len(rows(to)) == 5
 
 
-def test_hashed_names_are_the_same_for_the_same_salt_only(tmp_path: Path) -> None:
+def test_hashed_names_are_equal_only_for_equal_salts(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     for name, salt in (("a", "pepper"), ("b", "pepper"), ("c", "sugar")):
         list(ingest(replace(order(test, logs, tmp_path / name), salt=salt)))
@@ -196,7 +196,7 @@ def test_hashed_names_are_the_same_for_the_same_salt_only(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("change", ["sensors", "bins", "test"])
-def test_a_log_that_does_not_fit_is_named_and_the_others_are_ingested(
+def test_a_log_of_another_recording_is_named_and_the_others_are_ingested(
     change: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, logs = world(tmp_path)
@@ -232,7 +232,7 @@ def test_a_log_that_does_not_fit_is_named_and_the_others_are_ingested(
         (["{log}", "--robot", "r", "--to", "{log}/data"], "cannot be"),
     ],
 )
-def test_invalid_input_gives_one_sentence(
+def test_invalid_input_is_reported_in_one_sentence(
     argv: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, logs = world(tmp_path)
@@ -269,7 +269,7 @@ def test_a_damaged_file_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert err.count("\n") == 1
 
 
-def test_a_missing_package_gives_one_sentence(
+def test_a_missing_package_is_reported_in_one_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("pytest_tarl.extras.FLEET", ("no_such_package",))
@@ -280,7 +280,7 @@ def test_a_missing_package_gives_one_sentence(
     )
 
 
-def test_other_commands_import_none_of_its_packages() -> None:
+def test_other_commands_import_none_of_the_packages_of_ingest() -> None:
     import subprocess
 
     code = (
@@ -295,7 +295,7 @@ FORMULA = "always (gap > 0.3)"
 
 
 def judged_log(folder: Path, gaps: list[float]) -> Path:
-    """Write a log whose missions follow a signal that falls to each of the gaps."""
+    """Write a log of missions in which a signal falls to each of the values `gaps`."""
     path = folder / "r0" / "missions.log"
     file = missions.LogFile(path)
     file.append(missions.start())

@@ -1,4 +1,4 @@
-"""Real `tarl ingest` and `tarl fleet` commands end at random moments, by `kill -9` or Ctrl-C.
+"""Real `tarl ingest` and `tarl fleet` commands are ended at random moments, by `kill -9` or Ctrl-C.
 
 Whatever was interrupted, running the command again leaves each mission in the data set once, and the answer is that of
 a data set that was never interrupted, to the last bit. TARL_SLOW=1 takes many moments instead of a few.
@@ -49,7 +49,7 @@ def interrupted(folder: Path, after: float, how: signal.Signals, *arguments: str
     assert one.returncode in (0, CTRL_C, -signal.SIGINT, -signal.SIGKILL)
     importing = (
         one.returncode == -signal.SIGINT or b"_get_module_lock" in err
-    )  # Python may drop the signal there
+    )  # Python may lose a signal during an import
     assert importing or b"Traceback" not in err
 
 
@@ -60,7 +60,7 @@ def missions(data: Path) -> list[tuple[object, ...]]:
     return duckdb.sql(query).fetchall()
 
 
-def test_commands_that_are_killed_or_interrupted_lose_and_double_nothing(tmp_path: Path) -> None:
+def test_commands_that_are_killed_or_interrupted_lose_and_duplicate_no_mission(tmp_path: Path) -> None:
     test, logs = world(tmp_path, ROBOTS, EACH)
     random = Random(17)
     argv = [*map(str, logs), "--fixture", str(test), "--robot", "{folder}", "--site", "north"]

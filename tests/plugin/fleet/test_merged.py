@@ -152,7 +152,7 @@ def test_the_command_writes_a_recording_that_can_be_compared_and_merged(
 
 
 @pytest.mark.parametrize("kind", ["absent", "text", "log alone", "unfinished"])
-def test_recordings_that_cannot_be_merged_give_one_sentence_and_no_file(
+def test_recordings_that_cannot_be_merged_are_reported_and_no_file_is_written(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     test, other, to = tmp_path / "test.npz", tmp_path / "other.log", tmp_path / "fleet.npz"

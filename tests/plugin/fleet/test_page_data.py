@@ -1,4 +1,4 @@
-"""What the page of a fleet holds: the variables of its template and the data of its script, for answers by hand."""
+"""The variables of the template of the fleet page and the data of its script, for answers written by hand."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_a_robot_that_is_named_twice_counts_once() -> None:
     assert shown["headline"] == "2 of 3 robots named."
 
 
-def test_a_cluster_links_thirty_robots_and_counts_the_rest() -> None:
+def test_a_cluster_has_links_to_thirty_robots_and_the_number_of_the_others() -> None:
     names = tuple(f"r{n:02}" for n in range(32))
     found = Clusters((Cluster(names, PLACE, (-0.5, -1.0)), Cluster(names[:30], (), ())))
     first, second = variables(answer(clusters=found))["clusters"]
@@ -119,7 +119,7 @@ def test_the_page_lists_the_violations_of_each_formula_by_group() -> None:
     ]
 
 
-def test_notes_lose_their_mark() -> None:
+def test_notes_on_the_page_lack_the_leading_mark_of_the_text_report() -> None:
     first, *_ = variables(answer())["notes"]
     assert first.startswith("ranges are one-sided bounds")
 
@@ -221,7 +221,7 @@ def test_an_onset_may_lack_a_time_and_a_robot_may_lack_an_onset() -> None:
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0, 3)))) == (3, 0.0)
 
 
-def test_the_cells_of_a_robot_with_the_largest_residuals_in_standard_errors() -> None:
+def test_the_page_lists_the_cells_of_a_robot_with_the_largest_residuals_in_standard_errors() -> None:
     one = robot("r1", 9.0)
     known = ResidualMap(
         "r1",
@@ -295,7 +295,7 @@ def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     assert named["result"] is None
 
 
-def test_too_many_groups_leave_those_that_differ_and_those_with_the_lowest_reward(
+def test_of_too_many_groups_those_that_differ_and_those_with_the_lowest_reward_are_shown(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(html, "MOST_GROUPS", 3)
@@ -309,6 +309,6 @@ def test_too_many_groups_leave_those_that_differ_and_those_with_the_lowest_rewar
     assert [one["values"] for one in data(found)["groups"]] == [["b"], ["c"], ["d"]]
 
 
-def test_an_unwritable_page_gives_one_sentence(tmp_path: Path) -> None:
+def test_an_unwritable_page_is_reported_in_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(FleetError, match=r"The page .* cannot be written"):
         html.write(answer(), tmp_path / "missing" / "folder" / ("x" * 300))

@@ -1,4 +1,4 @@
-"""`tarl fleet`: the method for one robot, applied to groups and robots; the same bits however the rows are stored."""
+"""`tarl fleet` applies the method for one robot to groups and robots, bitwise equally for any storage of the rows."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Pa
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
+def test_the_answer_is_bitwise_equal_for_any_files_copies_order_portions_and_threads(
     folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     random = Random(seed)
@@ -171,7 +171,9 @@ def test_files_copies_order_portions_and_threads_do_not_change_a_bit(
     assert document.text(replace(again, copies=0)) == document.text(found)
 
 
-def test_files_of_schema_1_are_read_beside_newer_ones(folder: Path, found: Answer, tmp_path: Path) -> None:
+def test_files_of_schema_1_and_newer_files_are_read_together(
+    folder: Path, found: Answer, tmp_path: Path
+) -> None:
     add(folder, [1], tmp_path / "data")
     for path in sorted((tmp_path / "data" / "missions").rglob("*.parquet"))[::2]:
         with path.open("rb") as file:
@@ -200,7 +202,7 @@ def test_large_groups_are_compared_by_a_part_that_does_not_depend_on_files(
     assert [one.values for one in by_month.groups] == [("2024-10",)]
 
 
-def test_since_and_robot_choose_missions(folder: Path) -> None:
+def test_the_flags_since_and_robot_select_missions(folder: Path) -> None:
     found = answer(Question(str(folder / "data"), since=date(2024, 10, 14), robot="r1"))
     jsonschema.validate(document.document(found), document.schema())
     assert found.missions == EACH - 40
@@ -231,7 +233,7 @@ def test_missions_that_do_not_fit_are_counted_and_named(
     assert "6 missions of test_walk.py::test_walk with other sensors or bins cannot be compared" in out
 
 
-def test_the_command_reports_and_fails_by_its_rules(
+def test_the_command_prints_its_report_and_has_the_documented_exit_status(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     data, result = str(folder / "data"), tmp_path / "fleet.json"
@@ -266,7 +268,7 @@ def test_the_command_reports_and_fails_by_its_rules(
         (["nosuch://x"], "nosuch://x cannot be opened"),
     ],
 )
-def test_invalid_input_gives_one_sentence(
+def test_invalid_input_is_reported_in_one_sentence(
     argv: list[str], said: str, folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     filled = [one.replace("{data}", str(folder / "data")).replace("{empty}", str(tmp_path)) for one in argv]
@@ -297,7 +299,9 @@ def test_files_that_are_incomplete_or_foreign_are_named(folder: Path, tmp_path: 
             answer(Question(str(to)))
 
 
-def test_a_damaged_recording_of_the_data_set_is_named_by_its_place(folder: Path, tmp_path: Path) -> None:
+def test_the_error_about_a_damaged_recording_in_the_data_set_names_its_path(
+    folder: Path, tmp_path: Path
+) -> None:
     to = tmp_path / "data"
     add(folder, [0], to)
     recording = min((to / "recordings").glob("*.npz"))
@@ -306,7 +310,7 @@ def test_a_damaged_recording_of_the_data_set_is_named_by_its_place(folder: Path,
         answer(Question(str(to)))
 
 
-def test_rows_beyond_the_memory_move_to_a_folder_that_is_removed(
+def test_rows_that_exceed_the_memory_limit_move_to_a_temporary_folder(
     folder: Path, found: Answer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -359,7 +363,7 @@ def test_a_cluster_gives_the_same_bits_even_if_a_worker_dies(
 
 
 def dying(marker: str, *arguments: object) -> object:
-    """Lose the first worker that compares, with its task."""
+    """End the first worker that runs a comparison, together with its task."""
     from distributed import get_worker
 
     if not Path(marker).exists():
@@ -370,7 +374,7 @@ def dying(marker: str, *arguments: object) -> object:
     return COMPARED(*arguments)  # type: ignore[arg-type]
 
 
-def test_an_unreachable_cluster_gives_one_sentence(
+def test_an_unreachable_cluster_is_reported_in_one_sentence(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     pytest.importorskip("distributed")
@@ -382,7 +386,7 @@ def test_an_unreachable_cluster_gives_one_sentence(
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_the_number_of_workers_does_not_change_a_bit(
+def test_the_answer_is_bitwise_equal_for_any_number_of_workers(
     folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
 ) -> None:
     for module in (robots, scores, samples):
@@ -394,7 +398,7 @@ def test_the_number_of_workers_does_not_change_a_bit(
 def test_two_runs_that_add_the_same_missions_at_once_count_them_once(
     folder: Path, found: Answer, tmp_path: Path
 ) -> None:
-    """Let other runs add missions while a run, which has read what is there, writes its first file."""
+    """Let other runs add missions after a run has read the existing ones and before it writes its first file."""
     write, to = Store.write, tmp_path / "data"
     path = tmp_path / "r0" / "missions.log"
     log = missions.log(path, walks(0)[:30], 20_000 * DAY, apart=DAY / 4)  # before it grew

@@ -1,4 +1,4 @@
-"""The effect of a repair in a staged roll-out: seasons and sites do not count, and the interval covers the truth."""
+"""The estimated effect of a repair in a staged rollout is not biased by seasons or sites."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WEEK = 7 * 86_400.0
 
 
 def rolled_out(seed: int, true: float, robots: int = 24, each: int = 40) -> Effect:
-    """Draw a roll-out: sites begin at different times, half of their robots first, and seasons go on at all sites."""
+    """Draw a rollout: each site starts at another time with half of its robots; seasons change rewards at all sites."""
     rng = np.random.default_rng(seed)
     robot, number = np.repeat(np.arange(robots), each), np.tile(np.arange(each), robots)
     site, week = robot % 4, number * 8 // each
@@ -33,7 +33,7 @@ def rolled_out(seed: int, true: float, robots: int = 24, each: int = 40) -> Effe
     return effect("fix", (), strata(robot, site * 8 + week, treated, total, passed), 0.975)
 
 
-def test_the_effect_is_found_whatever_the_season() -> None:
+def test_the_effect_of_a_repair_is_found_in_any_season() -> None:
     found = [rolled_out(seed, 0.8) for seed in range(40)]
     held = [one.reward_bound.low <= 0.8 <= one.reward_bound.high for one in found]
     assert np.mean(held) >= 0.85
@@ -45,7 +45,7 @@ def test_the_effect_is_found_whatever_the_season() -> None:
 
 @pytest.mark.skipif(not SLOW, reason="a campaign; set TARL_SLOW=1")
 @pytest.mark.parametrize("true", [0.0, 0.8, -0.8])
-def test_the_intervals_cover_in_a_campaign(true: float) -> None:
+def test_over_many_simulated_rollouts_the_intervals_contain_the_true_effect_often_enough(true: float) -> None:
     found = [rolled_out(seed, true) for seed in range(2000)]
     held = [one.reward_bound.low <= true <= one.reward_bound.high for one in found]
     assert 0.92 <= np.mean(held) <= 0.99
@@ -64,7 +64,7 @@ def test_missions_of_other_weeks_are_not_compared() -> None:
     assert abs(few.reward) < 2.0
 
 
-def test_equal_arms_give_the_difference_of_their_means() -> None:
+def test_with_equal_arms_the_effect_is_the_difference_of_their_means() -> None:
     rng = np.random.default_rng(2)
     robot, total = np.arange(20), rng.normal(0, 1, 20)
     arm = robot % 2

@@ -1,4 +1,4 @@
-"""A data set on a server that speaks S3: whatever fails, nothing is lost, and nothing counts twice."""
+"""A data set on an S3 server: no failure loses a mission or makes one count twice."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def s3(server: tuple[Faults, str], monkeypatch: pytest.MonkeyPatch) -> Iterator[
 
 @pytest.fixture(scope="module")
 def fleet(tmp_path_factory: pytest.TempPathFactory) -> tuple[Order, str]:
-    """Return how logs are ingested, and what their data set on this machine says."""
+    """Return the order that ingests the logs, and the answer from their data set on this machine."""
     folder = tmp_path_factory.mktemp("fleet")
     test, logs = world(folder)
     order = Order(tuple(logs), str(folder / "local"), test, "{folder}", "1.2", "north")
@@ -121,7 +121,7 @@ def test_a_failing_request_ends_ingest_with_one_sentence_and_the_next_run_comple
     assert said() == expected
 
 
-def test_a_question_to_a_store_that_refuses_is_one_sentence(
+def test_a_refusal_by_the_store_is_reported_in_one_sentence(
     s3: Faults, fleet: tuple[Order, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     order, expected = fleet
@@ -153,7 +153,7 @@ def test_files_missing_from_a_stale_listing_are_counted_once(
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_random_failures_lose_nothing_and_count_nothing_twice(
+def test_after_random_failures_no_mission_is_lost_or_counted_twice(
     s3: Faults, fleet: tuple[Order, str], seed: int
 ) -> None:
     order, expected = fleet

@@ -1,4 +1,4 @@
-"""Robots that are watched side by side have the state of their own monitors, to the last bit."""
+"""Robots that are monitored in one array have, bitwise, the states of separate monitors."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def test_the_first_line_counts_robots_and_names_the_day() -> None:
     assert next(words.lines(found)).startswith("data: 1,234 missions of 2 robots since 2026-03-01, compared")
 
 
-def test_groups_are_not_watched_without_columns() -> None:
+def test_without_columns_to_group_by_no_group_is_tested_for_changes() -> None:
     found = answer(question=Question("data", by=()), groups=(group(),))
     assert not [line for line in words.lines(found) if "changed in time" in line]
 
@@ -74,7 +74,7 @@ def test_groups_are_not_watched_without_columns() -> None:
         ("no difference", "no difference (p 0.03)"),
     ],
 )
-def test_a_degraded_group_states_its_loss_others_the_p_value_of_the_drift(
+def test_a_degraded_group_states_its_loss_and_any_other_group_the_p_value_of_its_drift(
     result: str | None, expected: str
 ) -> None:
     assert words.verdict(group("north", result=result)) == expected
@@ -269,7 +269,7 @@ def test_the_components_of_the_variance_with_their_lowest_levels() -> None:
     ]
 
 
-def test_no_level_is_the_lowest_if_the_variance_may_be_none() -> None:
+def test_no_level_is_called_the_lowest_if_the_variance_may_be_zero() -> None:
     levels = ("a", "b", "c", "d")
     site = replace(component("site", 0.3), effects=(-0.1, 0.4, -0.2, -0.1))
     assert decomposition_words.lowest(site, levels) == "c -0.2, a -0.1"

@@ -34,7 +34,7 @@ def nested(inner: st.SearchStrategy[oracle.Tree]) -> st.SearchStrategy[oracle.Tr
 
 
 trees = st.recursive(comparisons, nested, max_leaves=5)
-# the left side of `since` and timed `until` counts to the exact nanosecond
+# the left sides of `since` and of timed `until` must hold to the exact nanosecond
 untied = trees.filter(
     lambda tree: not {"since", "until["} & set(re.findall(r"since|until\[", oracle.text(tree, "")))
 )
@@ -62,7 +62,7 @@ def samples(world: oracle.World, apart: int = 1) -> dict[str, Samples]:
 
 
 def read(tree: oracle.Tree, unit: str = "ns", size: float = 1) -> Formula | None:
-    """Parse a formula; None if it can never be judged, which other tests cover."""
+    """Parse a formula; return None if no episode can judge it (other tests cover this case)."""
     try:
         return formula("here", oracle.text(tree, unit, size), NAMES)
     except SettingsError as problem:

@@ -44,7 +44,7 @@ def rows(tank: pytest.Pytester) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("more", ["", 'reward="robustness",'])
-def test_bags_are_judged_by_their_topics_and_by_what_the_monitor_observes(
+def test_bags_are_judged_by_their_topics_and_by_the_signals_that_the_monitor_observes(
     tank: pytest.Pytester, more: str
 ) -> None:
     required(tank, more)
@@ -113,7 +113,9 @@ def test_a_formula_over_signals_missing_in_logs_is_skipped_with_a_note(
     assert rows(tank)["always (unheard > 0)"]["online"] is None
 
 
-def test_logs_are_rewarded_by_robustness(tank: pytest.Pytester, observed: Path) -> None:
+def test_with_the_reward_robustness_missions_of_a_log_earn_their_robustness(
+    tank: pytest.Pytester, observed: Path
+) -> None:
     changed(tank, "test_tank", f"{UPPER} or eventually (level > 0)", UPPER)
     changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
     tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
@@ -123,7 +125,9 @@ def test_logs_are_rewarded_by_robustness(tank: pytest.Pytester, observed: Path) 
     )
 
 
-def test_a_log_that_lacks_signals_of_the_reward_is_refused(tank: pytest.Pytester, observed: Path) -> None:
+def test_a_log_that_lacks_signals_of_the_reward_formula_is_refused(
+    tank: pytest.Pytester, observed: Path
+) -> None:
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")

@@ -1,4 +1,4 @@
-"""Whether each part of a formula can be judged in an episode, by the instants that its operators reach."""
+"""Whether an episode is long enough for each part of a formula, by the instants that its operators refer to."""
 
 from __future__ import annotations
 

@@ -240,7 +240,9 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize(("marker", "body", "sentence"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_gives_a_sentence(pytester: pytest.Pytester, marker: str, body: str, sentence: str) -> None:
+def test_a_mistake_is_reported_in_one_sentence(
+    pytester: pytest.Pytester, marker: str, body: str, sentence: str
+) -> None:
     result = run(pytester, marker, body)
     assert result.parseoutcomes().keys() & {"failed", "errors", "error"}
     assert sentence in told(result)

@@ -21,7 +21,7 @@ MODES = [False, True]
 
 @dataclass
 class Outcome:
-    """Everything observable about a run, and its recorded events."""
+    """The observable behaviour of a run, and its recorded events."""
 
     values: dict[str, str] = field(default_factory=dict)
     error: str = ""

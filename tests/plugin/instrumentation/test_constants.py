@@ -1,4 +1,4 @@
-"""The hook and the buffer are invisible to the program."""
+"""The program cannot observe the hook and the buffer of the instrumentation."""
 
 from __future__ import annotations
 

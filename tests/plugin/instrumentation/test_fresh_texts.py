@@ -1,4 +1,4 @@
-"""A node's imports are re-executed in each episode, wherever they are; otherwise the user is warned."""
+"""Modules that a node imports from any folder are re-executed in each episode; otherwise the user is warned."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def ran(root: Path, node: Path, overlay: dict[Path, str]) -> tuple[Any, tuple[Pa
 
 
 def edited(places: list[str], forms: list[str]) -> None:
-    """Check that the node takes each new number of the last module of a chain."""
+    """Check that the node uses each new constant of the last module of a chain."""
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder).resolve()
         node, *files = laid_out(top, places, forms)

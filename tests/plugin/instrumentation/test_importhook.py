@@ -212,7 +212,7 @@ def test_functions_classes_and_instances_can_be_pickled(project, monkeypatch):
             assert pickle.loads(pickle.dumps(module.Pose.Part(3.0), protocol)).n == 1.5
         in_recorded = pickle.dumps([module.Pose(1.5), module.Pair(1.0), module.half])
     assert len(recorder.finish().site) > 10
-    plain = importlib.import_module("numbers_of_a_robot")  # the unmodified program loads the stored objects
+    plain = importlib.import_module("numbers_of_a_robot")  # the plain program loads the stored objects
     try:
         assert pickle.loads(in_recorded) == [plain.Pose(1.5), plain.Pair(1.0), plain.half]
     finally:
@@ -293,7 +293,7 @@ def test_compiler_warnings_are_suppressed(project):
         assert node.run_script(project / "node.py").x
 
 
-def test_a_warning_names_a_file_imported_before_by_the_test(project, monkeypatch):
+def test_a_warning_names_a_file_that_the_test_imported_before_the_episode(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     gains = __import__("gains")
     try:
@@ -309,7 +309,7 @@ def test_a_warning_names_a_file_imported_before_by_the_test(project, monkeypatch
         del sys.modules["gains"]
 
 
-def test_no_warning_if_the_script_runs_even_if_the_test_imported_it(project, monkeypatch):
+def test_a_script_that_the_test_imported_and_then_runs_gives_no_warning(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     node_module = __import__("node")
     plan = {project / "node.py": SITES}

@@ -20,7 +20,7 @@ from tests.plugin.instrumentation.programs import compiled, everywhere
 hypothesmith = pytest.importorskip("hypothesmith")
 
 EXAMPLES = 2000 if os.environ.get("TARL_SLOW") else 25
-# Generated programs call random names; these would act outside the test or never return.
+# Generated programs call random names; the calls below would act outside the test or never return.
 WITHHELD = ("breakpoint", "exit", "help", "input", "open", "quit", "__import__", "exec", "eval", "compile")
 CALLABLE = {name: getattr(builtins, name) for name in dir(builtins) if name not in WITHHELD}
 

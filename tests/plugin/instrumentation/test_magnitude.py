@@ -21,7 +21,7 @@ from pytest_tarl.instrumentation.magnitude import LIMIT, SAMPLE, magnitude
 
 
 class Vector3:
-    """A message like rospy's: slots."""
+    """A message with slots, like those of rospy."""
 
     __slots__ = ("x", "y", "z")
     _slot_types = ("float64", "float64", "float64")
@@ -45,7 +45,7 @@ class Stamped:
 
 
 class Point:
-    """A message like rclpy's: checked properties over slots with an underscore."""
+    """A message like those of rclpy: properties with checks, over slots that begin with an underscore."""
 
     __slots__ = ("_x", "_y")
 
@@ -152,7 +152,7 @@ def test_long_sequences_are_sampled_and_scaled(make):
 
 
 class Refusing:
-    """Raises in every special method."""
+    """An object whose special methods all raise."""
 
     def __getattribute__(self, name):
         raise RuntimeError(name)

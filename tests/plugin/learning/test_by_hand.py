@@ -87,14 +87,14 @@ def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
     assert (second.p_loss, second.p_drift, second.result) == (0.3, 0.04, "drifted")
 
 
-def test_five_percent_of_the_reward_are_tolerated_or_more_if_stated() -> None:
+def test_the_tolerated_loss_is_five_percent_of_the_reward_unless_a_larger_one_is_stated() -> None:
     sample = episodes([(0,)] * 2, [(0,)] * 4, reward=-2.0)  # totals -4 and -8
     assert tolerated(sample, None) == pytest.approx(0.3)
     assert tolerated(sample, 0.2) == pytest.approx(0.3)
     assert tolerated(sample, 0.4) == 0.4
 
 
-def test_the_region_of_the_paper_needs_half_of_the_largest_difference() -> None:
+def test_the_region_of_the_paper_has_the_cells_with_half_of_the_largest_difference() -> None:
     offline = np.array([[1.0, 1.0], [1.0, nan], [0.0, 0.0], [5.0, 5.0]])
     online = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 0.0], [nan, nan]])
     assert paper_region(offline, online).tolist() == [0, 1]
@@ -102,7 +102,7 @@ def test_the_region_of_the_paper_needs_half_of_the_largest_difference() -> None:
     assert paper_region(np.empty((0, 2)), np.empty((0, 2))).tolist() == []
 
 
-def test_slabs_are_the_bins_of_each_of_several_sensors_and_all_cells() -> None:
+def test_slabs_are_each_bin_of_each_sensor_and_the_set_of_all_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0, 5), (0, 6), (1, 5)])] == [
         [0, 1],
         [2],
@@ -146,12 +146,12 @@ def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None
     assert bet(1.0, -1.0, [0.5, -0.5]).stakes == pytest.approx((wanted,))
     assert bet(1.0, -1.0, [-9.0, -9.0]).stakes == pytest.approx(
         (1.0 / 0.25,)
-    )  # a quarter of the margin at least
+    )  # at least a quarter of the margin
     assert bet(1.0, -1.0, [0.5]).stakes == pytest.approx((1.0 / 1.5,))
     assert betting._bounded(5.0, 1.0, -1.0, 0.5) == 5.0
 
 
-def test_a_betting_test_stops_once_no_further_episodes_can_decide_it() -> None:
+def test_a_betting_test_stops_once_further_episodes_cannot_decide_it() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     even = [0.5, -0.5] * 10
     best = 1.0  # the bound of the mean at 0.5 % lies well below it
@@ -234,7 +234,7 @@ def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
         ("drifted", Region(((1,),)), False),
     ],
 )
-def test_a_check_is_decisive_only_with_a_loss_and_its_region(
+def test_a_check_is_decisive_only_if_it_finds_a_loss_and_its_region(
     result: Any, region: Region, expected: bool
 ) -> None:
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
@@ -267,7 +267,7 @@ def test_a_recording_states_bounds_on_success_mean_and_quantile() -> None:
 GOOD, BAD, UNKNOWN = Judged("g", 0.5), Judged("g", -0.25, 3.5), Judged("g", nan)
 
 
-def test_formulas_over_episodes_count_those_that_judged_them() -> None:
+def test_a_formula_counts_only_the_episodes_that_judged_it() -> None:
     several = stacked([[GOOD], [BAD], [UNKNOWN], [], [Judged("g", -0.75, 2.5), Judged("a", 1.0)]])
     assert several is not None
     assert several.formulas == ("a", "g")
@@ -288,7 +288,7 @@ def test_formulas_over_episodes_count_those_that_judged_them() -> None:
     assert stacked([[], []]) is None
 
 
-def test_rows_are_in_the_given_order_then_by_name() -> None:
+def test_formulas_have_the_given_order_and_further_ones_are_sorted_by_name() -> None:
     one = judgements([GOOD, Judged("b", 1.0), Judged("a", 1.0)])
     found = rows(["g", "never"], {"offline": None, "online": one})
     assert [row.formula for row in found] == ["g", "never", "a", "b"]
@@ -324,7 +324,7 @@ def test_sensors_whose_values_are_all_new_are_left_out() -> None:
     assert not apart(episodes(KNOWN), episodes([*NEW, (0, 1)]))
 
 
-def test_cells_without_a_sensor_are_joined() -> None:
+def test_cells_that_differ_only_in_a_left_out_sensor_are_joined() -> None:
     found, row = groups([(0, 1), (0, 2), (3, 1)], [1])
     assert (found, row.tolist()) == (((0,), (3,)), [0, 0, 1])
     short = projected(episodes([(0, 1), (0, 2), (3, 1)]), [1])
@@ -351,7 +351,7 @@ def test_parts_of_the_reward_are_averaged_per_episode_in_both_worlds() -> None:
 
 
 def test_cells_where_a_part_is_lost_are_named_by_part() -> None:
-    """Part b earns minus the number of the cell: in cell 3 it loses 3, in cell 2 it gains."""
+    """In each cell, part b earns minus the number of that cell: the part loses 3 in cell 3 and gains in cell 2."""
     usual = [episodes([(0,), (1,)], [(0,), (1,)], cells=((2,), (3,))) for _ in range(8)]
     moved = [episodes([(0,), (3,)], [(0,), (3,)], cells=((1,), (2,))) for _ in range(8)]
     one, two = (
@@ -396,7 +396,7 @@ def effect(size: float, code: str = "x") -> OperandEffect:
     return OperandEffect(code, 1.0, 2.0, size)
 
 
-def test_culprits_are_ranked_by_simulation_and_the_repaired_first() -> None:
+def test_repaired_culprits_come_first_and_others_are_ranked_by_their_gain_in_simulation() -> None:
     ranked = [(A, 1.0), (B, 0.5), (C, 0.25), (D, 0.0)]
     effects = {"A": [effect(1.0), effect(3.0, "y")], "B": [effect(9.0)], "C": []}
     found = culprits(ranked, effects, ["A"], 6.0)

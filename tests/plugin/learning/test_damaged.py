@@ -45,7 +45,7 @@ def parts(content: bytes = WHOLE) -> tuple[dict[str, Any], Arrays]:
 
 
 def forged(header: dict[str, Any], columns: Arrays) -> bytes:
-    """Return a file of these parts with a valid digest."""
+    """Return a recording file with this header and these columns and a valid digest."""
     header = {key: value for key, value in header.items() if key != "digest"}
     header["digest"] = fixtures._digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
@@ -159,7 +159,7 @@ def twice() -> bytes:
 
 
 @pytest.mark.parametrize("kind", DAMAGED)
-def test_known_kinds_of_damage_give_one_sentence(kind: str) -> None:
+def test_known_kinds_of_damage_are_reported_in_one_sentence(kind: str) -> None:
     assert not survived(DAMAGED[kind]())
 
 

@@ -34,7 +34,7 @@ def test_the_interval_of_a_difference_uses_welchs_degrees_of_freedom(number: int
 
 
 @pytest.mark.parametrize("count", [2, 3, 10, 21, 60])
-def test_the_interval_of_a_mean_is_that_of_student(count: int) -> None:
+def test_the_interval_of_a_mean_is_students_t_interval(count: int) -> None:
     values = [float(n * n % 17) for n in range(count)]
     wanted = stats.t.interval(0.95, count - 1, np.mean(values), stats.sem(values))
     assert mean_bounds(values, 0.95) == pytest.approx(wanted, rel=1e-4)
@@ -49,7 +49,9 @@ def test_quantiles_of_students_distribution_equal_those_of_scipy(degrees: float,
 
 
 @pytest.mark.parametrize(("passed", "episodes"), [(1, 4), (18, 20), (60, 200)])
-def test_the_evidence_at_the_bound_of_a_rate_equals_the_threshold(passed: int, episodes: int) -> None:
+def test_at_the_bound_of_a_rate_the_evidence_against_the_rate_equals_the_threshold(
+    passed: int, episodes: int
+) -> None:
     bound = rate_sequence(passed, episodes, 0.9)
     least = [log(1.0 / risk) for risk in (0.1, 0.05)]  # one bound, or two that share the risk
     below = evidence_above(passed, episodes, bound.low)
@@ -87,7 +89,7 @@ def test_an_avoided_cell_is_significant_after_correction_for_the_missing_cells(o
     everyone, online = 12, 4
     off = [
         [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
-    ]  # all episodes visit cell 0, and only these the others
+    ]  # all episodes visit cell 0; only the listed episodes visit other cells
     chance = 1 / comb(
         everyone, online
     )  # probability that none of the four deployed episodes is among the eight

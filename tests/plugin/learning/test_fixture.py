@@ -141,7 +141,7 @@ def test_equal_episodes_give_equal_bytes_and_no_temporary_file_remains(tmp_path:
 
 
 @pytest.mark.parametrize("cut", [0, 1, 50, 500, -1, -40])
-def test_a_truncated_file_is_refused_by_name(tmp_path: Path, cut: int) -> None:
+def test_the_error_about_a_truncated_file_names_the_file(tmp_path: Path, cut: int) -> None:
     path = tmp_path / "a.npz"
     save(example(), path)
     path.write_bytes(path.read_bytes()[:cut])
@@ -170,7 +170,9 @@ def test_other_archives_and_pickles_are_refused(tmp_path: Path) -> None:
         load(path)
 
 
-def test_another_format_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_about_a_file_of_another_format_names_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "a.npz"
     monkeypatch.setattr("pytest_tarl.learning.fixture.FORMAT_VERSION", 99)
     save(example(), path)

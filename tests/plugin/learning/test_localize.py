@@ -39,7 +39,7 @@ TIMES = 200 if SLOW else 25  # number of random worlds and of random reports
 
 
 def mission(seed: int, harm: float, mode: int, avoid: int) -> Sample:
-    """Walk through some cells with an irrelevant mode; one cell may be harmful and another one avoided."""
+    """Walk through some cells in an irrelevant mode; one cell may cost reward and another one may be avoided."""
     draws = np.random.default_rng(seed)
     path = [place for place in range(LENGTH) for _ in range(int(draws.integers(1, 3))) if place != avoid]
     cells = tuple((place, mode) for place in range(LENGTH))
@@ -177,7 +177,7 @@ def reported(culprits: tuple[Culprit, ...], sites: list[list[Slice]]) -> None:
 
 @given(LISTS, st.frozensets(SITES))
 @settings(max_examples=TIMES, deadline=None)
-def test_changeable_sites_come_first_and_ranks_follow_scores(
+def test_sites_that_can_be_changed_come_first_and_ranks_follow_scores(
     lists: list[dict[int, tuple[float, float]]], changeable: frozenset[int]
 ) -> None:
     per_list = [
@@ -200,7 +200,7 @@ EFFECTS = st.dictionaries(SITES, st.floats(-5, 5), max_size=6)
 
 @given(LISTS, st.frozensets(SITES), EFFECTS, st.frozensets(SITES), st.just(0.0) | st.floats(-1, 4))
 @settings(max_examples=TIMES, deadline=None)
-def test_a_repaired_line_comes_first_after_the_search(
+def test_after_the_search_a_repaired_line_is_ranked_first(
     lists: list[dict[int, tuple[float, float]]],
     changeable: frozenset[int],
     gained: dict[int, float],

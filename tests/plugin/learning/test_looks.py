@@ -1,4 +1,4 @@
-"""Looks end a run early if the verdict is certain, without raising the rate of false alarms."""
+"""Checks during a run end it early if the verdict is certain, without raising the rate of false alarms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.seeds import generator
 
 
 def found(p_drift: float, p_loss: float, loss: float = 2.0, cells: int = 1) -> Difference:
-    """Return possible findings of a look, judged at 5 %."""
+    """Return possible findings of a check during a run, judged at 5 %."""
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, 1.0, 1.0), 0.05)
     return Difference(verdict, Region(tuple((i,) for i in range(cells))), {})
 

@@ -29,7 +29,7 @@ SIZES = st.sampled_from([1e-9, 0.1, 0.7, 3.0, 1e6])
 
 
 def rewards(kind: str, size: float, cells: np.ndarray, draws: np.random.Generator) -> np.ndarray:
-    """Return the rewards of an episode from a monitor that is constant in some cells."""
+    """Return the rewards of an episode, which are constant in some cells."""
     steps = cells.size
     if kind == "saturated":
         return np.minimum(size, size * draws.uniform(0.5, 3.0, steps))

@@ -36,7 +36,7 @@ def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
             assert sums[:, 1].tolist() == expected
 
 
-def test_the_p_values_are_those_of_whole_tables_of_labels() -> None:
+def test_the_p_values_equal_those_computed_from_a_full_table_of_shuffled_labels() -> None:
     for seed in range(4):
         rng = generator(seed, "table")
         one, other = rng.normal(0.0, 1.0, 30), rng.normal(-0.4, 1.0, 20)
@@ -54,7 +54,9 @@ def test_the_p_values_are_those_of_whole_tables_of_labels() -> None:
         assert found[largest] == pytest.approx(corrected)
 
 
-def test_p_values_below_a_level_do_not_depend_on_shuffles_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_p_values_below_the_level_stay_the_same_if_undecisive_shuffles_are_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def each(settled: float) -> list[list[float]]:
         monkeypatch.setattr(permutation, "SETTLED", settled)
         found = []

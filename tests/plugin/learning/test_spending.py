@@ -1,4 +1,4 @@
-"""Sharing a number of episodes among comparisons: the looks, the choice of the next one, and false alarms."""
+"""Comparisons that share a number of episodes: their checks, the choice of the next one, and false alarms."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LOOKS = (Look(10, 0.1), Look(20, 0.3), Look(40, 0.6))
 
 
 @given(st.integers(1, 12), st.integers(FEWEST, 300), st.integers(2, 5))
-def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_one(
+def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_check(
     comparisons: int, share: int, looks: int
 ) -> None:
     total = comparisons * share
@@ -32,7 +32,7 @@ def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_o
 
 def test_the_undecided_comparison_nearest_to_a_decision_continues_if_the_rest_suffices() -> None:
     standings = [Standing(10, 0.3), Standing(20, 0.04, decided=True), Standing(20, 0.06), Standing(40, 0.01)]
-    assert chosen(standings, LOOKS, 20) == 2  # the second is decided, the last has had all looks
+    assert chosen(standings, LOOKS, 20) == 2  # the second is decided, the last has no checks left
     assert chosen(standings, LOOKS, 19) == 0
     assert chosen(standings, LOOKS, 9) is None
     assert chosen([Standing(10, 0.3), Standing(10, 0.3)], LOOKS, 10) == 0

@@ -1,4 +1,4 @@
-"""The size of a difference: intervals have their stated coverage, and the effect size agrees with its definition."""
+"""Intervals of a difference have their stated coverage, and the effect size agrees with its definition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Utility against Markov chains whose values are known."""
+"""The learned utility equals the known values of Markov chains."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def walk_trace(seed: int) -> Trace:
 def test_the_fixed_point_is_the_exact_solution_of_the_random_walk() -> None:
     state = np.repeat(np.arange(WALK), 2)
     following = np.array([END, 1, 0, 2, 1, 3, 2, 4, 3, END])
-    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # half of the last state's two exits earns 1
+    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # one of the two exits of the last state earns 1
     values = fixed_point(state, following, np.ones(10, np.int64), reward, gamma=1.0)
     assert values == pytest.approx(np.arange(1, 6) / 6)
 
@@ -106,7 +106,7 @@ def test_expected_sarsa_averages_over_the_successors_seen_so_far() -> None:
     assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
 
 
-def test_td_lambda_uses_the_whole_return_at_one_and_one_step_at_zero() -> None:
+def test_td_lambda_uses_the_whole_return_if_lambda_is_one_and_one_step_if_it_is_zero() -> None:
     whole, next_only = (TDLambda(2, gamma=0.5, alpha=0.5, trace=trace) for trace in (1.0, 0.0))
     for learner in (whole, next_only):
         learner.learn(sequence_of([START, 1, 2], [0.0, 1.0, 4.0]), [(0,)])

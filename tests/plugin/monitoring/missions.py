@@ -1,4 +1,4 @@
-"""Small worlds whose missions are recorded by a test and logged as on a robot."""
+"""Missions in small worlds, as a recording of a test and as a log of a robot."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TEST = "test_walk.py::test_walk"
 
 @dataclass(frozen=True)
 class Walk:
-    """One mission: its cells and rewards by step."""
+    """The cells and rewards of one mission, by step."""
 
     cells: tuple[Cell, ...]
     reward: tuple[float, ...]

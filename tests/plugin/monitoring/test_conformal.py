@@ -54,7 +54,7 @@ def test_ranks_computed_at_once_equal_ranks_computed_one_by_one(
 def test_ranks_of_exchangeable_missions_are_uniform_and_independent(
     scores: tuple[int, ...],
 ) -> None:
-    """Given an order, each rank is uniform on an interval; over all orders, the boxes of three ranks fill the cube."""
+    """For each order of three scores, their ranks are uniform in a box; the boxes of all orders fill the unit cube."""
     offline, parts = 3, 60  # 60 is a multiple of 4, 5 and 6, so bins of sixtieths cover all their intervals
     density = np.zeros((parts,) * 3)
     orders = list(permutations(scores))
@@ -90,7 +90,7 @@ def test_bins_are_ordered_and_rounding_changes_no_bin(values: list[float], unit:
     assert found.shape == (BINS - 1,)
     assert (np.diff(found[np.isfinite(found)]) > 0).all()
     for value in values:
-        # Values closer to each other than CLOSE count as equal; the bin edges lie half of CLOSE beside the value.
+        # Values that differ by less than CLOSE count as equal; the bin edges are at the value ± CLOSE / 2.
         on_grid = round(value / (conformal.CLOSE * unit)) * (conformal.CLOSE * unit)
         shaken = np.searchsorted(found, [on_grid - 1e-5 * unit, on_grid + 1e-5 * unit])
         assert shaken[0] == shaken[1]

@@ -37,7 +37,9 @@ def watching(root: Path, library: str, after: list[bytes]) -> list[Any]:
 
 
 @pytest.mark.parametrize("library", ["rospy", "rclpy"])
-def test_the_node_publishes_ok_and_later_that_the_world_changed(root: Path, library: str) -> None:
+def test_the_node_first_publishes_ok_and_later_publishes_that_the_world_changed(
+    root: Path, library: str
+) -> None:
     log(root / "m.log", walks(100, 2))
     heard = watching(root, library, [b"", content(walks(50, 3, drift=1.0))])
     assert len(heard) >= 4
@@ -54,7 +56,7 @@ def test_the_node_publishes_ok_and_later_that_the_world_changed(root: Path, libr
     assert heard[-1].header.stamp != heard[0].header.stamp
 
 
-def test_a_missing_library_is_reported_by_name(root: Path) -> None:
+def test_the_error_about_a_missing_library_names_the_library(root: Path) -> None:
     log(root / "m.log", walks(3, 2))
     order = Order((root / "m.log",), root / "f.npz", root / "s.npz", ros="rospy")
     with pytest.raises(SettingsError, match="--diagnostics rospy needs rospy, which is not installed"):

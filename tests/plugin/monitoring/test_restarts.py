@@ -1,4 +1,4 @@
-"""Mixtures over bets and restarts: they equal the explicit sum, are e-processes, and do not depend on portions."""
+"""Mixtures over bets and restarts equal the explicit sum and are e-processes, for missions in any portions."""
 
 from __future__ import annotations
 

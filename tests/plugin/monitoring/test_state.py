@@ -86,7 +86,7 @@ def test_a_state_with_another_recording_alpha_or_seed_is_refused(world: Path, tm
 
 @settings(max_examples=60)
 @given(data=st.data())
-def test_a_damaged_state_gives_one_sentence(world: Path, data: st.DataObject) -> None:
+def test_a_damaged_state_is_reported_in_one_sentence(world: Path, data: st.DataObject) -> None:
     path = world / "damaged.npz"
     path.unlink(missing_ok=True)
     whole = bytearray(
@@ -98,7 +98,7 @@ def test_a_damaged_state_gives_one_sentence(world: Path, data: st.DataObject) ->
     if len(damaged) == len(whole):
         damaged[place] ^= data.draw(st.integers(1, 255))
     path.write_bytes(bytes(damaged))
-    with suppress(TarlError):  # any other exception fails; bytes without a meaning may change
+    with suppress(TarlError):  # other exceptions fail the test; unused bytes may change without an error
         begun(world, path).close()
 
 

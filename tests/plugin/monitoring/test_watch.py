@@ -93,7 +93,7 @@ def test_logs_of_other_worlds_are_reported_and_the_rest_is_counted(
         (["--once", "--json", "f.npz/s"], "f.npz/s cannot be written"),
     ],
 )
-def test_invalid_arguments_give_one_sentence(
+def test_invalid_arguments_are_reported_in_one_sentence(
     root: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], says: str
 ) -> None:
     log(root / "m.log", walks(5, 2))
@@ -109,7 +109,7 @@ def test_a_recording_in_which_every_mission_failed_has_no_bound(
     monkeypatch.chdir(tmp_path)
     fixture(tmp_path / "f.npz", [Walk(one.cells, one.reward, False) for one in walks(40, 1)])
     log(tmp_path / "m.log", walks(20, 2))
-    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # passing differs from the recording
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # only recorded ones fail
     out = capsys.readouterr().out
     assert "at least 0 % of missions pass (95 % confidence): nothing to test" in out
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out

@@ -1,4 +1,4 @@
-"""What a watch says and how it concludes it, for evidence and processes written down by hand."""
+"""The conclusions of a watch and the text that states them, for evidence and processes written by hand."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_the_times_of_every_nth_mission_are_kept_however_missions_arrive(
+def test_the_times_of_every_nth_mission_are_kept_for_any_portions_of_missions(
     portions: list[int], most: int
 ) -> None:
     most *= 2
@@ -183,7 +183,7 @@ def test_the_times_of_every_nth_mission_are_kept_however_missions_arrive(
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_before_the_first_kept_mission_no_time_is_known() -> None:
+def test_missions_before_the_first_kept_mission_have_no_known_time() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 
@@ -232,7 +232,7 @@ def test_a_bet_gains_by_failures_and_loses_its_share_by_a_success() -> None:
         (0, len(WHOLE), [0.2] * 5),
     ],
 )
-def test_alpha_is_shared_by_bounds_missions_and_cells(
+def test_alpha_is_divided_among_bounds_missions_and_cells(
     bounds: int, scores: int, expected: list[float]
 ) -> None:
     assert shares(bounds, scores).tolist() == pytest.approx(expected)

@@ -74,7 +74,7 @@ def test_a_pause_longer_than_idle_begins_a_new_mission_without_losing_steps(
     assert list(chain.from_iterable(rewards)) == [float(number) for number in range(100)]
 
 
-def test_between_missions_nothing_is_kept(tmp_path: Path) -> None:
+def test_nothing_is_recorded_between_missions(tmp_path: Path) -> None:
     observer = Observer([Sensor("x")], tmp_path / "log", {"sites": [], "sensors": ["x"]})
     observer.begin()
     observer.step(1.0)

@@ -78,7 +78,7 @@ def test_a_mission_without_marks_ends_with_the_node(
     assert (raised is error) is (comes_out or error is None)
 
 
-def test_a_sensor_that_nothing_sets_on_a_robot_is_refused(
+def test_a_sensor_without_a_topic_is_refused_because_nothing_sets_it_on_a_robot(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     node = tmp_path / "node.py"

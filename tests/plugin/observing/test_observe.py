@@ -43,7 +43,7 @@ def _other_modules_stay() -> Iterator[None]:
 
 
 def drive(order: Order, runs: list[float], pause: float = 0.0) -> None:
-    """Fill a tank once per entry, the share of the flow that its valve passes; `pause` is wall time per step in s."""
+    """Fill a tank once for each given share of flow that the valve passes; `pause` is the wall time per step in s."""
     ros = Ros()
     with ros.installed():
         ros.start(lambda: observe(order) and None, name="observe")
@@ -123,7 +123,7 @@ def test_without_a_reward_topic_the_judge_of_the_marker_gives_rewards(
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
-def test_a_node_that_cannot_be_observed_gives_one_sentence(
+def test_a_node_that_cannot_be_observed_is_reported_in_one_sentence(
     recorded: Path, changes: dict[str, object], says: str
 ) -> None:
     ros = Ros()

@@ -1,4 +1,4 @@
-"""The short ways to read and bin a sensor's values give what the general ones give."""
+"""The fast functions that read and bin the values of a sensor give the results of the general ones."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def outcome(function: Any, value: Any) -> Any:
 @example(value=-1e-20)
 @example(value=math.nextafter(2.0, 0.0))
 @example(value=2**53 + 1)
-def test_bins_are_those_of_the_sensor(sensor: Sensor, value: Any) -> None:
+def test_a_reader_gives_the_bins_of_its_sensor(sensor: Sensor, value: Any) -> None:
     assert outcome(binner(sensor), value) == outcome(sensor.bin, value)
 
 
@@ -77,7 +77,7 @@ def test_fields_are_read_as_in_a_test(field: Any, messages: list[Any]) -> None:
         assert found == wanted
 
 
-def test_properties_that_make_their_values_are_read_anew() -> None:
+def test_properties_that_compute_their_values_are_read_again_each_time() -> None:
     class Made:
         count = 0
 

@@ -23,7 +23,7 @@ def ends(size: int) -> tuple[Ring, Ring]:
 
 
 @given(st.integers(9, 64), st.lists(st.integers(0, 60) | st.none(), max_size=40))
-def test_pieces_arrive_in_order_and_are_refused_only_if_they_do_not_fit(
+def test_pieces_arrive_in_order_and_are_refused_only_if_the_ring_lacks_space(
     size: int, steps: list[int | None]
 ) -> None:
     writer, reader = ends(size)
@@ -57,9 +57,9 @@ def test_a_piece_whose_bytes_are_not_visible_yet_is_read_later(at: int) -> None:
     assert reader.read() == b"first"
 
 
-def test_a_counter_without_a_head_is_no_piece() -> None:
+def test_a_counter_without_a_written_header_is_not_read_as_a_piece() -> None:
     writer, reader = ends(64)
     writer._counters[0] = 7
     assert reader.read() is None
     writer._counters[0] = 8
-    assert reader.read() == b""  # a head of zeros: no bytes, and their checksum
+    assert reader.read() == b""  # a header of zeros is valid: no bytes, with checksum 0

@@ -1,4 +1,4 @@
-"""Draining a recorder while it records loses no event and keeps their order."""
+"""Draining a recorder while it records loses no event and keeps the order of events."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_draining_in_pieces_records_the_same_as_draining_once() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
-def test_consecutive_cuts_are_merged_as_if_they_were_one() -> None:
+def test_consecutive_cuts_are_merged_into_the_result_of_a_single_cut() -> None:
     whole, pieces = Emptied(), Emptied()
     cuts, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):

@@ -222,7 +222,9 @@ print(repr(observer.problem))
 """
 
 
-def test_a_blocked_disk_costs_events_but_no_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_blocked_disk_loses_events_but_does_not_delay_the_node(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(outlet, "MOST_WAITING", 1000)
     monkeypatch.setattr(stream, "MOST_ENTRIES", 2000)
     observer = Observer([SENSOR], tmp_path / "log", ABOUT)
@@ -265,7 +267,7 @@ def long_log(path: Path, missions: int, rotation: Rotation) -> None:
     writer.close()
 
 
-def test_a_long_log_is_renamed_between_missions_and_each_part_is_complete(tmp_path: Path) -> None:
+def test_a_long_log_is_split_between_missions_and_each_part_is_complete(tmp_path: Path) -> None:
     path = tmp_path / "missions.log"
     (tmp_path / "missions.log.gz").write_text("not ours")
     long_log(path, 40, Rotation(size=2000))

@@ -1,4 +1,4 @@
-"""One controller whose gain of 2 is written in many ways, in the node, a helper module or a configuration file.
+"""Forms of one controller: its gain of 2 is written in the node, a helper module or a file, in many notations.
 
 A form is what the node has in place of the parts below; `# here` marks the line in which its gain is defined.
 """

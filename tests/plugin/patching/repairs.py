@@ -39,7 +39,7 @@ class HandMade:
     def operand(
         self, code: str, value: Any, within: str, path: str = "", literal: bool | None = None
     ) -> Operand:
-        """Return the use `code` in the first line that contains `within`."""
+        """Return the operand whose text is `code` in the first line that contains `within`."""
         path = path or next(iter(self.sources))
         text = self.sources[path]
         span = span_of(path, text, code, text.index(within) + within.index(code))

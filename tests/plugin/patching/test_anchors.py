@@ -1,4 +1,4 @@
-"""Where another subscription can be made in nodes that have none which can be used."""
+"""Places for a new subscription in nodes without a subscription beside which it could be made."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def main():
         ("print(); subscribe('/a'); print()", "print()", False),
     ],
 )
-def test_the_subscription_is_added_beside_a_registration_that_always_runs_once(
+def test_the_subscription_is_added_beside_another_one_that_runs_exactly_once(
     code: str, statement: str, after: bool
 ) -> None:
     source = document("pilot.py", BESIDE.format(code))

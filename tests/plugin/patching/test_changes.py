@@ -31,12 +31,12 @@ def test_a_patch_on_its_own_file_gives_its_result_and_is_undone() -> None:
 
 
 @pytest.mark.parametrize("lines", range(3, 12))
-def test_of_two_places_that_match_the_one_that_moved_as_far_as_the_hunk_before_is_changed(lines: int) -> None:
+def test_of_two_matching_places_the_one_with_the_offset_of_the_previous_hunk_is_changed(lines: int) -> None:
     above = b"".join(b"# %d\n" % n for n in range(lines))
     assert PATCH.applied(above + BEFORE) == above + AFTER
 
 
-def test_lines_that_were_removed_move_the_next_hunk_up() -> None:
+def test_removed_lines_move_the_next_hunk_up() -> None:
     moved = FilePatch("node.py", "", "", tuple(Hunk(hunk.start + 20, hunk.lines) for hunk in PATCH.hunks))
     assert moved.applied(BEFORE) == AFTER
 
@@ -47,7 +47,7 @@ def test_a_hunk_that_fits_nowhere_is_named_by_its_line() -> None:
     assert raised.value.args == (14,)
 
 
-def test_a_hunk_is_not_placed_before_the_end_of_the_one_before() -> None:
+def test_a_hunk_is_not_placed_before_the_end_of_the_previous_hunk() -> None:
     both = FilePatch("node.py", "", "", (PATCH.hunks[1], PATCH.hunks[0]))
     with pytest.raises(MisfitError):
         both.applied(BEFORE)

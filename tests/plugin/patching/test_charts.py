@@ -1,4 +1,4 @@
-"""Scales on which constants move: what a share leaves to 1, and what is added to an offset."""
+"""Scales on which constants are changed: the distance of a share from 1, and a term added to an offset."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def operand(value: float) -> Operand:
         (offset(0.3), 0.0, 0.5, -0.3),
     ],
 )
-def test_a_step_changes_a_constant_on_its_scale_and_can_be_computed_back(
+def test_a_step_changes_a_constant_on_its_scale_and_can_be_recovered_from_the_change(
     chart: Chart, value: float, step: float, moved: float
 ) -> None:
     mutation = stepped(operand(value), step, chart, mutations)
@@ -34,7 +34,7 @@ def test_a_step_changes_a_constant_on_its_scale_and_can_be_computed_back(
     assert chart.step(value, moved) == pytest.approx(step)
 
 
-def test_a_step_of_one_and_a_changed_sign_change_nothing() -> None:
+def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> None:
     for chart in (SHARE, offset(0.3)):
         assert stepped(operand(0.9), 1.0, chart, mutations) is None
         assert stepped(operand(0.9), -1.0, chart, mutations) is None

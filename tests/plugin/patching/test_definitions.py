@@ -123,7 +123,7 @@ def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None
         ("Mast.cfg", "gen.add("),
     ],
 )
-def test_other_files_and_other_parameters_are_left_alone(path: str, text: str) -> None:
+def test_other_files_and_other_parameters_stay_as_they_are(path: str, text: str) -> None:
     assert list(configured("ki", {path: text})) == []
 
 

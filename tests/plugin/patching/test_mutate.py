@@ -89,7 +89,7 @@ def test_steps_for_a_zero_are_symmetric_on_a_log_scale() -> None:
     assert up.value == -down.value == 3.0
 
 
-# Each case: the statement, its operand, its value (None: as written), the result without a guard and in mud.
+# Each case: a statement, its operand, the new value (None: the old one), the result without a guard and in mud.
 ALWAYS = [
     ("vel = 5 * delta", "5", 5, 12.0, "vel = 12.0 * delta"),
     ("vel = self.kp * delta", "self.kp", 0.5, 2.4, "vel = 2.4 * self.kp * delta"),
@@ -359,7 +359,7 @@ def test_rewriting_is_deterministic() -> None:
     assert len({rewrite(analysis, change, MUDDY_STRETCH, TOPICS)["node.py"] for _ in range(5)}) == 1
 
 
-# A generated program: statements over `a` and `b`, with effects logged, and one literal 5 to be changed.
+# A generated program has statements over `a` and `b`, logs their effects, and has one literal 5 to change.
 OPERAND = "5"
 atoms = st.sampled_from(["a", "b", "2", "0.3", "log(a)", "log(b)"])
 joins = st.sampled_from(["{} + {}", "{} - {}", "{} * {}", "({} + {})", "max({}, {})", "({} if a > {} else b)",
@@ -391,7 +391,7 @@ statements = st.sampled_from(
 
 
 class Log(list[float]):
-    """Log every value that it is called with, to compare order and number of evaluations."""
+    """Log the argument of every call, to compare the order and number of evaluations."""
 
     def __call__(self, value: float) -> float:
         self.append(value)
@@ -428,7 +428,7 @@ def test_a_rewritten_program_is_the_original_unless_the_guard_holds(
 
 
 class Replace(ast.NodeTransformer):
-    """Replace 5 by 7.5."""
+    """Replace the constant 5 by 7.5."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
         return ast.Constant(7.5) if node.value == 5 and isinstance(node.value, int) else node

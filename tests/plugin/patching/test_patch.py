@@ -75,7 +75,7 @@ def shell(command: str, cwd: Path) -> None:
 
 
 def repaired(text: str) -> str:
-    """Analyse a file decoded as Python does, and change its 5 in mud."""
+    """Decode a file as Python does, analyse it, and change its constant 5 under the condition `mud`."""
     sources = {"node.py": text.replace("\r\n", "\n")}
     flows = subscribing(
         sources, "node.py", 'rospy.Subscriber("/odom", Odometry, callback)', "rospy.Subscriber"

@@ -15,7 +15,7 @@ from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odomet
 from tests.plugin.patching.test_patch import patched, repository, run, shell
 from tests.plugin.patching.test_subscriptions import NODES
 
-# statements on a value and a publish method, with the published result for 1.0 as designed and in mud
+# statements that publish a value, with the results for an input of 1.0 as designed and in mud
 FORMS = {
     "call": ("{publish}(5 * {value})", 5.0, 12.0),
     "condition": ("if 5 * {value} > 8.0:\n    {publish}(1.0)\nelse:\n    {publish}(0.0)", 0.0, 1.0),
@@ -80,7 +80,7 @@ def node(kind: str, form: str) -> str:
 
 
 def repaired(kind: str, text: str) -> str:
-    """Analyse a file decoded as Python does, and change its 5 in mud."""
+    """Decode a file as Python does, analyse it, and change its constant 5 under the condition `mud`."""
     sources = {"node.py": text.replace("\r\n", "\n")}
     analysis = HandMade(sources, subscribing(sources, "node.py", *NODES[kind][2:]))
     return rewrite(analysis, [Mutation(analysis.operand("5", 5, "5 *"), 12.0)], MUD, TOPICS)["node.py"]

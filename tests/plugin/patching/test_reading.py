@@ -1,4 +1,4 @@
-"""A patch that was written is read back as it is, whatever its lines and endings; suggestions keep to its lines."""
+"""A written patch is read back unchanged for any lines and line endings; suggestions replace only changed lines."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def patch(root: Path, before: str, after: str) -> reading.Patch:
 @settings(max_examples=60)
 @example("a = 1", "b = 2\n")
 @example("a = 1\nb = 2", "a = 1\nb = 3")
-def test_a_patch_is_read_as_it_was_written(before: str, after: str) -> None:
+def test_a_written_patch_is_read_back_unchanged(before: str, after: str) -> None:
     if before == after:
         return
     with tempfile.TemporaryDirectory() as folder:
@@ -41,7 +41,7 @@ def test_a_patch_is_read_as_it_was_written(before: str, after: str) -> None:
     assert file.reverse.exact(after.encode()) == before.encode()
 
 
-def test_evidence_lists_every_fact_but_digests_and_escapes_markdown(tmp_path: Path) -> None:
+def test_evidence_escapes_markdown_and_lists_every_fact_except_digests(tmp_path: Path) -> None:
     found = patch(tmp_path, "a = 1\nb = 2\n", "a = 1\nb = 3\n")
     assert {BASE, SEAL, "fixture"} <= {key for key, _ in found.facts}
     (comment,) = json.loads(suggesting.review(found))["comments"]
@@ -52,7 +52,7 @@ def test_evidence_lists_every_fact_but_digests_and_escapes_markdown(tmp_path: Pa
 
 
 @pytest.mark.parametrize("content", [b"", b"x = 1\n", b"diff --git a/x b/x\n", b"\xff\xfe"])
-def test_other_files_are_no_patches(tmp_path: Path, content: bytes) -> None:
+def test_other_files_are_not_read_as_patches(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "x.patch"
     path.write_bytes(content)
     with pytest.raises(RepairError, match="is not a patch of TARL"):

@@ -63,5 +63,5 @@ def test_incompatible_changes_of_one_line_are_not_merged(old: str, one: str, oth
     assert agreed(change(old, one), change(old, other)) is None
 
 
-def test_changes_of_different_lines_do_not_agree_here() -> None:
+def test_changes_of_different_lines_are_not_merged_into_one() -> None:
     assert agreed(change("", "x = 1\n"), change("", "x = 1\n", start=4)) is None

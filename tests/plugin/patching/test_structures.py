@@ -61,7 +61,7 @@ def test_every_template_is_in_the_docs() -> None:
         assert contents(path)["example"]["after"].strip("\n").splitlines()[-1] in page
 
 
-def test_a_project_adds_templates_of_its_own_and_replaces_ours(tmp_path: Path) -> None:
+def test_a_project_adds_its_own_templates_and_can_replace_built_in_ones(tmp_path: Path) -> None:
     folder = tmp_path / "tarl_templates"
     folder.mkdir()
     (folder / "root.toml").write_text(
@@ -201,7 +201,9 @@ def test_state_is_declared_before_the_first_statement_that_uses_it(
     ("expression", "written"),
     [("margin", "margin + (self.length or 0.0)"), ("2.0 * gap", "2.0 * gap + (self.length or 0.0)")],
 )
-def test_a_sensor_that_may_be_missing_is_in_one_pair_of_parentheses(expression: str, written: str) -> None:
+def test_the_expression_for_a_sensor_that_may_be_missing_has_one_pair_of_parentheses(
+    expression: str, written: str
+) -> None:
     source = document("node.py", f"close = gap < {expression}\n")
     node = source.find(span(source.text, expression))
     edits = form_edits(source, node, Form(template(SHIPPED / "sum.toml")), {}, "", "self.length or 0.0")

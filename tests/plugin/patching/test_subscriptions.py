@@ -1,4 +1,4 @@
-"""Subscriptions that a guard needs: their place, their text, and that the node runs with them."""
+"""Subscriptions that a guard needs have the right place and text, and the node runs with them."""
 
 from __future__ import annotations
 
@@ -502,7 +502,7 @@ class Controller:
         ("import control as c\nController = c.Controller", "c.on_terrain"),
     ],
 )
-def test_a_value_used_in_another_module_is_kept_there(importing: str, target: str) -> None:
+def test_a_value_used_in_another_module_is_stored_in_that_module(importing: str, target: str) -> None:
     main = SCRIPT.replace("import rospy\n", f"import rospy\n{importing}\n").replace(
         "5 * pos", "Controller().command(pos)"
     )
@@ -581,7 +581,7 @@ def test_an_attribute_is_set_before_the_constructor_reads_it(early: str) -> None
     assert ros.run(repaired(sources, flows), "node.py")["driver"].gain == 5.0
 
 
-def test_a_constructor_that_leaves_subscribing_to_a_method_gets_a_class_attribute() -> None:
+def test_a_class_that_subscribes_outside_of_its_constructor_gets_a_class_attribute() -> None:
     text = ROSPY_CLASS.replace(
         "self.sub = rospy.Sub", "self.connect()\n\n    def connect(self):\n        self.sub = rospy.Sub"
     )
@@ -597,7 +597,7 @@ def test_a_constructor_that_leaves_subscribing_to_a_method_gets_a_class_attribut
     assert ros.published == [5.0, 12.0]
 
 
-def test_variables_of_several_topics_stand_together() -> None:
+def test_the_variables_for_several_topics_are_defined_together() -> None:
     front = Sensor("front", topic="/scan", field="angle_min", low=0, high=5, bins=5)
     sources = {"node.py": SCRIPT}
     flows = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
@@ -608,7 +608,7 @@ def test_variables_of_several_topics_stand_together() -> None:
     assert 'on_terrain)\n    rospy.Subscriber("/scan", LaserScan, on_front)\n' in changed
 
 
-def test_methods_without_empty_lines_between_them_stay_apart() -> None:
+def test_a_method_added_between_methods_keeps_their_spacing() -> None:
     sources = {"node.py": ROSPY_CLASS.replace("\n\n    def on_odom", "\n    def on_odom")}
     flows = subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber")
     assert "message.data\n\n    def on_odom" in repaired(sources, flows)["node.py"]

@@ -21,7 +21,7 @@ def drive(delta, pub):
 """
 
 
-def test_a_guarded_change_loses_nothing() -> None:
+def test_a_guarded_change_keeps_all_statements_and_comments() -> None:
     patched = NODE.replace(
         "    vel = GAIN * delta\n",
         "    if wet:\n        vel = 2.2 * GAIN * delta\n    else:\n        vel = GAIN * delta\n",
@@ -33,7 +33,7 @@ def test_the_changed_line_itself_may_differ() -> None:
     nothing_lost("node.py", NODE, NODE.replace("vel = GAIN * delta", "vel = 2.2 * GAIN * delta"), {8})
 
 
-def test_a_name_may_be_added_to_an_import_but_none_taken_away() -> None:
+def test_an_import_may_gain_a_name_but_not_lose_one() -> None:
     node = "from std_msgs.msg import Float64, String  # messages\n" + NODE
     nothing_lost("node.py", node, node.replace("import Float64", "import Bool, Float64"), {9})
     with pytest.raises(RepairError, match="import String"):

@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def quick_acceptance(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Accept a repair after 8 paired episodes, for tests of what a repair is and not of how certain it is."""
+    """Accept a repair after 8 paired episodes, for tests of its contents and not of its certainty."""
     for module in ("searching.accept", "repairing.accepting"):
         monkeypatch.setattr(f"pytest_tarl.{module}.SEEDS", 16)
     monkeypatch.setattr("pytest_tarl.searching.accept.EARLY", ())

@@ -28,7 +28,7 @@ SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
 NONE = Refused(None, "no operand helps")
 
 
-def test_any_refused_candidate_is_reported_rather_than_none() -> None:
+def test_a_refused_candidate_is_reported_if_no_other_is_left() -> None:
     refused = Refused(SOME, "gain too small")
     assert furthest(NONE, refused) is refused
     assert furthest(refused, NONE) is refused
@@ -111,7 +111,7 @@ class Field:
         return Outcome(LOT[kind](seed, drift is not None), passed=True)
 
     def mutate(self, operand: object, factor: float) -> None:
-        """Return None: there is no candidate in between."""
+        """Return None, as if no candidate lay between the two."""
 
     def foresee(self, wanted: object, drift: str | None) -> None:
         pass
@@ -196,7 +196,7 @@ def accepted_factor(field: Any, factors: Sequence[float]) -> float:
 def test_bisection_finds_a_repair_between_too_weak_and_harmful_values(
     low: float, share: float, further: float
 ) -> None:
-    """Windows of at least 30 %, approached from above; candidates beyond a harmful one do not run."""
+    """Windows of at least 30 % are approached from above; candidates beyond a harmful one do not run."""
     high = low * (1.3 + share)
     field: Any = Window(low, high)
     assert low <= accepted_factor(field, (high * 1.2, high * 1.2 * further * 1.1)) <= high
@@ -239,7 +239,7 @@ def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: f
 
 
 class Costly(Window):
-    """One operand that suffices from a factor on; the further it is moved, the less a mission earns."""
+    """One operand that suffices above a factor; the larger the factor, the less a mission earns."""
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         if candidate == ORIGINAL or drift is None:
@@ -346,7 +346,9 @@ def test_a_candidate_within_a_few_percent_of_an_examined_one_is_not_examined(
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_operand_uses_up_the_tests_and_no_candidate_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_operand_takes_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
@@ -407,7 +409,7 @@ def test_a_candidate_that_acts_like_a_rejected_one_is_not_tested_again(
 
 
 class TwoSided(Narrow):
-    """A limit that has to grow for some missions, and with which others fail if it grows too much."""
+    """A limit that must be raised for some missions, and with which other missions fail if it is raised too far."""
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         if candidate == ORIGINAL or drift is None:

@@ -53,7 +53,7 @@ def test_the_phases_of_a_repair_never_exceed_the_budget(
 
 
 @pytest.mark.parametrize(("gained", "episodes"), [(7.0, 13), (5.0, 10)])
-def test_promising_constants_get_a_reserve(gained: float, episodes: int) -> None:
+def test_part_of_the_budget_is_reserved_for_promising_constants(gained: float, episodes: int) -> None:
     pairs = tuple(Pair(seed, 0.0) for seed in range(40))
     goal = Goal(pairs, near=9.5, enough=10.0, online=0.0)
     trials = Trials(lambda *_: Outcome(gained, passed=True), 10, reserve=3, worth=goal)

@@ -58,7 +58,7 @@ def test_a_value_moves_towards_the_middle_until_it_loses_little_of_the_margin(
         assert trials.spent <= SEEDS
 
 
-def test_a_value_does_not_move_to_where_missions_fail_though_they_earn_more() -> None:
+def test_a_value_does_not_move_to_one_with_which_missions_earn_more_but_fail() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         found = factor(candidate.mutations[0]) or 0.0
         return Outcome(8.0 + found / 2.0, passed=found < 2.9)
@@ -71,7 +71,7 @@ def test_a_value_does_not_move_to_where_missions_fail_though_they_earn_more() ->
     assert 2.2 < reached < 2.9
 
 
-def test_a_value_does_not_move_to_where_missions_are_lost_that_a_rejected_one_lost() -> None:
+def test_a_value_does_not_move_to_one_that_loses_missions_which_a_rejected_value_lost() -> None:
     trials = world(4.0, 0.5)
     found = Candidate((Mutation(LITERAL, 5.0),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) != found
@@ -96,7 +96,7 @@ def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
 
 
 def powered(power: float, usual: float) -> Candidate:
-    """Return a scale by a power of a sensor, by factors of its two parameters."""
+    """Return a candidate that scales a constant by a power of a sensor, given factors of its two parameters."""
     made = template(SHIPPED / "power.toml")
     power_of = operand(6, "gap * gain, power", -1.0)
     both = power_of, replace(operand(6, "gap * gain, usual", 4.0), site=power_of.site)
@@ -107,7 +107,7 @@ def powered(power: float, usual: float) -> Candidate:
     )
 
 
-def test_a_power_stays_on_its_grid_while_the_usual_value_moves() -> None:
+def test_an_exponent_stays_on_its_grid_while_the_typical_value_is_moved() -> None:
     moved_to = moved(powered(-1.0, 0.9), 1.3, mutations)
     assert moved_to is not None
     assert [one.value for one in moved_to.mutations] == [-1.0, pytest.approx(1.17)]

@@ -12,10 +12,10 @@ from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate
 from tests.plugin.searching.test_search import operand
 
-NO_ORDER: Any = None  # edits of constants need none
+NO_ORDER: Any = None  # edits of constants need no order
 
 
-def test_uses_that_share_a_definition_share_its_edit() -> None:
+def test_uses_of_one_definition_share_the_edit_of_that_definition() -> None:
     low = replace(operand(5, "LIMIT", 1.0), definition=operand(1, "1.0", 1.0).span)
     high = replace(low, span=replace(low.span, column=low.span.column + 9))
     place = Place("node.py", 8, 11, 1, "LIMIT", 1.0)

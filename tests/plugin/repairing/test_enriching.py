@@ -1,4 +1,4 @@
-"""Rare failures: missions that are hard for a reason and occur rarely in the drifted world."""
+"""Rare failures: missions that fail for a detectable reason that is rare in the drifted world."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: f
     assert all(road.hard(pair.seed) for pair in goal.pairs)
     assert (
         trials.spent == len(road.ran) <= ENOUGH
-    )  # each run finds a hard mission or gives its designed reward
+    )  # each run either finds a hard mission or measures its designed reward
     assert len(goal.controls) == CONTROLS
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 
@@ -127,7 +127,7 @@ def test_a_repair_must_restore_half_of_what_a_mission_lost() -> None:
     assert not goal.reached(Outcome(HARD - 1.01, passed=True), seed)
 
 
-def test_nothing_runs_if_most_missions_lose_or_none_does() -> None:
+def test_no_extra_episode_runs_if_most_missions_lose_reward_or_none_does() -> None:
     for share in (0.0, 0.9):
         road: Any = Road(share)
         assert enriched(road, Trials(never, 300)) == road.order.goal

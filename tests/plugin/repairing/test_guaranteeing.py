@@ -17,7 +17,7 @@ def test_patch_page_and_result_state_bounds_of_the_repaired_program(tank: pytest
         "# bounds, designed and repaired",
     ]
     found = result(tank)["bounds"]
-    assert found["repaired"]["episodes"] == 12  # as many fresh seeds as the comparison has episodes
+    assert found["repaired"]["episodes"] == 12  # as many seeds as compared episodes
     assert found["repaired"]["success"]["low"] == pytest.approx(0.05 ** (1 / 12))
     assert found["nominal_repaired"]["success"]["exact"]
     (page,) = (tank.path / ".tarl" / "report").glob("*.html")

@@ -1,4 +1,4 @@
-"""A value that loses some missions of its test because it goes too far moves back towards the original."""
+"""A value that loses missions of its test because the change is too large is moved back towards the original."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FOUND = Candidate((Mutation(PATIENCE, 5.0),), ALWAYS)
 
 
 def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tuple[list[float], int]:
-    """Return the proposals after factor 5 lost a mission, where values from `low` to `high` hold, and the episodes."""
+    """Return the proposals after factor 5 lost a mission if factors from `low` to `high` hold, and the episodes run."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         by = factor(candidate.mutations[0]) or 1.0
@@ -41,7 +41,7 @@ def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tu
     trials = Trials(run, 50)
     others = Others(mutants, ledger, missed)
     proposed = [factor(one.mutations[0]) or 1.0 for one in others.inward(FOUND, trials)]
-    assert list(others.inward(FOUND, trials)) == []  # once for the same operands
+    assert list(others.inward(FOUND, trials)) == []  # the same operands are proposed only once
     return proposed, trials.spent
 
 

@@ -1,4 +1,4 @@
-"""A search moves quantities: no members of an enumeration, exponents, and nothing of which only the truth is asked."""
+"""A search changes quantities, but no members of an enumeration, exponents or values used only as truth values."""
 
 from __future__ import annotations
 

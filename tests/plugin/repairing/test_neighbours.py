@@ -1,4 +1,4 @@
-"""Regression tests: which missions of other tests run again under a candidate, and when they lose."""
+"""Regression tests: which missions of other tests are run with a candidate, and when they count as lost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def neighbour(
 
 
 class Mutants:
-    """Log all runs; a mission earns its episode's number plus `change`."""
+    """Log all runs; a mission earns the number of its episode plus `change`."""
 
     def __init__(
         self, neighbours: list[Any], change: float = 0.0, *, permanent: bool = False, fails: int = -1
@@ -97,7 +97,7 @@ def test_the_first_episodes_run_if_the_recording_lacks_the_sensor() -> None:
 
 
 @pytest.mark.parametrize(("change", "lost"), [(-0.5, False), (-0.51, True), (3.0, False)])
-def test_a_mission_loses_if_it_earns_less_than_recorded_by_more_than_the_margin(
+def test_a_mission_is_lost_if_it_earns_less_than_recorded_by_more_than_the_margin(
     change: float, lost: bool
 ) -> None:
     found = beside(Mutants([neighbour()], change), guard(7.0, 8.0))  # type: ignore[arg-type]
@@ -139,7 +139,7 @@ def test_losses_in_the_old_world_of_other_tests_are_allowed_under_a_permanent_dr
     assert under.lost
 
 
-def test_tests_of_other_nodes_are_left_alone() -> None:
+def test_tests_of_other_nodes_are_not_run() -> None:
     mutants = Mutants([neighbour(nodes=(Path("/project/other.py"),))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == 0  # type: ignore[arg-type]
     assert mutants.ran == []

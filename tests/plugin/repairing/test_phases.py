@@ -1,4 +1,4 @@
-"""What a repair does in its phases and says at its end, with searches that do as they are told here."""
+"""The phases of a repair and its final report, with searches whose results are fixed here."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ def test_a_ranking_replaces_effects_if_it_has_any(monkeypatch: pytest.MonkeyPatc
         (False, True, "not shown", "not shown"),
     ],
 )
-def test_the_reason_is_what_ended_the_search_if_nothing_was_tested(
+def test_if_no_candidate_was_tested_the_reason_states_why_the_search_ended(
     interrupted: bool, late: bool, reason: Any, expected: str
 ) -> None:
     examiner: Any = Examiner(refused=Refused(None, reason))
@@ -184,7 +184,9 @@ def noted(monkeypatch: pytest.MonkeyPatch, found: _Findings, of: Any = None, **p
     return [*_notes(mutants(of), examiner, found, Watch(of))]
 
 
-def test_notes_tell_what_was_left_out_and_what_ended_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notes_state_the_omitted_parts_and_the_reason_for_the_end_of_the_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     placing = SimpleNamespace(notes=lambda one: [f"at {one.mutations[0].value}"] * 2)
     accepted: Any = SimpleNamespace(candidate=ONE)
     found = _Findings(accepted=accepted, structure=7, episodes=40)
@@ -209,7 +211,7 @@ def test_notes_tell_what_was_left_out_and_what_ended_the_search(monkeypatch: pyt
         assert cut not in noted(monkeypatch, _Findings(), **quiet)
 
 
-def test_a_search_that_runs_out_of_time_names_the_budget_that_repeats_it(
+def test_a_search_that_runs_out_of_time_names_the_budget_with_which_it_can_be_repeated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     of = order()

@@ -1,4 +1,4 @@
-"""The place of a repair: the definition that is in force in this test, else the use."""
+"""A repair changes the definition of a constant that the test uses, else the place of use."""
 
 from __future__ import annotations
 

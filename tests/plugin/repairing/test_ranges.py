@@ -143,7 +143,7 @@ def test_every_four_seeds_of_a_test_are_spread_over_the_range(parts: dict[str, D
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e3))
-def test_the_parts_of_a_range_cover_it(low: float, width: float) -> None:
+def test_the_parts_of_a_range_cover_the_whole_range(low: float, width: float) -> None:
     bands = Sizes("", low, low + width).bands
     assert bands[0].low == low
     assert bands[-1].high == low + width

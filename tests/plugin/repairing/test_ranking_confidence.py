@@ -41,13 +41,13 @@ def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
     assert "--tarl-localize=full" in told
 
 
-def test_a_ranking_states_how_far_the_first_is_ahead() -> None:
+def test_a_ranking_states_by_how_much_the_first_line_leads() -> None:
     told = ranking_confidence(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
     assert "1 of 3 lines with constants gain anything alone" in told
     assert "the budget ended" not in told
 
 
-def test_a_line_that_others_beat_is_not_called_the_best() -> None:
+def test_the_first_line_is_not_called_the_best_if_other_lines_gain_more() -> None:
     assert "one line gains more than it in the drifted world (-" in ranking_confidence(
         ORDER, EFFECTS, accepted(BIAS), raced()
     )
@@ -65,7 +65,7 @@ def test_lines_repaired_together_are_reported_together() -> None:
     assert told.startswith("the first 2 were repaired together, which held on 12 fresh seeds; alone, ")
 
 
-def test_a_ranking_without_repair_and_an_incomplete_one_say_so() -> None:
+def test_a_ranking_says_if_it_is_incomplete_or_without_a_repair() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
     assert told.startswith("no repair confirms the first; ")
     assert told.endswith("the budget ended before all were ranked")

@@ -1,4 +1,4 @@
-"""A value that loses too much in its test moves on missions of that test, however near the better value is."""
+"""A value that loses too much reward in its test is improved on missions of that test, even by a small change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GOAL = Goal((Pair(0, 0.0),), near=9.0, enough=9.5, online=0.0, passing=True)
 
 
 def outcome(by: float, best: float, seed: int) -> Outcome:
-    """Return a mission that loses with the distance from the best factor, more on some seeds than on others."""
+    """Return a mission whose loss grows with the distance from the best factor, on some seeds faster than on others."""
     total = 10.0 - (1.0 + seed % 5) * 4.0 * abs(by / best - 1.0)
     return Outcome(total, total > 5.0)
 

@@ -1,4 +1,4 @@
-"""What a repair keeps of its candidates and concludes from it: on candidates and missions written down by hand."""
+"""The results that a repair stores on its candidates, and its conclusions from them, for values written by hand."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_the_best_candidate_so_far_counts_little_with_few_runs() -> None:
     one, two = scaled(2.0), scaled(3.0)
     found = watch((one, 0, 4.0), (two, 0, 3.0))
     assert found.best == one
-    found.saw(two, 1, Outcome(4.0, True))  # a gain of 3 in two runs counts 2, one of 4 in one run as well
+    found.saw(two, 1, Outcome(4.0, True))  # a gain counts runs / (runs + 1): 3·2/3 = 4·1/2
     assert found.best == one
     found.saw(two, 2, Outcome(5.5, True))
     assert found.best == two
@@ -130,7 +130,7 @@ def test_the_ledger_finds_alike_candidates_and_counts_tests_of_the_same_operands
         (scaled(3.0), scaled(2.0, of=OTHER), False),
     ],
 )
-def test_a_candidate_goes_further_in_the_same_direction(
+def test_a_candidate_is_further_if_it_changes_the_same_constants_more_in_the_same_direction(
     one: Candidate, other: Candidate, expected: bool
 ) -> None:
     assert further(one, other) is expected
@@ -158,7 +158,7 @@ def factors(of: Candidate | None) -> list[float]:
     return [factor(one) or math.nan for one in of.mutations]
 
 
-def test_a_bisection_halves_the_exponents_until_a_result_says_nothing() -> None:
+def test_a_bisection_halves_the_exponents_until_a_result_gives_no_direction() -> None:
     both = Candidate((*scaled(16.0).mutations, *scaled(1 / 16.0, of=OTHER).mutations), ALWAYS)
     between = Between(both, mutations)
     assert factors(between.middle()) == pytest.approx([4.0, 0.25], rel=0.01)
@@ -179,7 +179,7 @@ def test_a_bisection_begins_at_the_furthest_candidate_that_is_too_weak() -> None
     assert factors(between.middle()) == pytest.approx([8.0], rel=0.01)
 
 
-def test_neither_a_sign_nor_a_small_step_is_bisected() -> None:
+def test_a_change_of_sign_and_a_small_step_are_not_bisected() -> None:
     assert Between(scaled(-2.0), mutations).middle() is None
     assert Between(scaled(1.04), mutations).middle() is None
     assert Between(scaled(1 / 1.04), mutations).middle() is None
@@ -237,7 +237,7 @@ MARGIN = Reference([10.0, 10.0], 1.0, 1.0, 0.0)
 def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
     by: float, expected: float
 ) -> None:
-    """A mission earns 10 less 0.8 for each doubling between the factor and 3.4; below 1 it fails."""
+    """A mission earns 10 minus 0.8 times |log2(factor / 3.4)|, and fails if the factor is below 1."""
 
     def run(one: Candidate, seed: int) -> Outcome:
         value = factors(one)[0]
@@ -250,7 +250,7 @@ def test_a_value_is_increased_while_it_loses_more_than_a_third_of_the_margin(
 
 
 def acceptance(losses: dict[int, float], failed: Sequence[int] = (), **changes: Any) -> Acceptance:
-    """Return a test in which designed missions earn 10 and the candidate loses so much on each seed."""
+    """Return a test in which designed missions earn 10 and the candidate loses `losses[seed]` on each seed."""
     drifted = tuple(Outcome(10.0 - lost, seed not in failed) for seed, lost in losses.items())
     one = Acceptance(False, "not shown", drifted, (), seeds=(*losses,), designed=(10.0,) * len(losses))
     return replace(one, **changes)
@@ -273,8 +273,8 @@ def test_missions_of_a_test_are_lost_beyond_the_slack_of_the_search() -> None:
     )
     few = Missed()
     few.learn(one, little, GOAL, MARGIN)
-    assert few.seeds == [(2, 3.0)]  # a designed mission counts as earning the mean at most
-    assert few.poor == set()  # missions need not succeed here
+    assert few.seeds == [(2, 3.0)]  # a designed mission counts at most as the mean reward
+    assert few.poor == set()  # here, missions need not succeed
 
 
 @pytest.mark.parametrize(
@@ -299,7 +299,7 @@ def test_a_candidate_improves_on_a_refused_one_if_it_passes_all_of_its_lost_miss
 
 
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=40))
-def test_missions_at_equal_ranks_stand_for_the_test(losses: list[int]) -> None:
+def test_the_missions_that_represent_a_test_are_evenly_spaced_by_rank_of_loss(losses: list[int]) -> None:
     found = _spread(acceptance(dict(enumerate(map(float, losses)))))
     assert len(found) == min(5, len(losses))
     told = [one.loss for one in found]
@@ -367,7 +367,7 @@ def ranged(part: str = "") -> Any:
 
 @pytest.fixture
 def drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each seed draw a tenth of itself."""
+    """Let each seed draw a drift size of a tenth of the seed."""
     monkeypatch.setattr(
         ranges, "_drawn", lambda order, seed: dict.fromkeys(order.comparison.sizes, seed / 10)
     )
@@ -441,7 +441,7 @@ def test_a_repair_over_a_range_reports_the_drift_sizes_of_its_acceptance_test() 
     assert found.of == {"online": (1.0,), "repaired": (0.5, 1.5)}
 
 
-def test_the_goal_of_a_search_is_the_designed_reward_less_tolerance_and_spread() -> None:
+def test_the_goal_of_a_search_is_the_designed_reward_minus_tolerance_and_spread() -> None:
     online = [Pair(1, 5.0), Pair(2, 8.5), Pair(3, 6.0), Pair(4, 10.0)]
     reference = Reference([9.0, 11.0], 0.95, 1.5, 0.0)
     found = goal(online, reference, 20.0)

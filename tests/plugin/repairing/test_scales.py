@@ -1,4 +1,4 @@
-"""Which constants move on a scale of their own."""
+"""Which constants are changed on a second scale besides factors."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_values_near_one_and_small_offsets_have_a_second_scale_and_gains_do_not(
     assert found == {"ALPHA": SHARE, "ZERO_ANGLE": offset(0.3), "0.0": offset(0.1), "BIAS": offset(0.5)}
 
 
-def test_two_values_near_one_are_similar_if_their_distances_to_one_are() -> None:
+def test_two_values_near_one_are_similar_if_their_distances_to_one_are_similar() -> None:
     span = Span("node.py", 3, 5, 3, 9)
     share = Operand(SiteId("node", "run", "line 3"), span, "0.95", 0.95, span)
 

@@ -1,4 +1,4 @@
-"""Sensors that tell a drift, and the places at which their templates are tried."""
+"""Sensors that distinguish the drifted world, and the places at which their templates are tried."""
 
 from __future__ import annotations
 
@@ -50,12 +50,14 @@ def test_a_sensor_without_numbers_is_not_offered_to_templates() -> None:
 
 
 @pytest.mark.parametrize(("low", "high", "mean"), [(0, 1, 0.55), (-1, 0, 0.45), (-0.55, 0.45, 1.0)])
-def test_the_usual_size_is_that_in_the_drifted_world(low: float, high: float, mean: float) -> None:
+def test_the_typical_size_of_a_sensor_is_that_in_the_drifted_world(
+    low: float, high: float, mean: float
+) -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=low, high=high, bins=10)
     assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
 
 
-def test_the_usual_size_in_the_designed_world_is_known_too() -> None:
+def test_the_typical_size_of_a_sensor_in_the_designed_world_is_known_too() -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=0, high=1, bins=10)
     asked = order(0, 5, sensor)
     assert usual(asked, sensor, asked.fixture.sample) == pytest.approx(0.05)

@@ -85,7 +85,7 @@ def delayed() -> Command:
 
 
 def delayed_by_travel() -> Command:
-    """Return a command that sends each value once the second sensor has summed up to 6 since."""
+    """Return a command that sends each value after the second sensor has accumulated 6 since it arrived."""
     values: list[tuple[float, float]] = []
 
     def command(value: float, speed: float) -> float:
@@ -218,7 +218,7 @@ def test_a_template_is_found_for_any_origin_of_the_value(
 
 
 @pytest.mark.parametrize("usual", [0.8, 0.9, 1.15, 1.3])
-def test_the_usual_value_of_a_sensor_is_adjusted_where_the_bins_tell_it_wrongly(
+def test_the_typical_value_of_a_sensor_is_adjusted_if_the_bins_give_a_wrong_one(
     usual: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World("power", tmp_path)

@@ -1,4 +1,4 @@
-"""Start values of structural changes where the value was not recorded."""
+"""Start values of structural changes at expressions whose value was not recorded."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hand-made comparisons with realistic values."""
+"""Comparisons with realistic values, written by hand."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def compared(name: tuple[str, str], places: tuple[SitePlace, ...], cells, bad, p
 
 
 def replace_slices(one: ListComparison, value: float) -> ListComparison:
-    """Return the list with the same value for every slice, as for an empty region."""
+    """Return the list with equal values in both worlds for every slice, as for an empty region."""
     slices = tuple(replace(one_slice, offline=value, online=value) for one_slice in one.slices)
     return replace(one, slices=slices)
 
@@ -121,7 +121,7 @@ def search() -> SearchTrace:
 
 @pytest.fixture(scope="session")
 def shuttle() -> Comparison:
-    """The delivery robot: position and terrain, one list of seven sites, degraded and repaired."""
+    """A comparison of the delivery robot: two sensors, one list of seven sites, degraded and repaired."""
     cells = tuple(sorted([(i, 0) for i in range(24)] + [(i, 1) for i in range(10, 17)]))
     bad = tuple(cell for cell in cells if cell[1])
     places = sites("traveller.py", TRAVELLER)
@@ -163,7 +163,7 @@ def shuttle() -> Comparison:
 
 @pytest.fixture(scope="session")
 def two_lists(shuttle: Comparison) -> Comparison:
-    """Two taint lists that share a site, three sensors, a novel light and a refused repair."""
+    """A comparison with two lists that share a site, three sensors, a new value of the light, and a refused repair."""
     cells = tuple(
         sorted(
             (x, terrain, light)
@@ -274,7 +274,7 @@ def placeless(unrepaired: Comparison) -> Comparison:
 
 @pytest.fixture(scope="session")
 def listless(unrepaired: Comparison) -> Comparison:
-    """A verdict without lists, because every site was edited since the recording."""
+    """A comparison without taint lists, because every site was edited since the recording."""
     note = "All sites of /odom → /velocity changed since the recording: record again to see slices."
     return replace(unrepaired, lists=(), culprits=(), notes=(note,))
 

@@ -25,7 +25,7 @@ QUIET = (
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 DARK = "--blink-settings=preferredColorScheme=0"
 
-# This script acts like a reader once the page is drawn and stores what it finds.
+# After the page is drawn, this script clicks and hovers like a reader and stores the results.
 PROBE = """<script>(async () => {
 const found = {violations: []}, root = document.documentElement;
 addEventListener("securitypolicyviolation", event => found.violations.push(event.blockedURI));
@@ -71,7 +71,7 @@ document.body.dataset.found = JSON.stringify({
 
 @dataclass(frozen=True)
 class Seen:
-    """The results of the script in the page, and the lines of the browser's console."""
+    """The results of a script that ran in the page, and the lines of the browser's console."""
 
     found: dict[str, Any]
     console: list[str]
@@ -115,7 +115,7 @@ def shuttle_seen(browser, shuttle, tmp_path_factory) -> Seen:
 
 @pytest.fixture(scope="session")
 def follower_seen(browser, two_lists, tmp_path_factory) -> Seen:
-    """The page of two lists in dark mode, on a screen too narrow for three panels."""
+    """The page of a comparison with two taint lists, in dark mode, on a screen too narrow for three panels."""
     return opened(browser, render(two_lists), tmp_path_factory.mktemp("follower"), 500, DARK)
 
 

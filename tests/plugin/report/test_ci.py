@@ -1,4 +1,4 @@
-"""What build servers get: properties of a test case, and the annotation of a line on GitHub."""
+"""Results for build servers: JUnit properties of a test case, and GitHub annotations of a line."""
 
 from __future__ import annotations
 

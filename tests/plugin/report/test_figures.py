@@ -47,7 +47,7 @@ def test_regions_are_intervals_of_the_position_in_their_row(shuttle):
     assert len(false["paper"]) == 1
 
 
-def test_the_rows_are_the_category_that_explains_most_of_the_region(two_lists):
+def test_each_row_is_a_value_of_the_category_that_explains_most_of_the_region(two_lists):
     assert [two_lists.sensors[d].name for d in (plane(two_lists).position, plane(two_lists).split)] == [
         "x",
         "light",
@@ -107,7 +107,7 @@ def test_curves_are_running_means_and_keep_the_number_of_episodes(varied):
     assert online["name"] == "deployed (mud)"
 
 
-def test_every_search_has_a_curve_and_labels(shuttle):
+def test_every_search_has_a_labelled_curve(shuttle):
     searches = [curve for curve in reward_curves(shuttle) if curve["kind"] == "search"]
     assert [curve["name"] for curve in searches] == ["search: epsilon-greedy", "search: sweep"]
     assert len(searches[0]["labels"]) == 60
@@ -130,7 +130,7 @@ def test_unknown_slices_have_a_row_without_a_value(shuttle):
 
 
 @pytest.mark.parametrize("values", [[-3.0, 8.0], [1e-7], [-1e6, -2e6], [], [0.0], [math.nan, 2.0]])
-def test_scales_include_zero_and_all_values_and_have_a_few_round_ticks(values):
+def test_scales_include_zero_and_all_values_and_have_few_ticks_at_round_numbers(values):
     made = scale(values)
     for value in [0.0, *(v for v in values if math.isfinite(v))]:
         assert 0 <= made.at(value) <= 100

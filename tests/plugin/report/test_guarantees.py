@@ -1,4 +1,4 @@
-"""Bounds in sentences: every number is the bound's own, and rounding never promises more."""
+"""Sentences on bounds state the numbers of the bound, rounded so that they never promise more."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_a_bound_that_needs_more_episodes_says_how_many() -> None:
     assert len(list(sentences(replace(few, needed=0)))) == 3
 
 
-def test_equal_episodes_are_one_world_and_give_no_bounds() -> None:
+def test_equal_episodes_count_as_one_tested_world_and_give_no_bounds() -> None:
     one = replace(STATED, varied=False)
     (told,) = sentences(one)
     assert told.startswith("only one world was tested: all 200 episodes are equal (197 succeeded)")

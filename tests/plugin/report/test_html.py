@@ -174,7 +174,7 @@ def test_a_missing_package_is_reported_with_the_install_command(shuttle, monkeyp
         render(shuttle)
 
 
-def test_an_unwritable_path_gives_one_sentence(shuttle, tmp_path):
+def test_an_unwritable_path_is_reported_in_one_sentence(shuttle, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a directory")
     with pytest.raises(TarlError, match=r"The report .*report\.html cannot be written \("):

@@ -155,7 +155,7 @@ def test_the_same_comparison_gives_the_same_bytes_and_no_temporary_file(shuttle,
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_an_unwritable_path_gives_one_sentence(shuttle, tmp_path):
+def test_an_unwritable_path_is_reported_in_one_sentence(shuttle, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a directory")
     with pytest.raises(TarlError, match=r"The result .*result\.json cannot be written \("):

@@ -48,7 +48,7 @@ def test_a_repair_is_repeated_with_its_searches(
     )
 
 
-def test_without_a_repair_the_searches_are_not_repeated(varied: Varied) -> None:
+def test_the_command_omits_the_searches_if_they_found_no_repair(varied: Varied) -> None:
     one = varied(seed=0, repair=None, searches=searched("epsilon-greedy"))
     assert next_commands.repeat(one) == f"pytest {TEST} --tarl-online --tarl-drift mud"
 
@@ -81,5 +81,5 @@ def test_a_degraded_test_is_repaired_next_unless_its_missions_cannot_run_again(
     assert [*next_commands.next_steps(unchanged)] == []
 
 
-def test_lost_lists_are_recorded_again_first(varied: Varied) -> None:
+def test_if_taint_lists_were_lost_the_first_command_records_again(varied: Varied) -> None:
     assert [*next_commands.next_steps(varied(lists=()))] == [f"pytest {TEST} --tarl-record"]

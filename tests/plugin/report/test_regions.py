@@ -42,7 +42,7 @@ RING = st.sets(st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 1)
 
 
 @given(RING)
-def test_boxes_of_an_angle_that_meet_at_its_ends_are_one(cells):
+def test_boxes_that_meet_at_the_ends_of_an_angle_are_joined_to_one_box(cells):
     cover = boxes(cells)
     joined = closed(cover, 1, 8)
     assert {(x, angle % 8, z) for x, angle, z in inside(joined)} == cells
@@ -51,7 +51,7 @@ def test_boxes_of_an_angle_that_meet_at_its_ends_are_one(cells):
     assert not [box for box in joined if box[1][0] == 0 and (box[0], box[2]) in ends]
 
 
-def test_the_joined_box_of_an_angle_exceeds_the_range_by_what_lies_behind_its_end():
+def test_the_joined_box_of_an_angle_extends_beyond_the_range_by_its_part_behind_the_end():
     assert closed((((4, 4), (0, 1)), ((4, 4), (6, 7))), 1, 8) == (((4, 4), (6, 9)),)
 
 

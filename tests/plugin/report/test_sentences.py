@@ -110,7 +110,7 @@ def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(var
 
 KEPT = {
     "online": FormulaWorld(0.5, 0.25, 9, 0, None),
-    "offline": FormulaWorld(1e-300, 0.0, 9, 0, None),  # what a strict comparison gives at its limit
+    "offline": FormulaWorld(1e-300, 0.0, 9, 0, None),  # robustness of a strict comparison at its limit
 }
 BROKEN = {"online": FormulaWorld(-0.5, -1.0, 9, 3, 2.25), "repaired": FormulaWorld(2.0, 1.0, 4, 0, None)}
 FORMULAS = (FormulaRow("never", {}), FormulaRow("kept", KEPT), FormulaRow("broken", BROKEN))
@@ -167,14 +167,14 @@ def test_a_region_names_known_new_and_avoided_cells(varied: Varied) -> None:
     assert words.paper_region_words(varied(paper_region=((12, 1),))) == "x 5.0-5.4 m, terrain true"
 
 
-def test_a_place_is_relative_to_the_root_if_it_is_below() -> None:
+def test_a_path_is_relative_to_the_root_if_it_is_below_the_root() -> None:
     root = Path("/project")
     assert words.place("/project/src/a.py", 3, root) == "src/a.py:3"
     assert words.place("/other/a.py", 3, root) == "/other/a.py:3"
     assert words.place("src/a.py", 3, root) == "src/a.py:3"
 
 
-def test_code_is_cut_only_beyond_the_width() -> None:
+def test_code_is_cut_only_if_it_is_longer_than_the_width() -> None:
     assert words.one_line("x" * 20, 20) == "x" * 20
     assert words.one_line("x" * 18 + " yz", 20) == "x" * 18 + "…"
 
@@ -194,12 +194,12 @@ def test_a_table_row_has_test_drift_rewards_loss_verdict_and_region(varied: Vari
     assert table.row(quiet)[1:] == ("online", "n/a", "n/a", "0.10", "no difference", "")
 
 
-def test_after_three_texts_the_others_are_only_counted() -> None:
+def test_three_texts_are_listed_and_further_ones_only_counted() -> None:
     assert [*terminal._some(["a", "b", "c"])] == ["a", "b", "c"]
     assert [*terminal._some(["a", "b", "c", "d", "e"])] == ["a", "b", "c", "(and 2 more)"]
 
 
-def test_attempts_before_an_accepted_repair_are_counted_others_listed(
+def test_attempts_before_an_accepted_repair_are_counted_and_other_attempts_are_listed(
     varied: Varied, shuttle: Comparison
 ) -> None:
     history = tuple(Attempt(f"c{n}", "not confirmed", 1.0, 0, True) for n in range(5))

@@ -1,4 +1,4 @@
-"""Reward against the size of a drift: intervals in words, and a drawing that keeps order and proportion."""
+"""Reward by size of a drift: the intervals in words, and a drawing with correct order and proportions."""
 
 from __future__ import annotations
 

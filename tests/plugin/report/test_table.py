@@ -1,4 +1,4 @@
-"""Several drifts of one test, side by side."""
+"""The table of several drifts of one test."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def test_a_loss_without_a_region_says_so_and_has_no_slices(placeless):
     assert "nan" not in text
 
 
-def test_lost_lists_leave_the_verdict_and_a_note(listless):
+def test_without_taint_lists_the_section_has_the_verdict_and_a_note(listless):
     text = told(listless, 200)
     assert "record again to see slices" in text
     assert "degraded" in text

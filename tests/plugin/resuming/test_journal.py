@@ -1,4 +1,4 @@
-"""The file of kept episodes: whatever an interruption leaves of it, all whole episodes can be taken."""
+"""From the file of kept episodes, all complete episodes can be read after any interruption."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_a_new_run_replaces_the_file_at_its_first_episode(tmp_path: Path) -> Non
     assert conditions_of(path) == ({"keeper.py": "b2"}, 1)
 
 
-def test_two_runs_do_not_write_one_file(tmp_path: Path) -> None:
+def test_two_runs_cannot_write_the_same_file(tmp_path: Path) -> None:
     pytest.importorskip("fcntl")
     path = written(tmp_path / "a.episodes", [(1, b"x")])
     first = continued(path)
@@ -91,7 +91,9 @@ def test_two_runs_do_not_write_one_file(tmp_path: Path) -> None:
     assert conditions_of(path) == (CONDITIONS, 1)
 
 
-def test_a_full_disk_stops_keeping_but_not_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_full_disk_the_run_continues_without_keeping_episodes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(_: int) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -104,7 +106,7 @@ def test_a_full_disk_stops_keeping_but_not_the_run(tmp_path: Path, monkeypatch: 
     journal.close()
 
 
-def test_a_removed_file_takes_its_empty_folder_along(tmp_path: Path) -> None:
+def test_removing_the_file_also_removes_its_empty_folder(tmp_path: Path) -> None:
     first, second = (
         Journal(tmp_path / "unfinished" / name, CONDITIONS) for name in ("a.episodes", "b.episodes")
     )

@@ -22,7 +22,7 @@ STOPPING = """\
 
 @pytest.fixture
 def stopping(tank: pytest.Pytester) -> pytest.Pytester:
-    """A tank whose test counts its episodes, and stops in the one that the environment names."""
+    """A tank whose test counts its episodes and stops in the episode that an environment variable names."""
     changed(tank, "test_tank", "    draws = ", STOPPING)
     return tank
 
@@ -50,7 +50,7 @@ def kept(tank: pytest.Pytester) -> list[Path]:
 def test_a_killed_recording_continues_with_the_same_bytes(stopping: pytest.Pytester) -> None:
     stopping.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     whole = fixture_file(stopping).read_bytes()
-    assert ran(stopping) == 17  # the first one twice, to see whether it is reproducible
+    assert ran(stopping) == 17  # the first episode runs twice, to check that it is reproducible
     assert kept(stopping) == []
     fixture_file(stopping).unlink()
     interrupted(stopping, "9 SIGKILL", *RECORD)
@@ -58,7 +58,7 @@ def test_a_killed_recording_continues_with_the_same_bytes(stopping: pytest.Pytes
     found = stopping.runpytest(*RECORD, RESUME)
     found.assert_outcomes(passed=1, deselected=1)
     found.stdout.fnmatch_lines(["*9 finished episodes are kept from the interrupted run."])
-    assert ran(stopping) == 7 + 1  # the first kept one again, which counts as the second run of it
+    assert ran(stopping) == 7 + 1  # the first kept episode runs again, which is its second run
     assert fixture_file(stopping).read_bytes() == whole
     assert kept(stopping) == []
 
@@ -150,7 +150,9 @@ def test_without_kept_episodes_all_are_run(stopping: pytest.Pytester) -> None:
 
 
 @pytest.mark.parametrize("flags", [[], ["--tarl-online", "--tarl-log=a.log"]])
-def test_resuming_needs_episodes_that_are_simulated(tank: pytest.Pytester, flags: list[str]) -> None:
+def test_resuming_is_refused_for_episodes_that_are_not_simulated(
+    tank: pytest.Pytester, flags: list[str]
+) -> None:
     refused = tank.runpytest(RESUME, *flags)
     assert refused.ret == pytest.ExitCode.USAGE_ERROR
     refused.stderr.fnmatch_lines(["*--tarl-resume *"])

@@ -14,7 +14,7 @@ Start = Callable[..., Ros]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Return a function that starts a node's source in a new or given episode, closed after the test."""
+    """Return a function that starts the source of a node in a new or given episode, which is closed after the test."""
     open_episodes = []
 
     def start_node(source: str, *, ros: Ros | None = None, argv: tuple[str, ...] = (), **options: Any) -> Ros:

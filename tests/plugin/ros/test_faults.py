@@ -1,4 +1,4 @@
-"""Faults of topics and nodes: what each does to the messages, and that seeds determine it."""
+"""The effect of each fault of topics and nodes on the messages, and its dependence on the seed."""
 
 from __future__ import annotations
 

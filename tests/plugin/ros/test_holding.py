@@ -1,4 +1,4 @@
-"""Nodes that hold the interpreter or raise any exception: the place is reported, and the run continues or ends."""
+"""Nodes that hang or raise an exception: the line is reported, and the run continues or ends."""
 
 from __future__ import annotations
 

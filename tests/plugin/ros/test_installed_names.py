@@ -1,4 +1,4 @@
-"""Names, types and variables that a ROS installation has beside the client libraries."""
+"""Names, types and environment variables of a ROS installation other than those of the client libraries."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def test_nodes_read_the_variables_of_a_sourced_ros(
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     monkeypatch.setenv("ROS_VERSION", "")
     ros = start(f"import os, {library}; read = os.environ['ROS_DISTRO'], os.environ['ROS_VERSION']")
-    assert ros.namespace["read"] == (distribution, "")  # a variable that is set, also to nothing, stays
+    assert ros.namespace["read"] == (distribution, "")  # even an empty variable is not changed
     monkeypatch.delenv("ROS_VERSION")
     assert start(f"import os, {library}; read = os.environ.get('ROS_VERSION')").namespace["read"] == version
 

@@ -96,7 +96,7 @@ def test_each_node_has_its_own_keyboard(start: Start) -> None:
     ros.type("a\n", node="/other")
     ros.step(0.1)
     assert len(keys) == 1
-    assert len(ros.notes) == 1  # the other one still waits
+    assert len(ros.notes) == 1  # the other node still waits
     ros.type("b\n")
     ros.step(0.1)
     assert len(keys) == 3
@@ -114,7 +114,7 @@ def test_a_node_that_waits_in_vain_is_named(start: Start) -> None:
     assert not ros.notes
 
 
-def test_code_of_the_test_keeps_the_real_stream(start: Start) -> None:
+def test_code_of_the_test_still_reads_the_real_stdin(start: Start) -> None:
     before = sys.stdin
     ros = start(NODE.format(body=WAITING["input"]))
     assert sys.stdin is not before
@@ -124,7 +124,9 @@ def test_code_of_the_test_keeps_the_real_stream(start: Start) -> None:
     ros.close()
 
 
-def test_the_input_function_of_a_test_stays(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_input_function_that_the_test_sets_is_not_replaced(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
     answers = iter(["0.5", "1.5"])
     monkeypatch.setattr("builtins.input", lambda prompt="": next(answers))
     ros = start(
@@ -132,12 +134,14 @@ def test_the_input_function_of_a_test_stays(start: Start, monkeypatch: pytest.Mo
     )
     keys = heard(ros, "/keys")
     ros.step(1.0)
-    assert [one.data for one in keys] == ["1.5"]  # the first one was published before the test listened
+    assert [one.data for one in keys] == ["1.5"]  # the first message was published before the test subscribed
     assert not ros.notes
 
 
 @pytest.mark.parametrize("read", ["input()", "sys.stdin.readline().strip()", "next(sys.stdin).strip()"])
-def test_the_stream_of_a_test_stays(read: str, start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stream_that_the_test_sets_as_stdin_is_not_replaced(
+    read: str, start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
     stream = io.StringIO("0.5\n1.5\n")
     monkeypatch.setattr(sys, "stdin", stream)
     ros = Ros()

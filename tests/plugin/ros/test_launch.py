@@ -1,4 +1,4 @@
-"""Whole launch files under test: names, parameters, nodes that are not Python, and mistakes as sentences."""
+"""Tests of whole launch files: names, parameters, nodes that are not Python, and messages for mistakes."""
 
 from __future__ import annotations
 
@@ -202,7 +202,7 @@ def test_a_function_of_the_test_replaces_a_node_under_its_names(tarl: Tarl) -> N
     assert heard == [(0.0, 300.0), (0.2, 300.0), (0.4, 300.0)]
 
 
-def test_a_function_can_replace_a_python_node_and_its_errors_are_the_tests_own(tarl: Tarl) -> None:
+def test_a_function_can_replace_a_python_node_and_its_errors_are_errors_of_the_test(tarl: Tarl) -> None:
     def second(node: Any) -> None:
         node.every(1.0, lambda: 1 / 0)
 
@@ -213,7 +213,7 @@ def test_a_function_can_replace_a_python_node_and_its_errors_are_the_tests_own(t
 
 def test_two_nodes_of_one_ros2_program_share_no_module(tarl: Tarl) -> None:
     tarl.launch("relays/launch/pair.launch.xml", arguments={"robot": "r2"})
-    # left: gain 2 and top 4 from YAML; the other keeps its defaults, as no section of a file names it
+    # the left node gets gain 2 and top 4 from YAML; no section names the other node, which keeps its defaults
     assert sent(tarl, "/start", 1.0, 3.0) == pytest.approx(4.0 + 2 * 0.002)
     assert tarl.ros.subscribed >= {"/start", "/r2/middle"}
 
@@ -255,12 +255,14 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("empty.launch.xml", {}, r"empty\.launch\.xml starts no node with these arguments"),
     ],
 )  # fmt: skip
-def test_user_mistakes_give_one_sentence(tarl: Tarl, file: str, options: dict[str, Any], said: str) -> None:
+def test_user_mistakes_are_reported_in_one_sentence(
+    tarl: Tarl, file: str, options: dict[str, Any], said: str
+) -> None:
     with pytest.raises(SettingsError, match=said):
         tarl.launch(file, **options)
 
 
-def test_an_import_without_a_package_gives_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
+def test_an_import_without_a_package_is_reported_in_one_sentence(tarl: Tarl, tmp_path: Path) -> None:
     with pytest.raises(
         NodeError, match=r"No module named 'controllers' .*The package controllers is in the works"
     ):

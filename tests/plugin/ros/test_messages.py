@@ -28,7 +28,7 @@ def in_rosidl_range(number: float) -> bool:
     return not 3.402823466e38 < abs(number) < float("inf")
 
 
-def test_form_of_the_type_name_selects_the_generation() -> None:
+def test_the_form_of_the_type_name_selects_ros1_or_ros2_messages() -> None:
     assert field_names(message_type("std_msgs/Header")) == ("seq", "stamp", "frame_id")
     assert field_names(message_type("std_msgs/msg/Header")) == ("stamp", "frame_id")
     assert message_type("nav_msgs/Odometry") is message_type("nav_msgs/Odometry")
@@ -186,7 +186,7 @@ def test_float32_fields_are_rounded(single: float, double: float) -> None:
     st.integers(0, 2**31 - 1),
     st.text(max_size=5),
 )
-def test_translation_to_the_other_generation_and_back_changes_nothing(
+def test_translation_between_ros1_and_ros2_messages_and_back_changes_nothing(
     ranges: list[float], seconds: int, frame: str
 ) -> None:
     old, new = message_type("sensor_msgs/LaserScan"), message_type("sensor_msgs/msg/LaserScan")
@@ -238,7 +238,7 @@ def test_definitions_missing_in_rosbags_are_known() -> None:
     assert find_message("ros1", "nowhere_msgs", "Nothing") is None
 
 
-def test_generation_of_an_installed_package_is_recognised_by_its_files(
+def test_the_files_of_an_installed_package_show_whether_it_is_for_ros1_or_ros2(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for package, file in (("old_msgs", "_Twist.py"), ("new_msgs", "_twist.py")):

@@ -1,4 +1,4 @@
-"""A loop that asks for the time, or whether ROS is up, without a pause lets virtual time pass."""
+"""Virtual time passes in a loop that polls the clock or the state of ROS without a pause."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ WAITS = {  # a loop that ends after two seconds
 
 
 @pytest.mark.parametrize("way", WAITS)
-def test_a_loop_that_asks_for_the_time_ends_in_time(way: str, start: Start) -> None:
+def test_a_loop_that_polls_the_clock_ends_at_the_intended_time(way: str, start: Start) -> None:
     ros = start(f"{ROSPY}{WAITS[way]}\nended = rospy.get_time()\nrospy.spin()")
     ros.step(1.9)
     assert ros.namespace["ended"] is None  # type: ignore[attr-defined]
@@ -107,6 +107,6 @@ rospy.spin()
     assert len(ros.namespace["fresh"]) == 1  # type: ignore[attr-defined]
 
 
-def test_a_loop_that_asks_nothing_still_never_waits(start: Start) -> None:
+def test_a_loop_that_makes_no_ros_call_is_still_reported_as_never_waiting(start: Start) -> None:
     with pytest.raises(StuckNodeError, match="never waits"):
         start(f"{ROSPY}while not seen: pass", watchdog_limit=0.2)

@@ -150,7 +150,7 @@ def test_publishing_a_value_that_does_not_fit_its_type_is_a_node_error(start: St
         """)
 
 
-def test_names_are_resolved_in_namespace_privately_and_by_remapping(start: Start) -> None:
+def test_names_are_resolved_with_namespace_private_and_remapped(start: Start) -> None:
     ros = start(
         """
         import rospy

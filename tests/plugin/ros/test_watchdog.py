@@ -1,4 +1,4 @@
-"""The watchdog stops a node that computes endlessly or hangs outside of ROS, but none that a busy machine delays."""
+"""The watchdog stops a node that computes endlessly or hangs outside of ROS, but no node delayed by a busy machine."""
 
 import time
 

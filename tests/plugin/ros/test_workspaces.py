@@ -220,7 +220,7 @@ def test_parameters_of_ros2_come_from_launch_files_in_python(launches: Path, sta
     assert started(start, launches, NODE2, found, kp=3.0)["found"] == {"kp": 3.0, "limits.top": 4}
 
 
-def test_parameters_of_the_namespace_follow_the_node(launches: Path) -> None:
+def test_a_node_gets_the_parameters_of_its_enclosing_namespaces(launches: Path) -> None:
     text = """
         <launch>
           <param name="everywhere" value="1"/>

@@ -52,7 +52,7 @@ def judged(
     return accept(drifted, nominal, designed, seeds(at), REFERENCE, RISK)
 
 
-def test_a_repair_as_good_as_designed_is_accepted() -> None:
+def test_a_repair_that_restores_the_designed_reward_is_accepted() -> None:
     found = judged(world(DESIGNED), world(DESIGNED, seed=1))
     assert found.accepted
     assert found.tested
@@ -86,10 +86,10 @@ def test_failed_missions_count_even_if_the_reward_is_right() -> None:
 
 
 @pytest.mark.parametrize(("drifted", "reason"), [(True, "fails too often"), (False, "nominal gets worse")])
-def test_a_failure_among_the_first_missions_refuses_without_spending_the_risk(
+def test_a_candidate_that_fails_in_an_early_mission_is_refused_without_spending_risk(
     drifted: bool, reason: str
 ) -> None:
-    """The bet would be sized by that failure, so no test could be won with it."""
+    """If the stake of the bet were computed from the failed mission, no test could be won."""
 
     def run(episode: int) -> Outcome:
         failed = episode == seeds(0)[3]
@@ -165,7 +165,7 @@ def test_the_risks_of_all_tests_add_up_to_alpha() -> None:
     assert all(later < earlier for earlier, later in itertools.pairwise(risks))
 
 
-def test_no_failure_in_59_missions_shows_five_percent() -> None:
+def test_59_missions_without_a_failure_show_a_failure_rate_below_five_percent() -> None:
     assert rate(59, 59, 0.95).low > 0.95 > rate(58, 58, 0.95).low
     assert acceptance_numbers((59,), 0.05, 0.05) == (0,)
     assert acceptance_numbers((58,), 0.05, 0.05) == (NEVER,)
@@ -235,7 +235,7 @@ def test_failure_rates_that_vary_over_a_range_do_not_raise_the_risk(
 
 @settings(max_examples=40, deadline=None)
 @given(STRATA, st.lists(st.floats(-20, 5), min_size=2, max_size=8), st.integers(0, 2**16))
-def test_a_bet_is_rarely_won_if_the_strata_lose_the_margin_on_average(
+def test_a_bet_is_rarely_won_if_the_average_loss_over_the_strata_is_the_margin(
     weights: list[float], known: list[float], seed: int
 ) -> None:
     """The strata lose different amounts whose mean is exactly the margin; looks come after whole blocks."""
@@ -252,7 +252,7 @@ def test_a_bet_is_rarely_won_if_the_strata_lose_the_margin_on_average(
     assert won <= RISK + 4 * np.sqrt(RISK / 300) + 0.01
 
 
-def test_a_declared_range_bounds_the_loss_of_a_mission_up_to_a_designed_total() -> None:
+def test_a_declared_range_bounds_the_loss_of_a_mission_from_its_designed_total() -> None:
     recorded = Reference([9.9, 10.1], 1.0, MARGIN, 8.0)
     declared = Reference([9.9, 10.1], 1.0, MARGIN, 6.0, 11.0)
     failing_dearly = Reference([9.9, 10.1], 1.0, MARGIN, -500.0, 11.0)

@@ -84,6 +84,4 @@ def test_the_history_does_not_depend_on_the_number_of_workers(search: Callable[[
     for workers in (2, 7):
         again, named, executor = history(search, workers)
         assert (again, named) == (totals, labels)
-        assert (
-            executor.most > workers
-        )  # while one result is used, as many episodes can run as there are workers
+        assert executor.most > workers  # each worker can run an episode while one result is used

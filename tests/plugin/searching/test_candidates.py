@@ -1,4 +1,4 @@
-"""Candidate guards: proposals from region and novelty, and how often each holds."""
+"""Candidate guards are proposed from the region and from new cells; how often each guard holds."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def evidence(
     return Evidence(sensors, *worlds, region, changes or {})
 
 
-def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
+def test_guards_on_one_sensor_come_before_pairs_and_narrow_guards_before_wide_ones() -> None:
     guards = candidate_guards(evidence(REGION))
     assert guards[0] == ALWAYS
     assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
@@ -78,13 +78,13 @@ def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
     assert max(sizes) == 2
 
 
-def test_guards_to_search_under_hold_where_much_changed_and_rarely_elsewhere() -> None:
+def test_the_guards_for_a_search_hold_where_much_changed_and_rarely_elsewhere() -> None:
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
     seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
 
 
-def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
+def test_if_the_region_spans_everything_the_observed_changes_propose_a_guard() -> None:
     spread = Region((*REGION.cells, (0, 0), (9, 0)))
     seen = evidence(spread, changes=CHANGES)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
@@ -140,7 +140,7 @@ def test_an_interval_is_unbounded_if_no_bin_was_seen_beyond_it() -> None:
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
 
-def test_novel_cells_propose_their_own_value() -> None:
+def test_new_cells_propose_a_guard_on_their_own_value() -> None:
     seen = evidence(Region(((2, 0), (3, 0)), ((5, 1),)), worlds=(drive(1, range(0)), ONLINE))
     guards = candidate_guards(seen)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards
@@ -161,7 +161,7 @@ def test_share_and_firing_episodes_count_steps_and_seeds() -> None:
     assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)
 
 
-def test_a_widened_guard_includes_all_values_outside_the_range_or_none() -> None:
+def test_a_widened_guard_includes_either_all_values_beyond_the_range_or_none() -> None:
     outside = world(9, [(x, 0) for x in (-1, 0, 1, 2, 5, 8, 9, 10)])
     for region in (((1, 0), (2, 0)), ((8, 0),)):
         guards = candidate_guards(evidence(Region(region), worlds=(outside, outside)))

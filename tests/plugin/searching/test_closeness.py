@@ -1,4 +1,4 @@
-"""Of repairs that earn the same, the one with which missions run as designed comes first."""
+"""Of repairs with equal reward, the one whose missions are most like designed ones comes first."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_plainer_alternatives_include_only_constants_changed_on_the_same_scale()
     assert calls_of(getter, [getter, Unit((call,)), Unit((call,), SHARE)]) == [Unit((call,))]
 
 
-def test_rivals_are_named_constants_of_the_same_function_that_matter() -> None:
+def test_rivals_are_named_constants_of_the_same_function_that_affect_missions() -> None:
     gains = Gains(0.1)
     for at, gain in ((LEAK, 9.0), (POWER, 0.3), (ROOM, 0.0), (ELSEWHERE, 1.0)):
         for factor in (2.2, 0.4):

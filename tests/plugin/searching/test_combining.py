@@ -1,4 +1,4 @@
-"""Combined repairs and joint searches, step by step, in worlds whose rewards are written down here."""
+"""Combined repairs and joint searches, step by step, in worlds with given rewards."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Earned = Callable[[Mapping[str, float]], float]
 
 
 def selection(earned: Earned, units: tuple[Unit, ...] = (A, B, C), **gains: Mapping[float, float]) -> Any:
-    """Return a selection in a world where a combination earns by the factors of its constants."""
+    """Return a forward selection in a world where factors of constants determine the reward."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(earned({one.operand.code: float(one.value) for one in candidate.mutations}), True)
@@ -50,7 +50,7 @@ def factors(candidate: Candidate) -> dict[str, float]:
 
 
 def finished(steps: Iterable[Candidate]) -> tuple[list[dict[str, float]], Any]:
-    """Return what a generator yields and returns."""
+    """Return the yielded values and the return value of a generator."""
     found: list[dict[str, float]] = []
     ended: list[Any] = []
 
@@ -72,7 +72,7 @@ def test_parts_of_a_combination_are_replaced_and_dropped() -> None:
     assert both.without(A).parts == ((B, 3.0),)
 
 
-def test_joining_a_constant_begins_with_its_better_small_factor() -> None:
+def test_adding_a_constant_to_a_combination_starts_with_its_better_small_factor() -> None:
     chosen = selection(lambda _: 0.0, A={2.2: 1.0}, B={2.2: 1.0, 0.4: 2.0})
     added = [one.parts[-1] for one in chosen._with_another(joint((A, 2.2)))]
     assert added == [(B, 0.4), (C, 2.2), (B, 2.2), (C, 0.4)]
@@ -91,7 +91,7 @@ def test_forward_selection_adds_the_best_constant_while_the_gain_exceeds_the_sla
     assert all(len(label.split(",")) <= 2 for label in little.trials.labels)  # no third part
 
 
-def test_a_combination_that_holds_is_yielded_once_without_parts_that_it_does_not_need() -> None:
+def test_a_combination_that_holds_is_yielded_once_without_its_unneeded_parts() -> None:
     chosen = selection(lambda by: 10.0 if {"A", "B"} <= by.keys() else 0.0)
     found, gain = finished(chosen.gain(joint((A, 2.2), (B, 2.2), (C, 2.2))))
     assert (found, gain) == ([{"A": 2.2, "B": 2.2}], 10.0)
@@ -160,7 +160,7 @@ def test_a_candidate_is_confirmed_once() -> None:
 
 def test_the_covariance_equals_the_matern_kernel_of_order_five_halves() -> None:
     found = _kernel(np.array([[[0.0], [4.0]]]), np.array([2.0]))
-    scaled = sqrt(5.0)  # at a distance of one length
+    scaled = sqrt(5.0)  # at a distance of one length scale
     assert found == pytest.approx(np.array([[1.0, (1 + scaled + 5 / 3) * exp(-scaled)]]))
 
 
@@ -272,12 +272,12 @@ def greedy(totals: Mapping[str, float], seeds: int, budget: int = 999) -> Epsilo
     return EpsilonGreedy(operands, mutations, (ALWAYS,), Trials(run, budget), goal, range(seeds), generator)
 
 
-def test_epsilon_greedy_yields_what_reaches_the_goal_and_reports_mean_gains() -> None:
+def test_epsilon_greedy_yields_candidates_that_reach_the_goal_and_reports_mean_gains() -> None:
     search = greedy({"A": 10.0, "B": 4.0}, 60)
     found = [factors(one) for one in search.candidates()]
     assert {name for one in found for name in one} == {"A"}
     effects = {name: one.effect for (one,) in search.effects().values() for name in [one.code]}
-    assert effects == {"A": 9.0, "B": 3.0}  # none for what cannot be written
+    assert effects == {"A": 9.0, "B": 3.0}  # a change that cannot be written has no effect
     assert search.refused
     assert len(found) <= EpsilonGreedy.CONFIRMED
 

@@ -14,7 +14,7 @@ CANDIDATE = Candidate((), Guard(()))
 def asked(
     totals: list[float], first: int = 0, *, enough: float = 5.0, near: float = 4.0
 ) -> tuple[bool, list[int]]:
-    """Return whether a candidate with these totals by seed is confirmed, and the seeds that ran."""
+    """Return whether a candidate with these total rewards by seed is confirmed, and the seeds that ran."""
     pairs = tuple(Pair(seed, 0.0) for seed in range(len(totals)))
     ran: list[int] = []
 

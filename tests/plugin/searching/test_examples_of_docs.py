@@ -1,4 +1,4 @@
-"""The optimisers in the documentation work as described: each finds the gain, reproducibly."""
+"""Each optimiser in the documentation finds the right gain, reproducibly."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ def test_a_constant_without_effect_alone_is_combined_with_two_that_gain_much() -
     assert trials.spent < 80
 
 
-def test_seeds_that_other_candidates_missed_come_first_in_a_confirmation() -> None:
+def test_seeds_on_which_other_candidates_failed_come_first_in_a_confirmation() -> None:
     hard = 7
 
     def run(candidate: Candidate, seed: int) -> Outcome:

@@ -1,4 +1,4 @@
-"""The table of gains, and the small questions that searches ask it, on values written down by hand."""
+"""The table of gains and its queries, on values written by hand."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WET = Guard((Conjunct(Sensor("wet", topic="/wet", field="data"), 1, 1),))
 
 
 def constant(line: int, code: str, value: float | None = 2.0) -> Operand:
-    """Return a use of a named constant; each statement is a site of its own."""
+    """Return a use of a named constant; each statement is a separate site."""
     made = operand(line, code, 2.0)
     return replace(
         made,
@@ -46,7 +46,7 @@ A, B, C = (Unit((constant(n, name),)) for n, name in enumerate(("A", "B", "C"), 
 
 
 def gains(slack: float = 0.5) -> Gains:
-    """A gains 4 with 2.2 and 5 with 5.0, B loses both ways and gains 1 where it is wet, C changes nothing."""
+    """A gains 4 with 2.2 and 5 with 5.0; B loses with either factor but gains 1 under WET; C has no effect."""
     found = Gains(slack)
     for unit, guard, factor, gain in (
         (A, ALWAYS, 2.2, 4.0),
@@ -102,9 +102,9 @@ def test_a_constant_has_an_effect_if_any_factor_changed_an_episode() -> None:
     assert found.moving([C, B, A]) == [B, A]
     one_way = Gains(0.5)
     one_way.enter((C, ALWAYS), 2.2, 0.0)
-    assert one_way.moving([C, A]) == [C, A]  # moved one way only, or never tried
+    assert one_way.moving([C, A]) == [C, A]  # moved in one direction only, or never tried
     one_way.enter((C, WET), 0.4, 0.0)
-    assert one_way.moving([C, A]) == [A]  # both ways, under any guard
+    assert one_way.moving([C, A]) == [A]  # moved in both directions, under any guard
 
 
 def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
@@ -114,9 +114,9 @@ def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     assert found.lost_both_ways(ALWAYS, [A, B], (2.2, 0.4, 5.0)) == []
     least = Gains(0.5)
     for unit, factor, gain, moved in (
-        (A, 2.2, -0.5, True),  # not more than the slack
+        (A, 2.2, -0.5, True),  # a gain not above the slack
         (A, 0.4, -9.0, True),
-        (B, 2.2, 0.0, True),  # a mission that already earned the least
+        (B, 2.2, 0.0, True),  # a mission that already earned the least possible reward
         (B, 0.4, -9.0, True),
         (C, 2.2, 0.0, False),
         (C, 0.4, -9.0, True),
@@ -125,7 +125,7 @@ def test_constants_that_lose_when_raised_and_when_lowered_are_found() -> None:
     assert least.lost_both_ways(ALWAYS, [A, B, C], (2.2, 0.4)) == [B]
 
 
-def test_constants_are_sorted_by_their_gain_with_a_factor() -> None:
+def test_constants_are_sorted_by_the_gain_that_each_has_with_a_given_factor() -> None:
     found = gains()
     found.enter((B, ALWAYS), 5.0, 6.0)
     assert found.leading(5.0, ALWAYS, [A, B, C], 5.0) == [B, A]
@@ -186,7 +186,7 @@ def test_gravity_and_pi_are_recognised_by_name_and_value(value: float | None, ex
     assert of_nature(constant(7, "G", value)) is expected
 
 
-def test_a_constant_of_nature_with_its_sign_flipped_stays_one() -> None:
+def test_a_constant_of_nature_with_a_flipped_sign_is_still_a_constant_of_nature() -> None:
     assert oddness([Mutation(GRAVITY, -1.0)]) is Oddness.NATURE
 
 
@@ -318,7 +318,7 @@ def test_an_arm_counts_as_worse_only_after_three_common_seeds(
         assert not (behind(other, one) and behind(one, other))
 
 
-def test_the_confidence_interval_of_a_lead_is_that_of_student() -> None:
+def test_the_confidence_interval_of_a_lead_is_students_t_interval() -> None:
     low, high = ahead_by([1.0, 2.0, 3.0])  # 2 ± 4.3027·1/√3
     assert (low, high) == pytest.approx((2 - 4.3027 / math.sqrt(3), 2 + 4.3027 / math.sqrt(3)), abs=2e-3)
 
@@ -328,7 +328,7 @@ def test_the_certainty_of_a_ranking_counts_sites_that_gain() -> None:
     ranking.race = race(
         {
             (A, 2.2): {0: 3.0, 1: 3.1, 2: 2.9},
-            (A, 5.0): {0: 9.0},  # one seed may be luck
+            (A, 5.0): {0: 9.0},  # a gain on one seed may be chance
             (B, 2.2): {0: 5.0, 1: 5.2, 2: 4.9},
             (C, 2.2): {0: 0.5, 1: 0.7},
         }
@@ -364,7 +364,7 @@ def test_the_interval_around_bins_of_an_angle_is_the_shortest_arc(
     assert _hull(some, 0, ANGLE) == arc
 
 
-def test_an_interval_spans_everything_if_it_covers_all_visited_bins() -> None:
+def test_an_interval_is_unrestricted_if_it_covers_all_visited_bins() -> None:
     assert _spans((2, 4), {2, 4}, LINE)
     assert not _spans((2, 4), {2, 5}, LINE)
     assert _spans((7, 9), {0, 1, 7}, ANGLE)

@@ -1,4 +1,4 @@
-"""Where a repair makes missions go in another way than designed, constants that restore the design come first."""
+"""If a repair changes the course of missions, constants that restore the designed course come first."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ REACTION = named(8, "REACTION", 0.15)
 def searched(
     operands: Sequence[Operand], windows: Mapping[Operand, Range], steps: Mapping[Operand, int] | None = None
 ) -> Sweep:
-    """A world that any of some operands restores, by a factor in its window; `steps` are the missions' lengths then."""
+    """A world that each operand restores by a factor in its window; `steps` are the lengths of the missions then."""
     lengths = steps or {}
 
     def run(candidate: Candidate, seed: int) -> Outcome:
@@ -66,7 +66,7 @@ def order(search: Sweep, many: int) -> list[Operand]:
 
 
 @pytest.mark.parametrize("value", [9.81, -9.81, 9.80665, 9.8, 3.14159, math.pi, 3.14, 6.2832])
-def test_a_constant_of_nature_is_moved_last(value: float) -> None:
+def test_the_search_moves_constants_of_nature_last(value: float) -> None:
     constant = named(4, "G", value)
     assert of_nature(constant)
     assert writing(constant) is oddness([Mutation(constant, 2.2)]) is Oddness.NATURE
@@ -84,7 +84,7 @@ def test_another_constant_of_the_function_is_corrected_before_gravity() -> None:
     assert order(search, 2) == [PADS, GRAVITY]
 
 
-def test_a_repair_that_prolongs_missions_comes_after_one_that_does_not() -> None:
+def test_a_repair_that_makes_missions_longer_comes_after_one_that_does_not() -> None:
     windows = {CRUISE: (0.3, 0.5), PADS: (0.6, 0.7)}
     slow = searched((REACTION, PADS, CRUISE), windows, {CRUISE: 3 * STEPS})
     assert order(slow, 2) == [PADS, CRUISE]
@@ -92,7 +92,7 @@ def test_a_repair_that_prolongs_missions_comes_after_one_that_does_not() -> None
     assert order(as_designed, 1) == [CRUISE]
 
 
-def test_without_a_gentler_repair_the_search_for_one_takes_few_episodes() -> None:
+def test_if_there_is_no_gentler_repair_the_search_for_one_takes_few_episodes() -> None:
     many = tuple(named(at, f"LIMIT_{at}", 2.0) for at in range(10, 18))
     kept = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)})
     slow = searched((*many, CRUISE), {CRUISE: (0.3, 0.5)}, {CRUISE: 3 * STEPS})

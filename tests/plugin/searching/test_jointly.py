@@ -25,11 +25,11 @@ def operand(line: int, code: str, value: float = 2.0, path: str = "node.py") -> 
 
 STIFF, DAMPED = operand(3, "STIFF"), operand(4, "DAMPED")
 OTHERS = tuple(operand(line, f"OTHER_{line}") for line in range(5, 10))
-WANTED = 12.0  # what both constants at their best gain
+WANTED = 12.0  # gain of both constants at their best values
 
 
 def swing(candidate: Candidate, seed: int) -> Outcome:
-    """A ridge: both constants must grow, by 3 and by 6.5, and each alone gains a part at most."""
+    """A ridge: the constants must be multiplied by 3 and by 6.5; one alone restores at most a part of the reward."""
     moved = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
     if min(moved.values(), default=1.0) < 0:
         return Outcome(-9.0, False)

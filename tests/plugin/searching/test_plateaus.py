@@ -1,4 +1,4 @@
-"""Where only the end is rewarded, failed missions earn the same: what they did tells which constants matter."""
+"""If only success is rewarded, all failed missions earn the same; their course shows which constants matter."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INERT = [operand(line, f"{line}.5", line + 0.5) for line in range(4, 14)]
 
 
 def searched(low: float, high: float, steps: int | None) -> tuple[Candidate | None, int]:
-    """Search a world in which one factor of one constant succeeds; return what was found and the episodes."""
+    """Search a world in which one factor of one constant succeeds; return the result and the number of episodes."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         moved = {one.operand: factor(one) or 1.0 for one in candidate.mutations}
@@ -33,7 +33,7 @@ def searched(low: float, high: float, steps: int | None) -> tuple[Candidate | No
     return found, trials.spent
 
 
-def test_a_constant_that_changes_failed_missions_gets_small_steps_before_those_that_do_not() -> None:
+def test_constants_that_change_failed_missions_get_small_steps_before_other_constants() -> None:
     found, spent = searched(1.4, 1.8, STEPS)
     blind, more = searched(1.4, 1.8, None)
     assert found is not None
@@ -50,7 +50,7 @@ def test_steps_become_smaller_while_nothing_gains() -> None:
 
 
 def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() -> None:
-    """A limit at 1 changes nothing, one at 0.4 holds; the other proposals lose."""
+    """With a limit of 1 nothing changes and with a limit of 0.4 missions succeed; other values lose reward."""
     tried: list[tuple[object, float]] = []
 
     def run(candidate: Candidate, seed: int) -> Outcome:

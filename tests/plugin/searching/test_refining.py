@@ -1,4 +1,4 @@
-"""Where the next values of a constant lie, and which constants need none."""
+"""The next values of a constant in a search, and the constants that need no further values."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from tests.plugin.searching.test_search import operand
             {1.1: 0.0, 1.16: 5.0, 1.22: 0.0, 1.0: 0.0},
             [1.13, 1.19],
         ),  # a sharp peak is narrower than its neighbours
-        ({1.1: 4.0, 1.16: 5.0, 1.22: 3.0, 1.0: 0.0}, []),  # a flat one is not
-        ({1.0: 0.0, 1.1: 2.0, 1.05: 0.0, 1.16: 0.0}, []),  # and a small one may be luck
+        ({1.1: 4.0, 1.16: 5.0, 1.22: 3.0, 1.0: 0.0}, []),  # a flat peak needs no further values
+        ({1.0: 0.0, 1.1: 2.0, 1.05: 0.0, 1.16: 0.0}, []),  # a small gain may be chance
         ({1.0: 0.0, 1.1: 9.5, 1.05: 9.0, 1.16: 9.0}, [1.075, 1.13]),  # nearly there
         ({1.0: 0.0, 1.14: 5.0, 1.13: 0.0, 1.15: 0.0}, []),  # 2 % are the limit
         ({1.0: 0.0, -1.0: 5.0, 2.2: 1.0}, [-0.435, -2.3]),  # the sign stays
@@ -43,7 +43,7 @@ def test_uses_of_one_constant_that_act_alike_are_tried_once() -> None:
     gains = Gains(0.1)
     for unit in (passed, used, other):
         gains.enter((unit, ALWAYS), 2.2, 0.01)
-    assert gains.distinct([passed, used, other]) == [passed, used, other]  # one factor may be chance
+    assert gains.distinct([passed, used, other]) == [passed, used, other]  # one equal result may be chance
     for unit in (passed, used, other):
         gains.enter((unit, ALWAYS), 0.4, -0.2)
     assert gains.distinct([passed, used, other]) == [passed, other]

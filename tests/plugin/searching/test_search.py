@@ -1,4 +1,4 @@
-"""Searches on a small made-up world: the drift makes one gain too weak; others do nothing or harm."""
+"""Searches in a small world: the drift makes one gain too weak; changes of other gains have no effect or do harm."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def test_an_episode_runs_once_per_candidate_and_seed() -> None:
     assert trials.spent == 1
 
 
-def test_a_candidate_no_better_than_one_that_fell_short_is_dropped_early() -> None:
+def test_a_candidate_that_gains_no_more_than_a_failed_one_is_dropped_early() -> None:
     def plateau(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(9.1 + 0.01 * seed, True)
 
@@ -151,7 +151,7 @@ def test_a_candidate_no_better_than_one_that_fell_short_is_dropped_early() -> No
         assert trials.spent - before == runs
 
 
-def test_a_candidate_better_than_one_that_fell_short_is_confirmed() -> None:
+def test_a_candidate_that_gains_more_than_a_failed_one_is_confirmed() -> None:
     def rising(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(7.0 + float(candidate.mutations[0].value), True)
 
@@ -246,7 +246,7 @@ NARROW = 1.2  # right factor; a result up to 7 % smaller also holds
 
 
 def run_narrow(candidate: Candidate, seed: int) -> Outcome:
-    """Missions fail sooner or later, except within a narrow window of one constant."""
+    """Missions fail early or late, except within a narrow window of one constant."""
     (mutation,) = candidate.mutations
     factor = float(mutation.value) / float(mutation.operand.value or 1)
     if mutation.operand == GAIN and NARROW / 1.07 < factor < NARROW * 1.07:

@@ -1,4 +1,4 @@
-"""Goals, the budget of episodes and the outcomes kept, with episodes that earn what is written down here."""
+"""Goals, the budget of episodes and the stored outcomes, for episodes with given rewards."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_episodes_ahead_are_unknown_ones_that_the_budget_allows() -> None:
         ({ONE: {0: 4.5, 1: 5.5}}, True),  # gains 4.5 = 60 % of 7.5
         ({ONE: {0: 4.4, 1: 5.5}}, False),
         ({ONE: {0: 9.0}, TWO: {1: 9.0}}, False),  # one seed each
-        ({ONE: {0: 9.0, 7: 9.0}}, False),  # of which one lost nothing
+        ({ONE: {0: 9.0, 7: 9.0}}, False),  # one of these missions lost nothing
     ],
 )
 def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
@@ -180,8 +180,8 @@ def test_a_confirmation_begins_with_at_most_two_seeds_on_which_others_failed() -
     ("totals", "goal", "expected", "runs"),
     [
         ([9.0, 9.0, 9.0], GOAL, True, 3),
-        ([9.0, 8.9, 9.0], GOAL, False, 3),  # near everywhere, but too little on average
-        ([7.0, 10.0, 10.0], GOAL, True, 3),  # one seed may fall short
+        ([9.0, 8.9, 9.0], GOAL, False, 3),  # near the goal on all seeds, but too little on average
+        ([7.0, 10.0, 10.0], GOAL, True, 3),  # one seed may miss the goal
         ([7.0, 10.0, 7.0], GOAL, False, 3),
         ([7.0, 7.0, 10.0], GOAL, False, 2),
         ([10.0, 4.0, 10.0], replace(GOAL, passing=True), False, 2),
@@ -209,7 +209,7 @@ def test_a_candidate_that_loses_known_missions_is_not_confirmed_and_runs_nothing
     assert ran.spent == 0
 
 
-def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None:
+def test_designed_missions_run_to_compute_the_deviation_are_charged_once_per_seed() -> None:
     ran = Trials(lambda *_: Outcome(2.0, True, rewards=(2.0, 0.0)), 9)
     assert ran.deviation(ONE, [0, 1]) == 0.0
     assert (ran.spent, ran.beside) == (2, 0)
@@ -219,7 +219,7 @@ def test_designed_missions_for_the_deviation_are_charged_once_per_seed() -> None
     assert (ran.spent, ran.beside) == (6, 2)
 
 
-def test_the_label_and_the_effect_of_a_change() -> None:
+def test_a_change_has_a_label_and_an_effective_value_and_an_effect() -> None:
     literal = mutations(operand(3, "2.0", 2.0), 2.2)
     name = replace(operand(4, "KP", 3.0), definition=operand(1, "3.0", 3.0).span)
     factor = mutations(name, 2.2)

@@ -121,7 +121,7 @@ def multiplied(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def test_the_repair_of_a_combination_reports_its_distance_before_and_after() -> None:
-    """Without the repair, the margin is lost where a · b = 1 / 6; with it, nowhere up to the end of the ray."""
+    """Without the repair, the margin is 0 at a · b = 1 / 6; the repair keeps it positive up to the end of the ray."""
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     failed = failure(space, {"a": 0.45, "b": 0.45})
     designation = Designation((), (), drifts={"world": Drift(space)}, min_success=0.95, tolerance=0.5)
@@ -174,7 +174,7 @@ def test_attempted_repairs_are_listed_in_text_json_and_page() -> None:
     assert "nothing was repaired" in page.render(replace(found, repairs=()))
 
 
-def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
+def test_a_repair_that_loses_reward_elsewhere_is_withheld() -> None:
     wide, narrow = Margin("mud", 1.0, 0.0, 0.2, 0.1), Margin("mud", 1.0, 0.0, 0.5, 0.3)
     row = Row("t[world]", wide, wide)
     fine = tuple(Outcome(True, 9.0 + n / 100) for n in range(60))
@@ -193,7 +193,7 @@ def test_a_repair_that_loses_elsewhere_is_withheld() -> None:
 @pytest.mark.parametrize(
     ("stopped", "kept", "told"), [(True, True, "interrupted before"), (False, False, "withheld")]
 )
-def test_a_patch_stays_after_ctrl_c_and_goes_if_it_loses(
+def test_a_patch_is_kept_after_ctrl_c_and_removed_if_it_loses_reward(
     stopped: bool, kept: bool, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "a.patch").write_text("patch")

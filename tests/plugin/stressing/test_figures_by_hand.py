@@ -32,7 +32,7 @@ SLOPE, DEPTH = SPACE.extents["slope"], SPACE.extents["mud"]
 
 
 def elements(drawn: str, kind: str) -> list[dict[str, str]]:
-    """Return the attributes of the elements of a kind; a text has its own as `text`."""
+    """Return the attributes of the elements of a kind; the content of a text element has the key `text`."""
     root = ElementTree.fromstring(drawn)
     return [{**one.attrib, "text": one.text or ""} for one in root.findall(f".//{{*}}{kind}")]
 
@@ -53,7 +53,7 @@ UNIT = ((tornado_figure.WIDTH - tornado_figure.LABEL) / 2 - tornado_figure.END) 
 MIDDLE = tornado_figure.LABEL + (tornado_figure.WIDTH - tornado_figure.LABEL) / 2
 
 
-def test_bars_reach_to_the_margin_lost_on_the_side_of_their_end() -> None:
+def test_a_bar_is_as_long_as_the_margin_lost_towards_its_end() -> None:
     drawn = tornado(stress(*LOST))
     bars = [(float(one["x"]), float(one["width"]), float(one["y"])) for one in elements(drawn, "rect")]
     step = tornado_figure.BAR + tornado_figure.GAP
@@ -106,7 +106,7 @@ def test_directions_are_ranked_by_the_largest_margin_that_they_lose() -> None:
 
 
 class Model:
-    """A prediction whose margin is 10 times the first coordinate plus the second, and whose spread is the second."""
+    """A prediction with margin 10 x + y and standard deviation y, for coordinates x and y."""
 
     def moments(self, vectors: Any) -> tuple[Any, Any]:
         return 10 * vectors[:, 0] + vectors[:, 1], vectors[:, 1]
@@ -179,7 +179,7 @@ def test_a_map_is_drawn_with_its_first_row_at_the_bottom() -> None:
     assert crosses[0] == "M285.0 107.0l10 10m0 -10l-10 10"
     assert (
         len(crosses) == 2
-    )  # the failure with another option is outside of the plane; the other is the legend's
+    )  # the failure with another option lies outside of the plane; the second mark belongs to the legend
     assert "holds in 50 % of the area, fails in 25 %, and is undecided in 25 %" in drawn
 
 
@@ -242,7 +242,7 @@ def test_the_line_of_a_direction_passes_nominal_with_the_designed_margin() -> No
     assert [one["text"] for one in elements(drawn, "text")][:3] == ["-1", "0", "1"]
 
 
-def test_the_spread_of_a_margin_with_failures_is_half_of_its_interval() -> None:
+def test_the_standard_deviation_of_a_margin_with_failures_is_half_of_its_interval() -> None:
     one = replace(GIVEN, rate=0.5, share=1.0)
     outcomes = [Outcome(True, 10.0)] * 15 + [Outcome(False, 10.0)]
     margin, deviation = margin_of(one, outcomes, [Outcome(True, 10.0)] * 16)

@@ -1,4 +1,4 @@
-"""Intervals of boundaries contain the true boundary at the stated confidence, in worlds in which it is known."""
+"""In worlds with known boundaries, intervals contain the boundary at the stated confidence."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def at(point: Point, draws: np.random.Generator) -> np.random.Generator:
 
 
 def rare_failures(edge: float, scale: float) -> World:
-    """Return a world in which 5 % of episodes fail at the edge; each point has noise of its own."""
+    """Return a world in which 5 % of the episodes fail at the edge; the noise of each point is independent."""
     centre = edge + scale * log(GUARANTEED / (1.0 - GUARANTEED))
 
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
@@ -47,7 +47,7 @@ def rare_failures(edge: float, scale: float) -> World:
 
 
 def own_limits(edge: float, scale: float) -> World:
-    """Return a world in which each seed fails beyond a drift of its own, 5 % of them before the edge."""
+    """Return a world in which each seed fails beyond its own drift size, 5 % of the seeds before the edge."""
     return lambda point, draws: (bool(point["size"] < edge + scale * (draws.gumbel() + log(-log(0.05)))), 1.0)
 
 
@@ -99,13 +99,15 @@ def test_intervals_contain_the_boundary_and_are_narrow(
     assert len(found) >= 0.9 * RUNS
     assert sum(contained) >= CONFIDENCE * len(found)
     assert fmean(one.far - (one.near or 0.0) for _, _, one in found) < narrow
-    if make is rare_failures:  # the search overlooks them, so that this test can fail
+    if make is rare_failures:  # the search misses these failures, so this test could fail
         assert sum(before) <= 0.75 * len(found)
 
 
 @pytest.mark.parametrize("share", [0.6, 0.9, 0.95, 0.98])
 @pytest.mark.parametrize("risk", [0.08, 0.01])
-def test_all_tests_of_one_drift_size_together_err_with_at_most_their_risk(share: float, risk: float) -> None:
+def test_all_tests_of_one_drift_size_together_have_at_most_the_stated_risk_of_an_error(
+    share: float, risk: float
+) -> None:
     total = 0.0
     for allowed, part in enumerate(SHARES):
         episodes = least(share, allowed, part * risk)
@@ -120,7 +122,7 @@ def test_all_tests_of_one_drift_size_together_err_with_at_most_their_risk(share:
     assert total <= risk
 
 
-def test_values_at_which_the_guarantee_fails_are_rarely_shown_to_hold() -> None:
+def test_values_at_which_the_guarantee_fails_are_rarely_declared_to_hold() -> None:
     shown = 0
     for seed in range(20):
         evaluator = evaluator_of(rare_failures(0.5, 0.05), SPACE, seed=seed)
@@ -128,7 +130,7 @@ def test_values_at_which_the_guarantee_fails_are_rarely_shown_to_hold() -> None:
     assert shown <= 4  # exceeded with probability 0.003 if each is shown at 5 %
 
 
-def test_without_budget_for_the_near_end_only_the_far_end_is_printed() -> None:
+def test_only_the_far_end_of_a_boundary_is_printed_if_the_budget_ends_before_the_near_end() -> None:
     found = stressed(own_limits(0.4, 0.005), SPACE, budget=130)
     (size,) = (sentences for name, sentences in words.directions(found) if name == "size")
     assert "(boundary not beyond 0.4" in size[0]
@@ -136,7 +138,7 @@ def test_without_budget_for_the_near_end_only_the_far_end_is_printed() -> None:
     assert (boundary["held_up_to"], boundary["confidence"]) == (None, CONFIDENCE)
 
 
-def test_a_suspicious_direction_is_shown_to_hold_before_it() -> None:
+def test_a_direction_with_a_suspected_failure_is_shown_to_hold_up_to_it() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() > 0.07 * (point["size"] > 0.8)), 1.0  # too rare to be confirmed
 

@@ -36,7 +36,7 @@ def cliff(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def check(content: bytes, folder: Path) -> None:
-    """Whatever is read can be printed and simulated: numbers inside the space, and not its nominal point."""
+    """All points that are read lie inside the space and differ from its nominal point."""
     path = folder / "failing.json"
     path.write_bytes(content)
     for point in kept.read(path, SPACE):
@@ -74,7 +74,7 @@ def test_files_of_kept_failures_with_unexpected_contents_are_ignored(tmp_path: P
     assert kept.read(path, SPACE) == []
 
 
-def test_a_folder_in_place_of_the_file_is_ignored(tmp_path: Path) -> None:
+def test_a_folder_in_place_of_the_file_of_failures_is_read_as_no_failures(tmp_path: Path) -> None:
     assert kept.read(tmp_path, SPACE) == []
 
 

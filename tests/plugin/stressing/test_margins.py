@@ -1,4 +1,4 @@
-"""Files of margins: written by stress runs, compared between revisions, told in comments."""
+"""Files of margins: written by stress runs, compared between revisions, reported in comments."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_margins_read_back_as_written(found: Margins) -> None:
     st.binary()
     | st.recursive(st.none() | st.text() | st.floats(), st.lists).map(lambda one: repr(one).encode())
 )
-def test_other_files_are_refused_with_a_sentence(content: bytes) -> None:
+def test_other_files_are_refused_with_one_sentence(content: bytes) -> None:
     with pytest.raises(FixtureError, match=r"a\.json: not a file of margins"):
         read(content, "a.json")
 
@@ -78,7 +78,7 @@ VALUES = (
 
 @given(st.sampled_from(KEYS), st.sampled_from(VALUES))
 @example(("guarantee", "loss"), 10**400)
-def test_any_value_in_a_file_is_read_or_refused_with_a_sentence(key: tuple[Any, ...], value: Any) -> None:
+def test_any_value_in_a_file_is_read_or_refused_with_one_sentence(key: tuple[Any, ...], value: Any) -> None:
     document = json.loads(text(FOUND))
     place = document
     for part in key[:-1]:
@@ -172,7 +172,7 @@ def test_diff_compares_with_a_revision_and_fails_if_asked(
         (("broken.json", ".tarl/margins"), "broken.json: not a file of margins"),
     ],
 )
-def test_wrong_places_are_user_errors(
+def test_an_unknown_revision_or_path_is_a_user_error(
     arguments: tuple[str, ...],
     told: str,
     tmp_path: Path,

@@ -1,4 +1,4 @@
-"""The models that choose drifts to test, on few values worked out by hand."""
+"""The models that choose the drifts to test, on a few values checked by hand."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from tests.plugin.stressing.test_words_by_hand import (
 )
 
 
-def test_the_chance_that_few_of_some_episodes_fail_is_binomial() -> None:
+def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> None:
     model = Model({0.5: seen(1.0)}, 0.5)
     weights = np.zeros((len(CENTRES), len(SCALES)))
-    weights[100, -1] = 1.0  # an episode fails beyond 0.5, in half of the cases there
+    weights[100, -1] = 1.0  # an episode fails beyond 0.5, and in half of the cases at 0.5
     model.__dict__["_weights"] = weights
     assert CENTRES[100] == pytest.approx(0.5)
     assert model._passing(0.5, 3, 3) == pytest.approx(1 / 8)
@@ -85,10 +85,10 @@ def test_pairs_of_directions_farther_than_a_known_failure_are_not_tested() -> No
     together = Together(0.1, inside, [combined(mud=0.0, slope=1.0)])
     proposed: list[Any] = []
     pairs(evaluator, together, proposed)
-    assert (ran, proposed, together.tried) == ([], [], 0)  # the only pairs are as far as the one known
+    assert (ran, proposed, together.tried) == ([], [], 0)  # all pairs are as far as the known one
     free = Together(0.1, inside)
     pairs(evaluator, free, proposed)
-    assert free.tried == 2  # not both ends of one range
+    assert free.tried == 2  # pairs never combine both ends of one range
     assert {one["slope"] for one in ran if one["mud"] == 0.0} == {-1.0, 1.0}
     assert len(proposed) == 2
     assert all(one["mud"] > 3.8 for one in proposed)  # bisected towards nominal
@@ -98,7 +98,7 @@ def test_the_prior_covariance_of_two_drifts_equals_the_formula() -> None:
     one, other = np.array([[0.3, 0.0]]), np.array([[0.1, -0.2], [0.3, 0.0]])
 
     def smooth(a: float, b: float, squares: float) -> float:
-        """Return what two squared distances from nominal and that between the drifts leave of a unit variance."""
+        """Return a term of the prior covariance of two drifts, from squared distances to nominal and to each other."""
         return float(np.exp(-squares / (2 * 0.3**2)) - np.exp(-(a + b) / (2 * 0.3**2)))
 
     far = (
@@ -124,7 +124,7 @@ def test_a_prediction_returns_the_losses_where_drifts_were_tried_and_less_on_the
     assert found.deeper(2.0).excess(np.array([[-0.6, 0.0]])) == pytest.approx([0.0], abs=0.03)
 
 
-def test_the_shortest_failing_vector_is_where_the_loss_can_just_be_shown() -> None:
+def test_the_shortest_failing_vector_is_the_one_whose_loss_is_just_detectable() -> None:
     found = model([(0.2, 0.4), (0.4, 0.8), (0.8, 1.6)])
     vector = found.shortest(0.0, 2.0, np.random.default_rng(0))
     assert vector is not None
@@ -137,7 +137,7 @@ def test_the_shortest_failing_vector_is_where_the_loss_can_just_be_shown() -> No
     assert np.linalg.norm(cautious) > np.linalg.norm(vector)
 
 
-def test_failing_episodes_make_a_drift_fail_whatever_it_earns() -> None:
+def test_a_drift_with_failing_episodes_fails_for_any_reward() -> None:
     vectors = np.array([[-0.4, 0.0]])
     assert model([(0.4, 0.0)]).failing(vectors)[0] < 0.01
     assert model([(0.4, 0.0)], failed=30).failing(vectors)[0] > 0.9

@@ -46,7 +46,7 @@ def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, ca
 
 
 def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, int]:
-    """Return the mean loss, the standard deviation of that, and how many of how many episodes failed."""
+    """Return the mean loss, its standard deviation, the number of failed episodes and the number of episodes."""
     losses, failed = evaluator.losses(point)
     return fmean(losses), 0.05, failed, len(losses)
 
@@ -78,7 +78,7 @@ def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:
     assert np.linalg.norm(deeper) > 1.05 * np.linalg.norm(shortest)
 
 
-def test_the_prediction_finds_the_nearest_failure_without_a_sign_in_the_reward() -> None:
+def test_the_prediction_finds_the_nearest_failure_even_if_rewards_do_not_indicate_it() -> None:
     space = space_of(a=Drift.range(0.0, 1.0, nominal=0.0), b=Drift.range(0.0, 1.0, nominal=0.0))
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.8, 1.0), space)
     coordinates = Coordinates(space, space.nominal)
@@ -127,7 +127,7 @@ def test_an_exception_under_a_generated_drift_is_raised_once() -> None:
 
 
 def test_evolution_leaves_the_global_generator_alone() -> None:
-    """Nodes may draw from it in the process of the search, but not in workers."""
+    """Nodes may draw from the global generator in the process of the search, but not in workers."""
     reached: list[list[float]] = []
     for state in (1, 2):
         np.random.seed(state)
@@ -145,7 +145,7 @@ def test_evolution_leaves_the_global_generator_alone() -> None:
     assert min(reached[0]) < 0.05
 
 
-def test_two_directions_that_multiply_fail_near_their_true_boundary() -> None:
+def test_the_search_finds_the_boundary_of_two_directions_whose_effects_multiply() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return True, 10.0 - 0.5 * 4.0 * point["a"] * point["b"] + float(draws.normal(0.0, 0.1))
 
@@ -154,13 +154,13 @@ def test_two_directions_that_multiply_fail_near_their_true_boundary() -> None:
     assert nearest.distance < 1.1 * sqrt(0.5)  # 4 a b = 1 at a = b = 0.5
 
 
-def test_without_the_extra_the_message_names_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_about_a_missing_extra_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     assert extras.missing_stress("--tarl-stress") is None
     monkeypatch.setattr(extras, "STRESS", ("cma", "no_such_package"))
     assert "--tarl-stress needs no_such_package" in str(extras.missing_stress("--tarl-stress"))
 
 
-def test_clearly_failing_drifts_are_candidates_where_the_model_misled_nearby() -> None:
+def test_clearly_failing_drifts_are_candidates_if_the_model_was_wrong_nearby() -> None:
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
     evaluator = evaluator_of(lambda point, _: (point["a"] + point["b"] < 0.9, 1.0), space)
     points = [{"a": 0.1 * number, "b": 0.1 * number} for number in range(1, 10)]
@@ -173,7 +173,7 @@ def test_clearly_failing_drifts_are_candidates_where_the_model_misled_nearby() -
 
 
 def test_spread_drifts_fill_all_directions_within_the_unit_ball() -> None:
-    coordinates = Coordinates(SPACE, SPACE.nominal)  # a goes both ways, b only down
+    coordinates = Coordinates(SPACE, SPACE.nominal)  # a has both signs, b only the negative one
     vectors = np.array(list(islice(spread(coordinates, np.random.default_rng(0)), 200)))
     lengths = np.linalg.norm(vectors, axis=1)
     assert lengths.min() >= CLOSEST
@@ -197,7 +197,7 @@ def test_a_narrow_failing_region_near_nominal_is_found_beside_a_wide_one() -> No
         c=Drift.range(0.0, 1.0, nominal=0.0),
     )
     nearest = stressed(world, space, budget=600).failures[0]
-    assert nearest.distance < 0.4  # the narrow region begins at 0.27, the wide one at about 0.77
+    assert nearest.distance < 0.4  # the regions begin at distances of 0.27 and about 0.77
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])

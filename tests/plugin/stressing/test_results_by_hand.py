@@ -128,7 +128,7 @@ def test_vectors_are_clipped_to_the_declared_ranges_and_to_a_maximum_length() ->
         (0.8, 0.0, -1.0),
     ],
 )
-def test_the_margin_is_the_lesser_of_both_shares(passed: float, loss: float, expected: float) -> None:
+def test_the_margin_is_the_smaller_one_of_the_two_shares(passed: float, loss: float, expected: float) -> None:
     assert GIVEN.margin(passed, loss) == pytest.approx(expected)
 
 
@@ -166,7 +166,7 @@ def test_the_standard_error_of_a_margin_equals_the_formula() -> None:
 
 
 def test_the_numbers_of_passed_episodes_that_prove_or_refute_the_guarantee_are_known() -> None:
-    """Of 8 episodes at a rate of 0.9: 0.9⁸ = 0.43, so that even 8 passes show nothing; 44 show it at 1 %."""
+    """At a rate of 0.9, 8 episodes all pass with probability 0.9⁸ = 0.43 and show nothing; 44 passes suffice at 1 %."""
     assert not enough_pass(GIVEN, [FINE] * 43, 0.01)
     assert enough_pass(GIVEN, [FINE] * 44, 0.01)  # 0.9⁴⁴ = 0.0097
     assert least(0.9, 0, 0.01) == 44
@@ -257,7 +257,7 @@ def test_a_bisection_halves_the_interval_to_a_fiftieth_of_the_range() -> None:
     assert undecided.bracket == (0.5, 0.53125)
 
 
-def test_directions_that_hold_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
+def test_directions_that_do_not_fail_alone_are_listed_with_the_share_up_to_which_they_hold() -> None:
     harmless = [curve(MUD, {1.0: 1.0}), curve(LEFT, {1.0: 1.0})]
     failing = [curve(FLAT, GOOD), curve(STEEP, {0.25: -1.0}), curve(DOWN, {1.0: -1.0})]
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
@@ -285,7 +285,7 @@ def test_tests_of_combinations_divide_the_risk_and_skip_what_is_known() -> None:
     together.confirm(chain, evaluator)
     assert risks == pytest.approx([0.03, 0.01, 0.005])
     assert [one.point["mud"] for one in together.found] == [1.0]
-    together.confirm([combined(mud=0.5, slope=0.75).point], evaluator)  # beyond the one found
+    together.confirm([combined(mud=0.5, slope=0.75).point], evaluator)  # beyond the failure found
     together.confirm([SPACE.nominal], evaluator)
     assert together.tests == 3
     together.confirm([combined(mud=1.0).point], evaluator)

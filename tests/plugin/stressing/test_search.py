@@ -1,4 +1,4 @@
-"""Boundaries and combinations in worlds in which they are known."""
+"""The search finds the known boundaries and failing combinations of small worlds."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_noise_rarely_gives_a_boundary(spread: float) -> None:
     assert not any(one.failures for one in found)
 
 
-def test_an_interval_of_failures_is_not_reported_as_monotone() -> None:
+def test_failures_within_an_interval_only_are_not_reported_as_monotone() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return not 0.4 < point["mud"] < 0.6, float(draws.normal(1.0, 0.01))
 
@@ -194,7 +194,7 @@ def test_the_same_seed_gives_the_same_bytes_on_any_number_of_workers(
     assert plans[0] == plans[1]
 
 
-def test_the_margin_is_one_as_designed_and_zero_at_the_guarantee() -> None:
+def test_the_margin_is_one_in_the_designed_world_and_zero_where_the_guarantee_is_just_met() -> None:
     given_ = evaluator_of(lambda _, draws: noisy(10.0, draws), space_of(mud=MUD)).guarantee
     assert given_.margin(1.0, 0.0) == 1.0
     assert given_.margin(1.0, given_.tolerance) == pytest.approx(0.0)
@@ -211,7 +211,7 @@ def test_one_failure_in_few_episodes_does_not_refute_the_guarantee() -> None:
     assert not refuted(given_, [fine] * 15 + [failed], [fine] * 16, 0.01)
     assert refuted(given_, [fine] * 4 + [failed] * 12, [fine] * 16, 0.01)
     assert refuted(given_, [Outcome(True, 9.0)] * 16, [fine] * 16, 0.01)
-    wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, but from a few episodes
+    wild = [Outcome(True, 10.0)] * 12 + [Outcome(True, 6.0)] * 4  # a mean of 9, due to few episodes
     assert not refuted(given_, wild, [fine] * 16, 0.01)
 
 

@@ -78,7 +78,7 @@ def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
 
 @dataclass
 class Recording(Simulated):
-    """A world whose node runs statement 0 always and 1 in failures only; `plans` must ask for a recording."""
+    """A world whose node runs statement 0 always and statement 1 only in failures; `plans` must request recording."""
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         run = super().__call__(plan)

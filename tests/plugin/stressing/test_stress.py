@@ -61,7 +61,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     assert first[1].count(b"<svg") == 1
     assert not [
         *spaced.path.glob(".tarl/results/*")
-    ]  # which hold comparisons only, as `tarl summary` expects
+    ]  # folders that contain only comparisons, as `tarl summary` expects
     found = json.loads(first[0])
     jsonschema.validate(found, json_result.schema())
     (pump,) = found["directions"]
@@ -76,7 +76,9 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
 
 
 @slow
-def test_kept_failures_and_workers_leave_a_search_in_two_directions_as_it_is(spaced: pytest.Pytester) -> None:
+def test_kept_failures_and_workers_do_not_change_the_result_of_a_search_in_two_directions(
+    spaced: pytest.Pytester,
+) -> None:
     changed(spaced, "test_tank", "import Drift, Sensor", "import Drift, Sensor, faults")
     changed(spaced, "test_tank", "nominal=1.0)", 'nominal=1.0), high=faults.bias("/level", "data", 0.0, 0.2)')
     budget = ("--tarl-stress", "--tarl-stress-budget=300")
@@ -157,14 +159,14 @@ DRIFTS = {
 }
 
 
-def test_must_hold_takes_ranges_or_options_of_a_direction() -> None:
+def test_the_flag_must_hold_accepts_ranges_or_options_of_a_direction() -> None:
     given = {"mud": (0.4, 1), "camera": ["up", "down"], "late": (0, 0.1)}
     assert must_hold("t", given, DRIFTS) == {"mud": (0.4, 1.0), "camera": ("up", "down"), "late": (0.0, 0.1)}
     assert must_hold("t", {"mud": (0.4, None)}, DRIFTS) == {"mud": (0.4, 1.0)}
     assert must_hold("t", {"late": (None, 0.1)}, DRIFTS) == {"late": (0.0, 0.1)}
 
 
-def test_failures_break_must_hold_of_one_end_and_of_options() -> None:
+def test_failures_violate_a_must_hold_flag_with_one_end_or_with_options() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return point["slope"] < 0.1 and point["camera"] != 1.0, 1.0
 
@@ -182,7 +184,7 @@ def test_failures_break_must_hold_of_one_end_and_of_options() -> None:
     ]
 
 
-def test_a_failing_end_of_must_hold_is_tested_itself() -> None:
+def test_the_end_of_a_must_hold_range_is_itself_tested() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return bool(draws.random() < 1.0 - 1.5 * point["slope"]), 1.0  # 30 % fail at 0.2, 5 % at 0.033
 
@@ -218,7 +220,7 @@ def test_a_clear_failure_is_confirmed_although_four_episodes_misled_the_search_n
         ({"camera": "up"}, "options of its choice"),
     ],
 )
-def test_other_values_of_must_hold_are_refused(value: Any, told: str) -> None:
+def test_other_values_of_the_flag_must_hold_are_refused(value: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         must_hold("t", value, DRIFTS)
 

@@ -1,4 +1,4 @@
-"""The Gaussian processes of the stress search, against closed forms, other solvers and data that they should follow."""
+"""The Gaussian processes of the stress search agree with closed forms, other solvers and generated data."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_failing_shares_follow_the_counts() -> None:
 
 @given(st.integers(0, 10**6), st.sampled_from([9.0, 36.0, 144.0]))
 @settings(max_examples=20, deadline=None)
-def test_fitting_the_losses_from_another_start_gives_the_same_maximum(seed: int, scale: float) -> None:
+def test_a_fit_that_starts_from_another_fit_reaches_the_same_maximum(seed: int, scale: float) -> None:
     """At the most probable logits, the weights are the excess of failures over their expectation."""
     vectors = drifts(seed)
     draws = np.random.default_rng(seed + 1)

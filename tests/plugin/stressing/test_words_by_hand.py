@@ -37,7 +37,7 @@ MUD, FLAT, STEEP, DOWN, LEFT = rays(SPACE, {})
 
 
 def seen(margin: float, result: Any = None, episodes: int = 8) -> Evidence:
-    """Return evidence; without a result, clear one."""
+    """Return evidence with this result, by default a clear one."""
     told = result or ("fails" if margin < 0 else "holds")
     return Evidence(told, margin, episodes, episodes, 0.0, 0.0)
 
@@ -183,11 +183,13 @@ def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_co
         (curve(MUD, {0.76: -1.0}), True),
         (curve(MUD, {1.0: 1.0}, swept=False), False),
         (curve(STEEP, {0.5: -1.0}), False),
-        (curve(FLAT, {0.5: -1.0}), True),  # the other side of the range
+        (curve(FLAT, {0.5: -1.0}), True),  # a failure on the other side of the range
         (curve(DOWN, {1.0: -1.0}), True),
     ],
 )
-def test_directions_hold_alone_if_no_failure_was_found_up_to_there(changed: Curve, alone: bool) -> None:
+def test_a_direction_holds_alone_up_to_a_share_if_no_smaller_failure_was_found(
+    changed: Curve, alone: bool
+) -> None:
     one = combined(mud=1.0, slope=0.5)
     others = [curve(ray, {1.0: 1.0}) for ray in (MUD, FLAT, STEEP, DOWN, LEFT) if ray is not changed.ray]
     (told,) = words.together(stress(*others, changed, combinations=(one,)))
@@ -251,7 +253,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
         (curve(DOWN, confirmed=1.0), {"camera": ("left",)}, False),
     ],
 )
-def test_a_failure_inside_must_hold_breaks_it_and_one_outside_does_not(
+def test_a_failure_inside_a_must_hold_range_violates_it_and_one_outside_does_not(
     one: Curve, must_hold: dict[str, Any], broken: bool
 ) -> None:
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken

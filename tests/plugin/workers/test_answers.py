@@ -74,7 +74,7 @@ def reason(message: bytes) -> str:
     return str(raised.value)
 
 
-def test_a_worker_that_collects_nothing_says_why_once() -> None:
+def test_a_worker_that_collects_no_test_gives_the_reason_once() -> None:
     answers = io.BytesIO()
     server = worker.Server({"nodeid": "test_x.py::test_x", "instruments": {}}, io.BytesIO(), answers)
     server.pytest_collectreport(SimpleNamespace(failed=False, longreprtext="fine"))  # type: ignore[arg-type]
@@ -87,7 +87,7 @@ def test_a_worker_that_collects_nothing_says_why_once() -> None:
 
 
 @pytest.mark.parametrize("marked", [True, False])
-def test_a_worker_that_has_run_an_episode_never_reports_a_failed_preparation(
+def test_a_worker_that_has_run_an_episode_never_reports_that_its_preparation_failed(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, marked: bool
 ) -> None:
     marker = "@pytest.mark.tarl(nodes=['n.py'], sensors=[Sensor('x')])\n" if marked else ""
@@ -127,7 +127,7 @@ def test_a_worker_that_has_run_an_episode_never_reports_a_failed_preparation(
         (ValueError("odd"), TarlError, "(?s)failed in a worker process:.*ValueError: odd"),
     ],
 )
-def test_what_an_episode_raises_in_a_worker_is_its_answer(
+def test_the_answer_of_a_worker_contains_the_exception_of_its_episode(
     raised: BaseException, error: type[TarlError], says: str
 ) -> None:
     def rollout(_: object) -> None:

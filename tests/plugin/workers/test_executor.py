@@ -162,7 +162,7 @@ def runs_in(process: Path, folder: Path) -> bool:
 
 
 def gone(folder: Path) -> bool:
-    """Return whether all processes in a folder end within a while."""
+    """Return whether all processes in a folder end within a time limit."""
     for _ in range(100):
         if not any(runs_in(process, folder) for process in Path("/proc").glob("[0-9]*")):
             return True

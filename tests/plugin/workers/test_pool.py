@@ -16,7 +16,7 @@ POST = Post("/", "{}", b"first")
 
 
 class Process:
-    """A process that answers with given bytes and notes how it is ended."""
+    """A process that answers with the given bytes and stores how it is ended."""
 
     def __init__(self, *answers: bytes) -> None:
         self.stdin, self.stdout = io.BytesIO(), io.BytesIO()
@@ -65,7 +65,7 @@ def test_two_threads_may_end_a_worker_at_once() -> None:
 
 
 class Checks(threading.Event):
-    """The checks of a listener, one after the other, without waiting."""
+    """Run the checks of a listener one after the other, without waiting."""
 
     def __init__(self, *before: Any) -> None:
         super().__init__()
@@ -161,7 +161,7 @@ class Idle:
         self.said.append("ended")
 
 
-def test_a_closed_pool_has_waited_for_idle_workers_and_ended_busy_ones() -> None:
+def test_closing_a_pool_waits_for_idle_workers_and_ends_busy_ones() -> None:
     workers: list[Any] = [Idle() for _ in range(4)]
     one = Pool()
     one._idle = {POST: workers[:2], Post("/x", "", b""): workers[2:3]}
@@ -194,7 +194,7 @@ class Dying:
 
 
 @pytest.mark.parametrize("deaths", [0, 2, 3])
-def test_a_request_is_tried_three_times_each_on_a_new_worker(
+def test_a_request_is_tried_three_times_and_each_time_on_a_new_worker(
     deaths: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kind = type("Kind", (Dying,), {"deaths": deaths, "made": 0})

@@ -1,4 +1,4 @@
-"""What a worker is told of the run that it belongs to."""
+"""The options and settings that a worker gets from its run."""
 
 from __future__ import annotations
 

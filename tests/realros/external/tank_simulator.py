@@ -1,4 +1,4 @@
-"""A simulator of a water tank in a process of its own, on real rclpy; the environment says how it misbehaves.
+"""A simulator of a water tank in a separate process, on real rclpy; environment variables request faults.
 
 It publishes /clock and /level, hears /valve, and serves /step and /reset. With OWN_TIME it runs by itself.
 """
@@ -86,7 +86,7 @@ class Tank(Node):
 
 
 def once():
-    """Return whether the fault has not happened yet; with MARK it happens once."""
+    """Return whether the fault is still to happen; with MARK it happens only once."""
     if "MARK" not in os.environ:
         return True
     mark = Path(os.environ["MARK"])

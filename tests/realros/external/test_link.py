@@ -14,7 +14,7 @@ pytestmark = [
     ),
     pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning"),  # by a library of rclpy
 ]
-LIMIT = 300.0  # s: only what never happens fails a test, however busy the machine is
+LIMIT = 300.0  # s; long enough for a busy machine
 
 
 def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -29,7 +29,7 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: py
 
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a killed process leaves nothing in /dev/shm
-    domain = Domain()  # no other test on this machine has it
+    domain = Domain()  # no other test on this machine uses this domain
     context = Context()
     context.init(args=[], domain_id=domain.number, initialize_logging=False)
     node = Node("sim", context=context, use_global_arguments=False, start_parameter_services=False)
@@ -55,7 +55,7 @@ def test_an_answer_does_not_overtake_the_messages_sent_before_it(monkeypatch: py
         started = monotonic()
         while not any(one["kind"] == "answer" for one in events) and monotonic() < started + LIMIT:
             link.look()
-            executor.spin_once(0.05)  # the simulator publishes and answers before the link takes anything
+            executor.spin_once(0.05)  # the simulator publishes and answers before the link handles a message
             if level.get_subscription_count():
                 link.spin(0.01)
     finally:

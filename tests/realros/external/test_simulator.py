@@ -1,4 +1,4 @@
-"""A simulator in a process of its own: started, stepped, followed, reset, and ended, however it misbehaves."""
+"""A simulator in a separate process is started, stepped, followed, reset and ended, even if it is faulty."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def guarded() -> Iterator[None]:
 
 
 class Run:
-    """An episode without nodes, whose test opens the valve by GAIN times what is missing."""
+    """An episode without nodes, whose test opens the valve by GAIN times the missing level."""
 
     def __init__(self, folder: Path, environment: dict[str, str] | None = None, **more: Any) -> None:
         self.ros = Ros()
@@ -43,7 +43,7 @@ class Run:
             "step": None,
             "reset": None,
             "every_step": (),
-            "timeout": 600.0,  # only what never happens fails a test, however busy the machine is
+            "timeout": 600.0,  # s; long enough for a busy machine
             "patience": 300.0,
             **more,
         }
@@ -78,7 +78,7 @@ class Run:
 def expected(count: int, pump: float = 1.0) -> list[float]:
     level, valve, found = 0.1, 0.0, []
     for step in range(count):
-        valve = 2.0 * (1.0 - level) if step else 0.0  # the first command has no way yet
+        valve = 2.0 * (1.0 - level) if step else 0.0  # no connection yet for the first command
         level += 0.1 * pump * valve
         found.append(level)
     return found
@@ -92,7 +92,7 @@ def test_a_stepped_simulator_is_reproducible_even_if_it_is_slow_or_late(tmp_path
         assert run.ros.scheduler.time - began == 600_000_000
 
 
-def test_nodes_are_held_to_the_clock_of_a_simulator_in_its_own_time(
+def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}) as run:
@@ -103,7 +103,7 @@ def test_nodes_are_held_to_the_clock_of_a_simulator_in_its_own_time(
     assert "filling" in capsys.readouterr().out
 
 
-def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
+def test_a_reset_keeps_the_process_and_restarts_the_simulation(tmp_path: Path) -> None:
     found, lock = [], tmp_path / "held"
     for _ in range(2):
         with Run(tmp_path, {"HELD": str(lock)}, reset="/reset", **STEPPED) as run:
@@ -137,7 +137,7 @@ def test_a_reset_keeps_the_process_and_starts_anew(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_simulator_that_fails_is_described(
+def test_the_error_describes_how_a_simulator_failed(
     tmp_path: Path, fault: str, more: dict[str, Any], error: type[Exception], said: str
 ) -> None:
     lock = tmp_path / "held"
@@ -149,7 +149,7 @@ def test_a_simulator_that_fails_is_described(
     assert comes_free(lock)
 
 
-def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
+def test_the_error_describes_a_stepped_simulator_that_hangs(tmp_path: Path) -> None:
     lock = tmp_path / "held"
     with Run(tmp_path, {"FAULT": "hang 3", "HELD": str(lock)}, **STEPPED) as run:
         run.steps(2)
@@ -163,7 +163,7 @@ def test_a_stepped_simulator_that_hangs_is_described(tmp_path: Path) -> None:
     ("fault", "patience", "said"),
     [("hang 5", 1.0, "hung at .* nothing new came within 1 s"), ("jump 5", 300.0, "went back from")],
 )
-def test_a_followed_simulator_that_stops_or_jumps_is_described(
+def test_the_error_describes_a_simulator_whose_own_clock_stops_or_jumps(
     tmp_path: Path, fault: str, patience: float, said: str
 ) -> None:
     with (
@@ -173,7 +173,7 @@ def test_a_followed_simulator_that_stops_or_jumps_is_described(
         run.steps(50)
 
 
-def test_a_missing_program_is_described(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_simulator_program(tmp_path: Path) -> None:
     with (
         pytest.raises(SimulatorError, match=r"cannot be started \(No such file or directory\)"),
         Run(tmp_path, command="no-such-simulator --world 3"),

@@ -59,7 +59,7 @@ while not rospy.is_shutdown():
 
 
 def test_a_stepped_simulator_gives_the_same_levels_each_time(tmp_path: Path) -> None:
-    for _ in range(2):  # each has a master of its own
+    for _ in range(2):  # each run has its own master
         with Run(tmp_path, command=COMMAND, **STEPPED) as run:
             assert run.steps(5) == pytest.approx(expected(5))
             assert run.simulator.clock == pytest.approx(0.6)
@@ -74,7 +74,7 @@ def test_a_reset_keeps_the_process_for_the_next_episode(tmp_path: Path) -> None:
         assert second.simulator._client is client
 
 
-def test_a_simulator_in_its_own_time_is_followed(tmp_path: Path) -> None:
+def test_nodes_follow_the_clock_of_a_simulator_that_advances_by_itself(tmp_path: Path) -> None:
     with Run(tmp_path, {"OWN_TIME": "1"}, command=COMMAND) as run:
         before = run.simulator.clock
         run.steps(5)

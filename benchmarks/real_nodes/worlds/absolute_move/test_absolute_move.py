@@ -1,4 +1,4 @@
-"""TurtleBot3's absolute move comes to a pose that is typed in. On carpet the base does not turn at slow commands."""
+"""TurtleBot3's absolute move reaches a pose that is typed in. On carpet the base does not turn at slow commands."""
 
 import math
 
@@ -29,7 +29,7 @@ class Floor:
         self.failure = ""
 
     def type(self, _prompt=""):
-        """Type the next number; the node asks again when it has arrived."""
+        """Type the next number; the node prompts again after its arrival."""
         self.asked += 1
         return str(next(self.typed))
 

@@ -19,7 +19,7 @@ TIME_BOUND = 300.0  # min
 
 
 class Shift:
-    """A patrol on one battery; `age` is how much faster it empties below the bend, as a factor."""
+    """A patrol on one battery, which below the bend empties faster by the factor `age`."""
 
     def __init__(self, rng, age):
         self.rng = rng
@@ -60,14 +60,14 @@ class Shift:
             self.failure = "late"
 
     def judge(self):
-        """Return the reward of the minute: what was patrolled, as a share of the charge, and coming home."""
+        """Return the reward of the minute: patrolling, as a share of the charge, and coming home."""
         if self.failure:
             return -10.0
         return (0.0 if self.mailed else 2.0 * self.use) + (9.0 if self.home else 0.0)
 
 
 def speaker():
-    """Return the package `sound_play`, with a speaker that says everything at once."""
+    """Return the package `sound_play`, whose speaker takes no time."""
     client = SimpleNamespace(
         wait_for_server=lambda **_: True, wait_for_result=lambda: True, get_result=lambda: None
     )

@@ -1,4 +1,4 @@
-"""donkey_car's chase_the_ball.py keeps a ball in view until it is there. A lens with more zoom shows angles larger."""
+"""donkey_car's chase_the_ball.py keeps a ball in view and drives to it. A lens with more zoom enlarges angles."""
 
 import math
 
@@ -31,7 +31,7 @@ class Yard:
 
     @property
     def away(self):
-        """Return how far the ball is, m."""
+        """Return the distance to the ball, m."""
         return math.hypot(self.ball[0] - self.x, self.ball[1] - self.y)
 
     @property
@@ -40,7 +40,7 @@ class Yard:
         return self.away < 0.6
 
     def publish(self, bus):
-        """Publish what the camera sees, from -1 at the left edge to 1 at the right edge, and which lens is mounted."""
+        """Publish the ball in the image, from -1 at the left edge to 1 at the right edge, and the mounted lens."""
         bearing = math.atan2(self.ball[1] - self.y, self.ball[0] - self.x) - self.heading
         seen = -self.zoom * math.tan(max(-1.4, min(1.4, bearing))) / 0.8 + self.rng.normal(0.0, 0.01)
         self.pictures.append(seen)

@@ -20,7 +20,7 @@ SONARS = (("/dkcar/sonar/0", 0.7, -0.5), ("/dkcar/sonar/1", 0.0, 0.0), ("/dkcar/
 
 
 class Path:
-    """A pillar in the way; `grip` is how much the car turns, as a share of what it does on new tyres."""
+    """A pillar in the way; `grip` is the turn rate of the car as a share of that on new tyres."""
 
     def __init__(self, rng, grip):
         self.rng = rng
@@ -33,12 +33,12 @@ class Path:
 
     @property
     def past(self):
-        """Return whether the car is far enough."""
+        """Return whether the car has reached the end of the course."""
         return self.x >= GOAL
 
     @property
     def gap(self):
-        """Return how far the pillar's surface is, m."""
+        """Return the distance to the surface of the pillar, m."""
         return math.hypot(self.pillar[0] - self.x, self.pillar[1] - self.y) - PILLAR
 
     def publish(self, bus):

@@ -1,4 +1,4 @@
-"""TurtleBot3's obstacle detection stops a robot that its operator drives at a wall. A tool in front makes it longer."""
+"""TurtleBot3's obstacle detection stops a robot that its operator drives towards a wall. A tool makes it longer."""
 
 import math
 
@@ -14,11 +14,11 @@ Float32 = message_type("std_msgs/msg/Float32")
 NODE = "turtlebot3_example/turtlebot3_example/turtlebot3_obstacle_detection/turtlebot3_obstacle_detection.py"
 DT = 0.1
 TIME = 14.0
-NEAR, FAR = 0.25, 0.65  # where the front may end up from the wall, m
+NEAR, FAR = 0.25, 0.65  # allowed final distances of the front from the wall, m
 
 
 class Hall:
-    """A wall ahead; `tool` is how far the tool reaches beyond the robot: m."""
+    """A wall ahead; the tool reaches `tool` m beyond the robot."""
 
     def __init__(self, rng, tool):
         self.rng = rng
@@ -31,7 +31,7 @@ class Hall:
         self.failure = ""
 
     def publish(self, bus):
-        """Publish what the lidar measures and the operator commands."""
+        """Publish the measurements of the lidar and the commands of the operator."""
         ranges = []
         for degree in range(360):
             cos = math.cos(math.radians(degree))
@@ -51,7 +51,7 @@ class Hall:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the way to where the operator can see the wall."""
+        """Return the reward of the step: progress up to the allowed distance from the wall."""
         front = self.gap - self.tool
         if front < NEAR:
             self.failure = "too near to the wall"

@@ -12,13 +12,13 @@ Odometry = message_type("nav_msgs/msg/Odometry")
 NODE = "turtlebot3_example/turtlebot3_example/turtlebot3_patrol/turtlebot3_patrol_server.py"
 DT = 0.05
 SIDE = 0.8
-WIDE = 0.15  # how far from a corner the robot may turn, m
+WIDE = 0.15  # tolerated distance between a corner and the place of the turn, m
 TIME_BOUND = 90.0
 TURNS = 4
 
 
 class Yard:
-    """A yard; `grip` is how far the robot drives, as a share of what it does on new tyres."""
+    """A yard; `grip` is the distance that the robot drives as a share of that on new tyres."""
 
     def __init__(self, rng, grip):
         self.grip = grip * rng.uniform(0.98, 1.02)
@@ -61,7 +61,7 @@ class Yard:
         return self.corners >= TURNS
 
     def judge(self):
-        """Return the reward of the step: up to 2.5 a corner."""
+        """Return the reward of the step: up to 2.5 for each corner."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         return -3.0 if self.failure else 2.5 * math.sqrt(self.cornered) - 0.0005

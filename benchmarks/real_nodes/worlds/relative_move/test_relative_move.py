@@ -14,7 +14,7 @@ NODE = "turtlebot3_example/turtlebot3_example/turtlebot3_relative_move/turtlebot
 DT = 0.05
 TIME_BOUND = 60.0
 FAR = 0.8  # m
-WIDE = 0.08  # how far from its pose the robot may stop, m, and rad
+WIDE = 0.08  # tolerated distance from the target pose, m and rad
 
 
 class Floor:
@@ -30,7 +30,7 @@ class Floor:
         self.failure = ""
 
     def type(self, _prompt=""):
-        """Type the next number; the node asks again when it has arrived."""
+        """Type the next number; the node prompts again after its arrival."""
         self.asked += 1
         return str(next(self.typed))
 
@@ -41,7 +41,7 @@ class Floor:
 
     @property
     def off(self):
-        """Return by how much the robot misses its pose, the larger of metres and radians."""
+        """Return the error of the robot's pose: the larger one of metres and radians."""
         turn = self.heading - math.radians(self.goal[2])
         turned = math.atan2(math.sin(turn), math.cos(turn))
         return max(math.hypot(self.goal[0] - self.x, self.goal[1] - self.y), abs(turned))

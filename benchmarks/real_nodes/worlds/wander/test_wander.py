@@ -1,4 +1,4 @@
-"""rosbook's wander.py drives about in a room without touching a wall. A heavy load makes the base slow to obey."""
+"""rosbook's wander.py drives about in a room without touching a wall. A heavy load makes the base respond slowly."""
 
 import math
 
@@ -39,7 +39,7 @@ class Room:
         return min(along, across)
 
     def publish(self, bus):
-        """Publish what scanner and scales measure."""
+        """Publish the measurements of scanner and scales."""
         bus.publish("/load", Float32(data=self.load))
         bus.publish("/scan", LaserScan(ranges=[self.ray(a) + self.rng.normal(0.0, 0.01) for a in RAYS]))
 
@@ -54,7 +54,7 @@ class Room:
         self.time += DT
 
     def judge(self):
-        """Return the reward of the step: the way, unless a wall is touched."""
+        """Return the reward of the step: progress, unless a wall is touched."""
         if max(abs(self.x), abs(self.y)) > ROOM - RADIUS:
             self.failure = "touched a wall"
             return -10.0

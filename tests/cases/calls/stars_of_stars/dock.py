@@ -1,4 +1,4 @@
-"""Names out of a module that opens others, and members of an enumeration by a name that is made at run time."""
+"""Names from a module with star imports, and members of an enumeration whose name is computed at run time."""
 
 from base import *
 from beams import Beam, decode

@@ -1,4 +1,4 @@
-"""What this project puts around rospy."""
+"""The wrapper of this project around rospy."""
 
 import rospy
 

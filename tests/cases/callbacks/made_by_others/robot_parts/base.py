@@ -1,4 +1,4 @@
-"""A base class whose helper registers: its heirs only say what they offer."""
+"""A base class whose helper registers the endpoints; its subclasses only declare them."""
 
 from rclpy.node import Node
 from std_msgs.msg import Float64

@@ -1,4 +1,4 @@
-"""Heirs of a base class that registers for them; nothing here makes them."""
+"""Subclasses of a base class that registers their endpoints; nothing in these files creates an instance."""
 
 from std_msgs.msg import Float64
 

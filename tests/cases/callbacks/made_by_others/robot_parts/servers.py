@@ -1,4 +1,4 @@
-"""Nodes that only offer services or actions, started by somebody else (a launch file, a container)."""
+"""Nodes that only offer services or actions and that other software starts (a launch file, a container)."""
 
 import rospy
 from actionlib import SimpleActionServer
@@ -11,7 +11,7 @@ from tutorial_interfaces.action import Fibonacci
 
 
 class Lamp:
-    """ROS 1: a service alone."""
+    """A ROS 1 node with only a service."""
 
     def __init__(self):
         self.light = rospy.Publisher("light", Float64, queue_size=1)
@@ -29,7 +29,7 @@ class Lamp:
 
 
 class Arm:
-    """ROS 1: an action alone, its server imported by name."""
+    """A ROS 1 node with only an action, whose server class is imported by name."""
 
     def __init__(self):
         self.joint = rospy.Publisher("joint", Float64, queue_size=1)
@@ -43,7 +43,7 @@ class Arm:
 
 
 class Counter(Node):
-    """ROS 2: an action alone."""
+    """A ROS 2 node with only an action."""
 
     def __init__(self):
         super().__init__("counter")
@@ -55,7 +55,7 @@ class Counter(Node):
 
 
 class Valve(Node):
-    """ROS 2: a service alone."""
+    """A ROS 2 node with only a service."""
 
     def __init__(self):
         super().__init__("valve")

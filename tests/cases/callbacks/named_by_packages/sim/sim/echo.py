@@ -1,4 +1,4 @@
-"""A console script whose function neither is called main nor registers itself."""
+"""A console script whose function is not named main and registers nothing itself."""
 
 from std_msgs.msg import String
 

@@ -1,4 +1,4 @@
-"""A simulator's plugin that registers in a helper, not in a method of its own."""
+"""A simulator plugin that registers its callbacks in a helper function instead of its own methods."""
 
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Float64
@@ -22,7 +22,7 @@ class Wheels:
 
 
 class Forgotten:
-    """Named nowhere."""
+    """A class that no package file names."""
 
     def init(self, simulator, properties):
         self.node = wire(Twist, "forgotten", self.on_command)

@@ -1,4 +1,4 @@
-"""How plugins register."""
+"""The helper with which plugins register their callbacks."""
 
 import rclpy
 

@@ -1,4 +1,4 @@
-"""A panel that somebody's framework makes; the class that it inherits from is not here, and it registers by a helper."""
+"""A panel that a framework creates; its base class is not in the files, and a helper registers its callbacks."""
 
 import rospy
 from std_msgs.msg import Float64
