@@ -153,7 +153,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
         elif expr is not None:
             literals.mark(ctx, node, expr, value, caller)
         elif value.pts:
-            ctx.graph.copies.add(node)  # a receiver is passed on unchanged
+            ctx.graph.held.setdefault(node, set())  # a receiver: only an object is passed on
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}
