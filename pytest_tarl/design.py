@@ -95,7 +95,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift if the scenario replaces it, which happens unless both are dictionaries; else ""."""
+    """Return the design's drift if the scenario replaces it, else "". Two drifts that are dictionaries are combined."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

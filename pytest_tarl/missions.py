@@ -338,7 +338,7 @@ class Mission:
 
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
-        with suppress(OSError, UnicodeDecodeError):  # an error with the other files is reported
+        with suppress(OSError, UnicodeDecodeError):  # the other files report such an error
             if not ignore.exists() or ignore.read_text("utf-8") == EARLIER:
                 write_atomically(ignore, IGNORED.encode())
 

@@ -12,7 +12,7 @@ from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
 AHEAD = 2  # episodes per worker that start before their results are requested
-KEPT = 6  # started episodes per worker to keep while others are requested
+KEPT = 6  # number of started episodes that a worker keeps while other episodes are requested
 
 
 @dataclass(frozen=True)

@@ -213,7 +213,7 @@ class Sensor:
 
     def _place(self, number: float) -> int | None:
         if self.bins is None or self.low is None or self.high is None:
-            return 0  # edges are not learned yet, as in a plain run of the test
+            return 0  # the edges are not known yet; a plain run of the test never learns them
         if self.angle:
             if math.isinf(number):
                 return None

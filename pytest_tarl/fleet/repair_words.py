@@ -9,7 +9,7 @@ from pytest_tarl.model import Bound
 
 WHY = {
     "not comparable": "no missions without a repair at the same site in the same week",
-    "too few robots": "an interval needs 4 robots with and 4 without it",
+    "too few robots": "an interval needs 4 robots with the repair and 4 without",
 }
 
 

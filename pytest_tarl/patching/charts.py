@@ -1,8 +1,8 @@
 """Charts: scales on which a search moves a constant, in addition to factors on its value.
 
-If a share of 0.95 should be 0.994, its distance from 1 is wrong by a factor of 8. If an offset of -0.012 should be
-0.055, the error is as large as the angles to which the offset is added. On these two scales, a search takes the same
-steps as for factors.
+A share such as 0.95 moves by its distance from 1: if it should be 0.994, this distance is wrong by a factor of 8. An
+offset such as -0.012 moves in steps of the size of the numbers to which it is added. On these two scales, a search
+takes the same steps as for factors.
 """
 
 from __future__ import annotations

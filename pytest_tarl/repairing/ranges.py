@@ -15,7 +15,7 @@ from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
 LEAST_NEAR = 2  # minimum number of successful episodes for saying that a candidate fits a part of the range
 
-STRATA = 4  # number of strata (parts of the range); every look is a multiple of it
+STRATA = 4  # number of strata (parts of the range); each interim test has a multiple of this many episodes
 
 Test = Callable[[Sequence[int]], Acceptance]  # test of a candidate on these seeds
 

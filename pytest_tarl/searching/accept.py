@@ -74,9 +74,9 @@ class Reference:
         """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
 
         The bound is the difference of the worst mission, declared or recorded, but no further than 20 margins below 0.
-        With a margin of 5 %, 20 margins are the whole reward of a designed mission. Failures can be clipped because a
-        separate test counts them. Without the clip, one costly failure would hide a small loss from a test of 200
-        episodes, and correct repairs would be refused.
+        A margin of 5 % of the designed reward makes 20 margins the whole reward of a designed mission. Failures can be
+        clipped because a separate test counts them. Without the clip, one costly failure would hide a small loss from a
+        test of 200 episodes, and correct repairs would be refused.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)

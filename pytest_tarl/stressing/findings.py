@@ -15,7 +15,7 @@ CONFIDENCE = 0.9  # confidence that a boundary lies in its interval
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
 NEARER = 0.98  # a distance counts as nearer than another one if it is below this share of the other
-# maximum probability that the guarantee already fails at the near end
+# maximum probability that the guarantee already fails at the near end of the interval
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 
 

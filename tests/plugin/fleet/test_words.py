@@ -228,7 +228,8 @@ def test_a_repair_without_an_interval_says_why() -> None:
     assert lines[1:] == [
         "  guard-1: not comparable (no missions without a repair at the same site in the same week)",
         (
-            "  guard-1: too few robots (an interval needs 4 robots with and 4 without it), reward +0.5, pass rate +5.0 "
+            "  guard-1: too few robots (an interval needs 4 robots with the repair and 4 without), "
+            "reward +0.5, pass rate +5.0 "
             "points, 1,200 missions of 12 robots with it and 2,400 of 24 without"
         ),
     ]

@@ -123,7 +123,7 @@ def test_a_large_uncertain_difference_does_not_hide_a_certain_one() -> None:
     assert not outstanding(difference, np.zeros(4, dtype=bool)).any()
 
 
-def test_equal_totals_that_cancel_out_are_ties() -> None:
+def test_sums_that_differ_by_rounding_only_count_as_ties() -> None:
     totals = np.array([0.1, 0.2, -0.3] * 8)
     assert permuted_loss(totals, totals[:3], generator(0, "a")) > 0.3
     exact = permuted_loss(np.array([1.0, 2.0, -3.0] * 8), np.array([1.0, 2.0, -3.0]), generator(0, "a"))

@@ -101,7 +101,7 @@ def test_a_mission_without_an_end_is_skipped_with_a_note(recorded: Path, pyteste
     result.stdout.fnmatch_lines(["*1 mission has no end or no reward in missions.log: skipped*"])
 
 
-def test_without_a_reward_topic_the_judge_of_the_marker_gives_rewards(
+def test_without_a_reward_topic_the_function_judge_of_the_marker_gives_the_rewards(
     recorded: Path, pytester: pytest.Pytester
 ) -> None:
     drive(order(recorded, reward="", step=0.001), [0.05] * 8, pause=0.003)
