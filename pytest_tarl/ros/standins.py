@@ -132,6 +132,10 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "tf2_ros.buffer_client": "tf2_ros.serving",
     "tf2_ros.buffer_server": "tf2_ros.serving",
     "topic_tools": "topic_tools",
+    "urdf_parser_py": "urdf_parser_package",
+    "urdf_parser_py.urdf": "urdf_parser",
+    "urdf_parser_py.xml_reflection": "urdf_parser_package",
+    "urdf_parser_py.xml_reflection.core": "urdf_parser",
 }
 TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
@@ -144,4 +148,5 @@ STANDALONE = (
     "image_geometry",
     "rospkg",
     "ament_index_python",
+    "urdf_parser_py",
 )  # if installed, the real package takes precedence, because it works without a running ROS
