@@ -76,7 +76,7 @@ def read_regular(path: Path) -> bytes:
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         if not stat.S_ISREG(kind):
             raise OSError(errno.EINVAL, "it is not a regular file", str(path))
-        with os.fdopen(handle, "rb", closefd=False) as file:
+        with open(handle, "rb", closefd=False) as file:
             return file.read()
     finally:
         os.close(handle)
