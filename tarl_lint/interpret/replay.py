@@ -77,6 +77,7 @@ def _executed(
     if reads.waits:  # reads after a wait may include values of other roots
         reads.stored |= reads.keys
     found, stored = store.found_by(reads)
+    reads.finish()
     return Run(
         passed, mode, reads, found, stored, ctx.work.spent - before,
         join_all(returned), returned, list(frame.escapes), delta, ctx.graph.edges - edges,

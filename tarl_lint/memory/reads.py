@@ -81,6 +81,10 @@ class Reads:
         if taken is None:
             self._add_rest(inner)
 
+    def finish(self) -> None:
+        """Drop what is needed only while the call runs; `taken` would keep the reads of earlier runs in memory."""
+        self.taken, self.arrivals, self.written = {}, set(), set()
+
     def _add_rest(self, inner: Reads) -> None:
         """Merge the reads that do not depend on the current path, which is needed only once."""
         self.unreached |= inner.unreached

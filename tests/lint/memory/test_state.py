@@ -217,6 +217,17 @@ def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_change
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
+def test_finished_reads_keep_what_a_caller_needs_but_no_reads_of_earlier_runs(obj):
+    here, mine = (obj, "here"), (obj, "mine")
+    outer, inner = Reads(written={mine}), Reads(keys={here, mine}, stored={here})
+    outer.add(inner)
+    outer.arrivals.add("cached")
+    assert inner in outer.taken
+    outer.finish()
+    assert (outer.keys, outer.stored) == ({here}, {here})
+    assert (outer.taken, outer.arrivals, outer.written) == ({}, set(), set())
+
+
 def test_values_that_a_root_reads_at_several_waits_are_joined_per_key(obj):
     reads = Reads()
     reads.admit((obj, "x"), ONE)
