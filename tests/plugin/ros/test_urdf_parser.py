@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl.ros.urdf_parser import URDF, Box, Cylinder, Joint, Link, Mesh, ParseError, Robot, Sphere
+from pytest_tarl.ros.urdf_parser.elements import ParseError
+from pytest_tarl.ros.urdf_parser.urdf import URDF, Box, Cylinder, Joint, Link, Mesh, Robot, Sphere
 from tests.plugin.ros.conftest import Start, heard
 
 bare = pytest.mark.skipif(
@@ -197,3 +198,16 @@ def test_a_node_reads_the_description_from_a_parameter(start: Start) -> None:
         """
     )
     assert ros.namespace["root"] == "base"  # type: ignore[attr-defined]
+
+
+@bare
+def test_modules_of_the_stand_ins_can_be_imported_from_their_packages(start: Start) -> None:
+    ros = start(
+        """
+        from urdf_parser_py import urdf
+        from urdf_parser_py.xml_reflection import core
+        from rosidl_runtime_py import convert, set_message, utilities
+        found = urdf.URDF, core.ParseError, utilities.get_message, convert.message_to_yaml
+        """
+    )
+    assert ros.namespace["found"][:2] == (URDF, ParseError)  # type: ignore[attr-defined]
