@@ -2,17 +2,18 @@
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
+    python benchmarks/stress_dimensions.py quiet_tank quiet_quadrotor --harmless 100
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
-The worlds of stress_worlds.py, stress_worlds_2.py and stress_worlds_3.py are formulas; the last ones were not used in
-development. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the
-task, and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in
-every task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the
-guarantee fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the
-largest distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer
-its nearest OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that
-it confirmed, for which it spent episodes, and those that it expects to fail. The method `confirmed` offers only the
-confirmed ones.
+The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
+are small simulations, written without knowledge of the search. Each task of benchmarks/drift has four directions: its
+own drift, from the nominal value to that of the task, and three faults of the topic of its first numeric sensor
+(bias, latency, dropout), of the same relative size in every task. Each method may run BUDGET episodes. A peer
+receives a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the cost is the
+distance from nominal; otherwise it is the margin above the largest distance. A failure counts if fresh seeds confirm
+it; these episodes are not charged. Each method may offer its nearest OFFERS failing drifts, of which the k-th is
+tested at RISK / k(k + 1). A stress run offers the drifts that it confirmed, for which it spent episodes, and those
+that it expects to fail. The method `confirmed` offers only the confirmed ones.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ from stress_worlds import TOLERANCE, WORLDS, Formula, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402
 from stress_worlds_2 import FRESH_WORLDS  # noqa: E402
 from stress_worlds_3 import NEW_WORLDS  # noqa: E402
+from stress_worlds_4 import FOURTH_WORLDS, QUIET_WORLDS  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -56,7 +58,8 @@ from pytest_tarl.stressing.guarantee import Guarantee, guaranteed  # noqa: E402
 from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
-FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS}
+FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
+HARMLESS = {"harmless": harmless, **QUIET_WORLDS}  # nothing in the space breaks the guarantee
 BUDGET = 600  # episodes of a run
 PROBES = 4  # episodes at a drift that a peer proposes
 OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
@@ -292,14 +295,14 @@ def _shown(value: float | None) -> str:
     return "none" if value is None else f"{value:.3f}"
 
 
-def harmless_runs(runs: int) -> str:
+def harmless_runs(runs: int, name: str = "harmless") -> str:
     """Return the number of runs that report a failure although nothing in the space breaks the guarantee."""
-    one = recorded("harmless", Formula(harmless), world_space(), FORMULA)
+    one = recorded(name, Formula(HARMLESS[name]), world_space(), FORMULA)
     false = 0
     for number in range(1, runs + 1):
         false += bool(searched(one, number)[0])
         print(f"{false} of {number}", file=sys.stderr, flush=True)
-    return f"A failure was reported in {false} of {runs} harmless runs."
+    return f"A failure was reported in {false} of {runs} {name.replace('_', ' ')} runs."
 
 
 def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
@@ -318,7 +321,7 @@ def row(task: str, found: Mapping[str, Sequence[float | None]]) -> str:
 def main() -> None:
     """Print a line per task, and the sums."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    parser.add_argument("tasks", nargs="*", default=[*FORMULAS, *TASKS])
+    parser.add_argument("tasks", nargs="*", metavar="TASK", help="default: all")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--methods", nargs="+", default=["ours", "random", "CMA-ES", *PEERS])
     parser.add_argument("--home", type=Path, default=Path.home() / ".cache" / "tarl-stress-peers")
@@ -330,12 +333,15 @@ def main() -> None:
     )
     arguments = parser.parse_args()
     if arguments.harmless:
-        print(harmless_runs(arguments.harmless))
+        for name in arguments.tasks or ["harmless"]:
+            if name not in HARMLESS:
+                parser.error(f"{name}: not a harmless world; choose from {', '.join(HARMLESS)}")
+            print(harmless_runs(arguments.harmless, name), flush=True)
         return
     methods: list[str] = arguments.methods
     every: dict[str, list[float | None]] = {method: [] for method in methods}
     print(f"| task | {' | '.join(methods)} |\n|---|{'---|' * len(methods)}")
-    for task in arguments.tasks:
+    for task in arguments.tasks or [*FORMULAS, *TASKS]:
 
         def visitor(stage: Stage) -> dict[str, list[float | None]]:
             return compare(arena(stage), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
