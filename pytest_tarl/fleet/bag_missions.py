@@ -1,4 +1,4 @@
-"""The mission of a bag: its identity is computed from its messages, its statistics from a replay."""
+"""The mission of a bag: its ID is computed from the messages, its statistics come from a replay."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Replay = Callable[[Path, int], EpisodeRun]
 
 @dataclass(frozen=True)
 class Bagged:
-    """A bag's mission: its identity, which only copies of the bag share, and its start in seconds since 1970."""
+    """A bag's mission: its ID, which only copies of the bag share, and its start in seconds since 1970."""
 
     mission: int
     time: float
@@ -36,7 +36,7 @@ def is_bag(path: Path) -> bool:
 def identified(path: Path, fixture: Fixture) -> Bagged:
     """Return the mission of a bag, without replaying it.
 
-    The identity is a digest of times, topics and contents of the messages: it does not depend on the container, the
+    The ID is a hash of the times, topics and contents of the messages: it does not depend on the container, the
     compression or the nodes through which the bag is replayed. Raise LogError if the bag cannot be read to its end, or
     does not fit the recording.
     """
@@ -47,7 +47,7 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
     for one in bag.messages():
         digest.update(f"{one.time} {one.topic} {len(one.data)}\n".encode())
         digest.update(one.data)
-    if bag.notes:  # the bag is truncated, and the complete bag would have another identity
+    if bag.notes:  # the bag is truncated, and the complete bag would have another ID
         raise LogError(
             f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
             "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."

@@ -1,8 +1,8 @@
 """Robots with similar drifts: clusters of the residual maps of the robots named as drifted.
 
-A residual map holds the mean residual of a visit to each cell. The distance of two robots is the largest difference of
-their maps in any common cell, in standard errors of that difference, so noise alone does not separate robots. Complete
-linkage (Sørensen 1948) joins clusters while no two of their robots differ significantly. The significance is corrected
+A residual map holds the mean residual of a visit to each cell. The distance between two robots is the largest
+difference between their maps in any common cell, in standard errors of that difference, so noise alone does not
+separate robots. Complete
 for the numbers of cells and pairs (Bonferroni).
 """
 
@@ -23,7 +23,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.sensors import Cell
 
-MOST = 300  # maximum number of robots compared: those with the most evidence
+MOST = 300  # maximum number of robots to compare; of more, those with the most evidence are chosen
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Cluster:
 
 @dataclass(frozen=True)
 class Clusters:
-    """The clusters, largest first; robots whose maps have no significant cell; and the number of robots left out."""
+    """The clusters, largest first; robots whose maps have no significant cell; the number of robots not compared."""
 
     found: tuple[Cluster, ...] = ()
     unclear: tuple[str, ...] = ()
@@ -48,7 +48,7 @@ class Clusters:
 def clustered(
     database: Database, where: Store, engine: Engine, fixture: Fixture, robots: Robots, alpha: float
 ) -> Clusters:
-    """Return the clusters of the robots that were named as drifted."""
+    """Return the clusters of the robots that were reported as drifted."""
     named = {one.name: one for one in (*robots.below, *robots.drifted)}
     some = sorted(named.values(), key=lambda one: (-max(one.world, one.bound), one.name))
     if not some:
@@ -61,7 +61,7 @@ def clustered(
 def of(
     maps: Sequence[ResidualMap], recorded: Floats, cells: Sequence[Cell], alpha: float, left_out: int = 0
 ) -> Clusters:
-    """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual, by cell."""
+    """Return the clusters of maps; `recorded` is the variance of the recording's own mean residual in each cell."""
     # in sorted order, because the last bits of sums depend on the order
     ordered = sorted(maps, key=lambda one: one.robot)
     clear = [one for one in ordered if _standing_out(one.mean, one.variance + recorded, alpha).size]

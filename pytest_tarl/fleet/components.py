@@ -1,9 +1,9 @@
 """Variance components: how much of the variance of missions lies between versions, sites, seasons and robots.
 
-The model of a mission's reward is y = Σ effect of its version, site and season + effect of its robot + rest. The
+The model of a mission's reward is y = Σ effects of its version, site and season + effect of its robot + residual. The
 effects of factors are fixed numbers, one for each level; those of robots are random, with variance σ_r².
 
-- σ_e² (rest) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and covariance
+- σ_e² (residual) and σ_r² are estimated by fitting constants (Henderson 1953, "Estimation of variance and covariance
   components", Biometrics 9:226-252, method 3). The residual sums of squares with and without effects of robots are set
   equal to their expectations, which gives one equation for each variance. The method assumes no distribution.
 - The effects are estimated by generalised least squares with these variances (Fuller & Battese 1973, JASA 68:626-632).
@@ -27,7 +27,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 REPLICATES = 200
 FEWEST = 30  # minimum number of robots for an interval
-RANDOM = 2  # number of components with random effects: robots and rest
+RANDOM = 2  # number of random components: between robots, and residual (between missions)
 CONFOUNDED = (
     # a contrast cannot be estimated if more than this share of it is outside the row space of the design
     1e-6
@@ -59,13 +59,13 @@ class Component:
     low: float
     high: float
     levels: int
-    # effect of each level, relative to the mean over missions; empty for robots and rest
+    # effect of each level, relative to the mean over missions; empty for the components of robots and residuals
     effects: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
 class _Fit:
-    variances: Floats  # variance of each factor, of robots and of the rest
+    variances: Floats  # variance of each factor, of robots and of residuals
     noise: Floats  # the part of each variance that comes from estimation errors
     effects: Floats  # effects of all levels of all factors
 
@@ -73,7 +73,7 @@ class _Fit:
 def components(
     totals: Totals, names: Sequence[str], confidence: float, rng: np.random.Generator
 ) -> tuple[Component, ...]:
-    """Return the component of each factor, then those of "robot" and "mission" (the rest)."""
+    """Return the component of each factor, then those of "robot" and "mission" (residual)."""
     design = _Design(totals)
     robots = totals.squares.size
     found = design.fit(np.ones(robots))
@@ -97,11 +97,11 @@ def components(
 def _interval(found: _Fit, replicates: Floats, confidence: float) -> tuple[Floats, Floats]:
     """Return the ends of the intervals from replicates, shape (replicates, components).
 
-    The effects of a replicate contain the errors of the sample as well as its own; both are subtracted. A sample with
-    repetitions has fewer distinct robots at a site, which lowers the variance between them. The replicates of robots
-    and rest are therefore scaled so that their mean is the estimate, and their interval is a basic bootstrap interval
-    of the logarithm. If some replicates are not positive, the interval covers the percentiles of the original, the
-    shifted and the scaled replicates.
+    The effects estimated from a replicate contain the errors of the sample as well as the replicate's own errors; the
+    intervals subtract both. A sample drawn with replacement has fewer distinct robots at a site, which lowers the
+    variance between them. The replicates of the random components are therefore scaled so that their mean is the
+    estimate, and their interval is a basic bootstrap interval of the logarithm. If some replicates are not positive,
+    the interval spans the percentiles of the original, the shifted and the scaled replicates.
     """
     value, mean = found.variances, np.mean(replicates, axis=0)
     random = np.arange(value.size) >= value.size - RANDOM
@@ -141,7 +141,7 @@ class _Design:
         self.reward = np.bincount(totals.robot, totals.reward, robots)
 
     def fit(self, weights: Floats) -> _Fit:
-        """Return the components for a sample in which each robot occurs `weights` times."""
+        """Return the components for a sample that contains each robot `weights` times."""
         x, n, s = self.visits, self.missions, self.reward
         products, sums = self._products(weights), self._sums(weights * 1.0)
         squares = float(weights @ self.totals.squares)

@@ -1,8 +1,8 @@
-"""Load the missions of a question into an embedded DuckDB: each once, ordered by robot, time and identity.
+"""Load the missions that a query asks for into an in-memory DuckDB, without duplicates, by robot, time and mission ID.
 
 The database has one row for each mission; the rows of cells stay in their files (partitions.py). DuckDB only counts
-integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order, so results do not depend on
-files, partitions or threads, to the last bit.
+integers and sorts rows. Sums of floats are computed elsewhere, from rows in a fixed order. Results are therefore the
+same to the last bit, whatever the files, partitions or threads.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pytest_tarl.fleet.dataset import Part
 from pytest_tarl.fleet.partitions import Wanted
 from pytest_tarl.fleet.store import Store
 
-MEMORY = "1GB"  # memory limit, beyond which DuckDB moves rows to SPILLED
+MEMORY = "1GB"  # memory limit; beyond it, DuckDB moves rows to the folder SPILLED
 SPILLED = Path(".tarl/fleet")
 BY = {
     "version": "version",
@@ -44,14 +44,14 @@ Columns = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Filter:
-    """The selected missions: of one robot, if given, and since a day (UTC), if given."""
+    """Select the missions of one robot and since one day (UTC); each condition is optional."""
 
     robot: str = ""
     since: date | None = None
 
 
 class Database:
-    """Missions numbered from 0 by robot, time and identity; `wanted` says which file holds which missions."""
+    """Missions numbered from 0 by robot, time and mission ID; `wanted` says which file holds which missions."""
 
     def __init__(self, connection: Any, wanted: Sequence[Wanted]) -> None:
         self._connection = connection
@@ -79,7 +79,7 @@ class Database:
 
 @contextmanager
 def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter) -> Iterator[Database]:
-    """Load the missions of some files, grouped by the columns `by`, keys of BY.
+    """Load the missions of some files, grouped by the columns `by` (keys of BY).
 
     Raise FleetError if a file cannot be read.
     """
@@ -110,9 +110,9 @@ def opened(where: Store, parts: Sequence[Part], by: Sequence[str], which: Filter
 
 @contextmanager
 def _spilled() -> Iterator[str]:
-    """Create a folder for the rows that do not fit into memory; remove it afterwards.
+    """Create a folder for the rows that do not fit into memory, and remove it afterwards.
 
-    Each run has its own folder. Parent folders created for it are removed, too.
+    Each run has its own folder. Parent folders that had to be created are removed, too.
     """
     made = [one for one in (SPILLED, *SPILLED.parents) if not one.exists()]
     try:
@@ -130,7 +130,7 @@ def _spilled() -> Iterator[str]:
 
 
 def _missions(connection: Any, files: Sequence[str], by: Sequence[str], which: Filter) -> None:
-    """Load the missions; of several copies of a mission, keep the first by version, robot and site."""
+    """Load the missions; if one occurs several times, keep the copy that sorts first by version, robot and site."""
     grouped = ", ".join(f"{BY[one]} AS by_{one}" for one in by)
     order = ", ".join(f"by_{one}" for one in by) or "1"
     since = -1.0

@@ -51,7 +51,7 @@ def parts(where: Store) -> list[Part]:
 
 
 def known(where: Store, folder: str, date: str) -> Iterator[tuple[int, str]]:
-    """Yield identity and robot of each mission of a day that the test's partition holds."""
+    """Yield ID and robot of each mission of a day in the test's partition."""
     for path in where.files(f"missions/test={folder}"):
         if f"/date={date}/" in path:
             table = columns(where, path, ["mission", "robot"])

@@ -12,7 +12,7 @@ from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
-PORTION = 200_000  # number of missions read together
+PORTION = 200_000  # number of missions read at a time
 MONTHS = 3  # minimum number of months to use months as seasons; with fewer, weeks are used
 
 CODES = """
@@ -63,7 +63,7 @@ def _count(database: Database, column: str) -> int:
 
 
 def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...]) -> Totals:
-    """Return the sums; rewards are taken relative to their mean, so that squares lose no digits."""
+    """Return the sums; the mean is subtracted from the rewards, so that their squares lose no digits."""
     joins = " ".join(f"JOIN of_{name} ON of_{name}.name = {column}" for name, column in factors.items())
     codes = ", ".join(f"of_{name}.code AS {name}_code" for name in factors)
     query = MISSIONS.format(codes=codes, joins=joins)
@@ -80,7 +80,7 @@ def _totals(database: Database, factors: dict[str, str], sizes: tuple[int, ...])
 
 
 def summed(robot: Ints, levels: Ints, reward: Floats, sizes: tuple[int, ...]) -> Totals:
-    """Return the sums over missions of each robot and combination of levels; arguments have a row for each mission."""
+    """Return the sums over missions of each robot and combination of levels; each argument has one row per mission."""
     key = np.ravel_multi_index((robot, *levels.T), (int(robot.max()) + 1, *sizes))
     _, first, row = np.unique(key, return_index=True, return_inverse=True)
     return Totals(

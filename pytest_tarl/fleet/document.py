@@ -34,7 +34,7 @@ def schema() -> dict[str, Any]:
 
 
 def document(answer: Answer) -> dict[str, Any]:
-    """Return the document. Evidence is log2 of e-values; times are seconds since 1970."""
+    """Return the document. Evidence is the log2 of e-values; times are seconds since 1970."""
     question, found = answer.question, answer.robots
     return {
         "format": FORMAT,

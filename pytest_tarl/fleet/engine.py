@@ -1,8 +1,8 @@
 """Run tasks with Dask, on threads of this process or on a cluster.
 
-Tasks are pure functions of their arguments, and results keep the order of the tasks. Neither the number of workers nor
-the death of a worker therefore changes the result. Workers read the files that a task names. If a worker dies, the
-scheduler runs its tasks elsewhere. Locally only threads are started, and none for a single worker. Each task uses one
+Tasks are pure functions of their arguments, and results keep the order of the tasks. A result therefore depends neither
+on the number of workers nor on workers that die: the scheduler runs their tasks on other workers. Workers read the
+files that a task names. Without a cluster, only threads are started, and none for a single worker. Each task uses one
 thread for linear algebra: more threads would compete with other tasks and change the order of sums, and thus the last
 bits of a result.
 """
@@ -24,10 +24,10 @@ from threadpoolctl import threadpool_limits
 from pytest_tarl.errors import FleetError, SettingsError
 from pytest_tarl.extras import install_command
 
-REACHED = 10  # maximum seconds to wait for the scheduler
-RETRIES = 3  # maximum retries of a task whose worker dies
-AHEAD = 2  # maximum number of waiting and running tasks per thread of a cluster, to bound the memory
-WINDOW = 8  # tasks passed to Dask together, per thread of this process
+REACHED = 10  # maximum time to wait for the scheduler (s)
+RETRIES = 3  # maximum number of retries of a task whose worker dies
+AHEAD = 2  # maximum number of waiting and running tasks per thread of a cluster; bounds the memory
+WINDOW = 8  # number of tasks passed to Dask at a time, per thread of this process
 
 Result = TypeVar("Result")
 
@@ -53,7 +53,7 @@ class Local:
         """Yield the results in order."""
         rest = iter(tasks)
         while window := [partial(function, *one) for one in islice(rest, WINDOW * self.workers)]:
-            # Dask would search the arguments for names of tasks, so they are bound to the function.
+            # Dask would search the arguments for names of tasks; `partial` hides them
             yield from self._got({f"tarl-{number}": (one,) for number, one in enumerate(window)})
 
     def _got(self, graph: dict[str, tuple[Callable[[], Any]]]) -> list[Any]:
@@ -131,7 +131,7 @@ def local(workers: int) -> Iterator[Engine]:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Engine]:
-    """Run tasks on the workers of a Dask cluster, which have this version of tarl.
+    """Run tasks on the workers of a Dask cluster, on which this version of tarl is installed.
 
     Raise SettingsError if no scheduler answers, or if it has no workers.
     """

@@ -1,4 +1,4 @@
-"""Judge groups of missions, such as those of one version and site: bounds, verdict and region.
+"""Judge groups of missions, such as those of one version and site: bounds, verdict and region of the difference.
 
 The method is that of a comparison of one robot with the recording (learning/drift.py).
 """
@@ -24,13 +24,13 @@ from pytest_tarl.model import Bound, Region, Verdict
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell, Sensor
 
-MOST = 1000  # maximum number of missions to compare; bounds use all of them
+MOST = 1000  # maximum number of missions of a group that are compared; bounds use all missions
 FEWEST = 2  # minimum number of missions for a verdict
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A formula in a group: missions that judged it, missions that violate it, and the smallest robustness."""
+    """The results of a formula in a group: number of missions judged, number of violations, least robustness."""
 
     formula: str
     missions: int
@@ -49,7 +49,9 @@ class Group:
     reward: float  # mean total
     success: Bound
     mean: Bound
-    outside: int  # number of totals outside the declared range; if it is above 0, the bound of the mean is not exact
+    outside: (
+        int  # number of totals outside the declared range; if positive, the bound of the mean is approximate
+    )
     compared: int
     verdict: Verdict | None
     region: Region
@@ -70,7 +72,7 @@ def judged(
 ) -> tuple[Group, ...]:
     """Return all groups in order; verdicts are corrected for the number of groups (Holm).
 
-    `cells` are those of the recording and all others.
+    `cells` are the cells of the recording, then all others.
     """
     columns = ", ".join((*(f"any_value(by_{one})" for one in by), "count(*)", "count(DISTINCT robot_number)"))
     rows = database.names(f"SELECT {columns} FROM missions GROUP BY group_number ORDER BY group_number")  # noqa: S608 - from BY

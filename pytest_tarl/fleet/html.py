@@ -26,10 +26,10 @@ from pytest_tarl.report.json_result import finite
 from pytest_tarl.report.regions import Vocabulary
 from pytest_tarl.sensors import Cell
 
-# maximum number of groups on the map: those that differ, then those with the lowest reward
+# maximum number of groups on the map; groups that differ come first, then those with the lowest reward
 MOST_GROUPS = 2000
 MOST_CELLS = 12  # maximum number of cells listed for the fleet, and for each robot
-NAMES = 30  # maximum number of a cluster's robots that are shown as links
+NAMES = 30  # maximum number of links to the robots of a cluster
 TAGS = {"helps": "helps", "harms": "harms"}
 
 
@@ -82,7 +82,7 @@ def _context(answer: Answer, vocabulary: Vocabulary) -> dict[str, Any]:
         "by": ", ".join(question.by),
         "named": len(named),
         "rate": f"{100 * found.q:g} %",
-        "onsets": "Columns count the named robots by the moment since which their missions differ; lines mark groups.",
+        "onsets": "Columns count the named robots by the time when their missions began to differ; lines mark groups.",
         "clusters": [
             _cluster(one.robots, one.cells, one.residuals, vocabulary) for one in answer.clusters.found
         ],
@@ -169,7 +169,7 @@ def _repairs(answer: Answer) -> Iterator[dict[str, Any]]:
 
 
 def _data(answer: Answer, vocabulary: Vocabulary) -> dict[str, Any]:
-    """Return the data for the page's script; times are in seconds since 1970, evidence is log2 of e-values."""
+    """Return the data for the page's script; times are in seconds since 1970, evidence is the log2 of e-values."""
     every = answer.robots.every
     number = {one.name: n for n, one in enumerate(every)}
     named = {one.name: one for one in (*answer.robots.below, *answer.robots.drifted)}
@@ -265,7 +265,7 @@ def _named(answer: Answer, one: Robot, vocabulary: Vocabulary) -> dict[str, Any]
 
 
 def _differing(answer: Answer, one: Robot) -> tuple[Cell, ...]:
-    """Return the cells in which a robot differs, from its status or else from its cluster."""
+    """Return the cells in which a robot differs: those of its status, or else those of its cluster."""
     if one.status is not None and one.status.cells:
         return one.status.cells
     return next((group.cells for group in answer.clusters.found if one.name in group.robots), ())

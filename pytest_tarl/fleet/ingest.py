@@ -1,4 +1,4 @@
-"""`tarl ingest`: add the missions of logs and bags to a data set, each once, even after repeats or interruptions."""
+"""`tarl ingest`: add the missions of logs and bags to a data set without duplicates, even after interruptions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.monitoring.assembling import valid_time
 from pytest_tarl.patching.reading import read
 
-TOGETHER = 20_000  # missions are written once this many are held in memory
+TOGETHER = 20_000  # number of missions held in memory before they are written
 PATCH = ".patch"
 REPAIRS_KEEP = ("test", "drift")
 FOLDER, FILE = "{folder}", "{file}"
@@ -37,14 +37,14 @@ class Order:
     robot: str  # {folder} and {file} are replaced by the names of each log's folder and file
     version: str = "unknown"
     site: str = "unknown"
-    salt: str = ""  # if given, names of robots are replaced by digests
+    salt: str = ""  # if given, names of robots are replaced by salted hashes
     repair: str = ""  # the repair in the robots' software: a name, or a patch file of .tarl/patches
     replay: Replay | None = None  # replays bags
 
 
 @dataclass(frozen=True)
 class Ingested:
-    """What a log added: new missions, missions that the data set already had, and why the log was not read."""
+    """What a log added: new missions, missions that the data set already had, or why the log was not read."""
 
     log: Path
     robot: str
@@ -56,9 +56,10 @@ class Ingested:
 
 
 def ingest(order: Order) -> Iterator[Ingested]:
-    """Add the missions of all logs; yield for each log what it added, once its missions are read.
+    """Add the missions of all logs; after each log, yield what it added.
 
-    Logs that do not fit are skipped. Raise FixtureError, FleetError or SettingsError if nothing can be ingested.
+    Logs that do not fit the recording are skipped. Raise FixtureError, FleetError or SettingsError if nothing can be
+    ingested.
     """
     _check(order)
     fixture = load(order.fixture)
@@ -82,13 +83,13 @@ def ingest(order: Order) -> Iterator[Ingested]:
 
 
 def _bag(order: Order, log: Path, robot: str, repair: str, into: _Writer) -> Ingested:
-    """Add the mission of a bag; replay it only if the data set lacks it. Raise LogError if it cannot be ingested."""
+    """Add the mission of a bag, replaying it only if the data set lacks the mission. Raise LogError if that fails."""
     found = identified(log, into.fixture)
     time = valid_time(found.time)
     if into.holds(date(time), found.mission, robot):
         return Ingested(log, robot, known=1)
     if order.replay is None:
-        raise SettingsError(f"{log} is a bag, and nothing replays it.")
+        raise SettingsError(f"{log} is a bag, but no way to replay it was given.")
     sample, notes = replayed(log, found.mission, into.fixture, order.replay)
     row = Row(robot, order.site, time, sample, repair)
     into.add([row])
@@ -150,7 +151,7 @@ class _Writer:
     def add(self, rows: Sequence[Row]) -> int:
         """Collect the missions that the data set does not hold yet, and return their number.
 
-        Raise LogError if the data set has one of them as a mission of another robot.
+        Raise LogError if the data set already has one of the missions under another robot.
         """
         for row in rows:
             self.holds(row.date, row.mission, row.robot)
@@ -167,7 +168,7 @@ class _Writer:
         return added
 
     def holds(self, day: str, mission: int, robot: str) -> bool:
-        """Return whether a robot's mission is stored or waits to be written.
+        """Return whether a robot's mission is already stored or queued for writing.
 
         Raise LogError if it belongs to another robot.
         """
@@ -180,14 +181,14 @@ class _Writer:
         return other is not None
 
     def _held(self, day: str) -> dict[int, str]:
-        """Return the robot of each stored or waiting mission of a day, by the mission's identity."""
+        """Return the robot of each stored or queued mission of a day, by mission ID."""
         if day not in self.known:
             found = dataset.known(self.store, self.origin.folder, day)
             self.known[day] = dict(found)
         return self.known[day]
 
     def write(self) -> None:
-        """Write the recording, then the waiting missions, one set of files per day."""
+        """Write the recording, then the queued missions, one set of files per day."""
         if self.rows and not self.store.holds(kept := f"recordings/{self.origin.recording}.npz"):
             self.store.write(kept, self.recording)
         for day, rows in sorted(self.rows.items()):

@@ -1,4 +1,4 @@
-"""Missions of logs as samples, each identified by its content."""
+"""Missions of logs as samples; each mission's ID is computed from its content."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
 
-BYTES = 8  # size in bytes of a mission's identity, which takes the place of an episode's seed
+BYTES = (
+    8  # size in bytes of a mission ID; logged missions have no seed, so the ID is stored in the seed field
+)
 
 
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:
-    """Yield start and statistics of each finished mission with rewards, in a log and its rotated parts.
+    """Yield start and statistics of each finished mission with rewards, from a log and its rotated files.
 
     The start is in seconds since 1970. A mission that violates a formula of the recording counts as failed. Raise
     LogError if the log does not belong to the recording or has no rewards.
@@ -54,7 +56,7 @@ def requirements_of(fixture: Fixture) -> Requirements:
 
 
 def plan_of(fixture: Fixture) -> Plan:
-    """Return the sites of a recording as a plan, without their positions in the source."""
+    """Return the sites of a recording as a plan that lacks their positions in the source."""
     places = {place.id: place for one in fixture.lists for place in one.sites}
     number = {site: n for n, site in enumerate(places)}
     members = tuple(tuple(number[place.id] for place in one.sites) for one in fixture.lists)
@@ -62,7 +64,7 @@ def plan_of(fixture: Fixture) -> Plan:
 
 
 def identity(mission: Mission) -> int:
-    """Return a number that identifies a mission: copies of the mission in other files have the same number."""
+    """Return the ID of a mission; copies of the mission in other files have the same ID."""
     content = json.dumps(
         [mission.time, mission.passed, mission.failure, [*mission.sites], mission.chunks],
         ensure_ascii=False,

@@ -23,7 +23,7 @@ from pytest_tarl.observing.frames import MAGIC
 
 @dataclass(frozen=True)
 class Part:
-    """A merged file: its number of episodes or missions, and how many of them an earlier file already had."""
+    """A merged file: its number of episodes or missions, and how many of them earlier files had already contained."""
 
     path: Path
     episodes: int
@@ -34,7 +34,7 @@ def merged(files: Sequence[Path], fixture: Path | None = None) -> tuple[Fixture,
     """Return the recording of all episodes and missions, and what each file added.
 
     Logs are read with the sensors and statements of the first recording, or of `fixture`. The episodes of `fixture`
-    itself do not count. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot
+    itself are not added. An episode that occurs twice is counted once. Raise FixtureError or LogError if a file cannot
     be read or does not fit the others.
     """
     recordings = {path: load(path) for path in files if not _is_log(path)}
@@ -58,7 +58,7 @@ def _is_log(path: Path) -> bool:
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
     except OSError:
-        return False  # the later attempt to read it as a recording reports the reason
+        return False  # when it is read as a recording later, the error gives the reason
 
 
 def _parts(files: Sequence[Path], samples: Sequence[Sequence[Sample]]) -> Iterator[Part]:
@@ -87,7 +87,7 @@ def _check(first: Path, design: Fixture, path: Path, other: Fixture) -> None:
 
 
 def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) -> Fixture:
-    """Return the recording of the episodes; digests of modules that differ between recordings are left out."""
+    """Return the recording of the episodes; hashes of modules that differ between recordings are left out."""
     worlds = [one.world for one in recordings] or [design.world]
     world = {path: found for path, found in worlds[0].items() if all(w.get(path) == found for w in worlds)}
     return replace(
@@ -101,9 +101,9 @@ def _recording(design: Fixture, recordings: Sequence[Fixture], whole: Sample) ->
 
 
 def utilities(whole: Sample) -> tuple[Floats, ...]:
-    """Return the utility of each taint list, shape (cells, sites): the fixed point of SARSA.
+    """Return the utility of each taint list, shape (cells, sites), as the fixed point of SARSA.
 
-    Episodes of several robots have no common order, so learning step by step is not possible.
+    Episodes of several robots have no common order, so the utilities cannot be learned step by step.
     """
     return tuple(batch(one, len(whole.cells), one.mean_flow) for one in whole.lists)
 

@@ -1,7 +1,7 @@
-"""The work of a worker next to the data: compute scores of missions, or read transitions of some missions.
+"""The tasks that workers run close to the data: score missions, or read the transitions of some missions.
 
-A worker reads the files itself. It returns one byte per score of a mission (a bin), or the transitions of the missions
-to compare with the recording.
+A worker reads the files itself. It returns one byte for each score of a mission (its bin), or the transitions of the
+missions that are compared with the recording.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ RESULTS = ("mission", "passed", "total", "steps")
 
 @dataclass(frozen=True)
 class Wanted:
-    """The selected missions of a part: their sorted identities, and their numbers in the question."""
+    """The selected missions of a part: their sorted IDs, and their numbers in the database of the query."""
 
     cells: str  # file of the transitions
     missions: str  # file of the results
@@ -54,14 +54,14 @@ class Transitions:
     reward: Floats
 
     def chain(self, numbers: Ints) -> Chain:
-        """Return the transitions as a chain in which the index of a mission is its place in the sorted `numbers`."""
+        """Return the transitions as a chain; the index of a mission is its place in the sorted `numbers`."""
         episode: Ints = np.asarray(np.searchsorted(numbers, self.number), np.int64)
         return Chain(
             episode, self.cell, self.next_cell, self.count, self.reward, np.zeros((self.cell.size, 0))
         )
 
     def of(self, numbers: Ints) -> Transitions:
-        """Return the transitions of the missions with the given sorted numbers."""
+        """Return the transitions of the missions with the given numbers (sorted)."""
         low, high = np.searchsorted(self.number, numbers), np.searchsorted(self.number, numbers, side="right")
         sizes = high - low
         rows = np.repeat(low - np.cumsum(sizes) + sizes, sizes) + np.arange(int(sizes.sum()))
@@ -75,7 +75,7 @@ class Transitions:
 
 @dataclass(frozen=True)
 class Scored:
-    """Bins of missions, shape (missions, scores), and the visits to cells that the recording lacks."""
+    """Bins of missions, shape (missions, scores), and their visits to cells that the recording lacks."""
 
     numbers: Ints
     bins: NDArray[np.int8]
@@ -127,7 +127,7 @@ def numbered(cells: Sequence[Cell]) -> dict[str, int]:
 
 
 def _rows(table: Any, wanted: Wanted, number: Mapping[str, int]) -> Transitions:
-    """Return the transitions of a part's missions, in any order, each with its mission's place in `wanted`."""
+    """Return the transitions of a part's missions, in any order; `number` is the mission's place in `wanted`."""
     mission = _values(table["mission"], np.uint64)
     begins = (
         np.flatnonzero(np.append(True, mission[1:] != mission[:-1])) if mission.size else np.empty(0, int)
@@ -179,17 +179,17 @@ def sorted_rows(some: Sequence[Transitions]) -> Transitions:
 
 
 def watched_chain(chain: Chain, recorded: int) -> Chain:
-    """Return a chain over the cells of a recording and one more for all others, rounded as in a recording."""
+    """Return a chain over the recorded cells and one cell for all others, with values rounded as in a recording."""
     return represented_chain(_without_others(chain, recorded))
 
 
 def bare(cells: int, passed: Any, total: Floats, steps: Ints, chain: Chain) -> Sample:
-    """Return missions as a sample with unnamed cells."""
+    """Return missions as a sample whose cells have no names."""
     return Sample(((),) * cells, tuple(range(len(passed))), passed, total, steps, (), chain, ())
 
 
 def _without_others(chain: Chain, recorded: int) -> Chain:
-    """Give all cells that the recording lacks one number, and merge transitions that become equal."""
+    """Replace all cells that the recording lacks by one cell, and merge transitions that become equal."""
     width = recorded + 1
     cell, after = np.minimum(chain.cell, recorded), np.minimum(chain.next_cell, recorded)
     if not ((chain.cell >= recorded).any() or (chain.next_cell >= recorded).any()):
@@ -206,7 +206,7 @@ def _without_others(chain: Chain, recorded: int) -> Chain:
 
 
 def _codes(column: Any, number: Mapping[str, int]) -> Ints:
-    """Return the codes of a column of cell names, with END for null; cells of other missions may be -2."""
+    """Return the codes of a column of cell names: END for null, -2 for a cell that `number` lacks."""
     parts = [np.empty(0, np.int64)]
     for chunk in _encoded(column).chunks:
         code = np.array([*(number.get(name, -2) for name in chunk.dictionary.to_pylist()), END], np.int64)
@@ -228,7 +228,7 @@ def _values(column: Any, kind: Any) -> Any:
 
 
 def portions(wanted: Sequence[Wanted], most: int) -> Iterator[list[Wanted]]:
-    """Divide parts into tasks of about `most` missions; skip parts without selected missions."""
+    """Divide the missions into tasks of about `most` missions; skip parts without selected missions."""
     together: list[Wanted] = []
     for one in wanted:
         if not one.numbers.size:

@@ -22,7 +22,7 @@ from pytest_tarl.learning.fixture import Fixture, load, parsed
 from pytest_tarl.monitoring.monitor import begun
 from pytest_tarl.sensors import Cell
 
-LOWEST = 10  # number of missions listed for one robot
+LOWEST = 10  # number of missions to list if a single robot is asked for
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Question:
     alpha: float = 0.05
     tolerance: float | None = None
     cluster: str = ""  # address of a Dask scheduler; without it, threads of this process are used
-    workers: int = 1  # number of threads of this process, without a cluster
+    workers: int = 1  # number of threads of this process if there is no cluster
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class Mission:
 
 @dataclass(frozen=True)
 class Answer:
-    """What the data set shows; `left_out` counts missions that cannot be compared, by the reason."""
+    """What the data set shows; `left_out` is the number of missions that cannot be compared, by reason."""
 
     question: Question
     fixture: Fixture
     missions: int
-    copies: int  # number of repeated rows, beyond the first row of each mission
+    copies: int  # number of duplicate rows that were ignored
     cells: tuple[Cell, ...]
     groups: tuple[groups.Group, ...]
     onsets: robots.Robots  # the evidence that each group changed, and since when
@@ -66,8 +66,11 @@ class Answer:
     clusters: clusters.Clusters
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
-    accepted: Mapping[str, str] = field(default_factory=dict)  # repair → drift for which it was accepted
-    period: tuple[float, float] = (0.0, 0.0)  # start of the first and of the last mission; 0 without times
+    accepted: Mapping[str, str] = field(default_factory=dict)  # the drift for which each repair was accepted
+    period: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # starts of the first and the last mission; 0 if no start is known
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
     def meets(self, rule: str) -> bool:
@@ -195,7 +198,7 @@ def _recording(question: Question, where: Store, parts: Sequence[Part]) -> tuple
 
 
 def _left_out(parts: Sequence[Part], own: Origin) -> dict[str, int]:
-    """Return the number of missions that cannot be compared, by the reason."""
+    """Return the number of missions that cannot be compared, by reason."""
     found: Counter[str] = Counter()
     for part in parts:
         if part.origin.fits(own):

@@ -21,7 +21,7 @@ from pytest_tarl.learning.tables import Floats, Ints, sum_by
 from pytest_tarl.model import Bound
 
 FEWEST = 4  # minimum number of robots with and without the repair for an interval
-ALPHA = 0.05  # error probability of all intervals of repairs together
+ALPHA = 0.05  # probability that any interval of any repair is wrong
 OUTCOMES = ("total", "passed")
 
 
@@ -57,7 +57,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class Strata:
-    """Missions and sums of robots in strata (rows), without and with the repair (columns), shape (rows, 2)."""
+    """Missions and sums of rewards, by robot and stratum (rows), without and with the repair (columns)."""
 
     robot: Ints
     stratum: Ints
@@ -67,7 +67,7 @@ class Strata:
 
 
 def effects(database: Database, by: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effect of each repair in each group of the columns `by`, without the column of repairs."""
+    """Return the effect of each repair in each group; groups are formed by the columns `by` except the repair's own."""
     columns = tuple(one for one in by if one != "repair")
     repairs = [
         one for (one,) in database.names("SELECT DISTINCT repair FROM missions WHERE repair <> '' ORDER BY 1")
@@ -88,7 +88,7 @@ def _groups(database: Database, repair: str, columns: Sequence[str]) -> Iterator
 
 
 def _strata(database: Database, repair: str, columns: Sequence[str], values: Sequence[str]) -> Strata:
-    """Return the rows of the strata; sums are in the order of missions."""
+    """Return the rows of the strata; sums are computed in the order of the missions."""
     here = "".join(f" AND CAST({BY[one]} AS VARCHAR) = ?" for one in columns)
     found = database.columns(
         f"SELECT robot_number, dense_rank() OVER (ORDER BY site, {BY['week']}) - 1 AS stratum, repair = ? AS treated, "  # noqa: S608
@@ -103,7 +103,7 @@ def _strata(database: Database, repair: str, columns: Sequence[str], values: Seq
 
 
 def strata(robot: Ints, stratum: Ints, treated: Ints, total: Floats, passed: Ints) -> Strata:
-    """Return the rows of strata that have missions both with and without the repair, given one row per mission."""
+    """Return one row per robot and stratum, given one row per mission; keep strata with missions of both kinds."""
     stratum, treated = stratum.astype(np.int64), treated.astype(np.int64)
     both = np.bincount(stratum * 2 + treated, minlength=2 * (int(stratum.max(initial=0)) + 1)).reshape(-1, 2)
     there = both.min(axis=1)[stratum] > 0
@@ -138,7 +138,7 @@ def effect(repair: str, values: tuple[str, ...], rows: Strata, confidence: float
 
 
 def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tuple[float, Bound]:
-    """Return the difference and its bounds, from the values that each robot contributes."""
+    """Return the difference and its bounds by the jackknife over robots."""
     if not len(rows.robot):
         return float("nan"), mean_of((), confidence)
     number = int(rows.stratum.max()) + 1
@@ -163,7 +163,7 @@ def _estimated(rows: Strata, sums: Floats, fewest: int, confidence: float) -> tu
 
 
 def _difference(count: Floats, total: Floats) -> tuple[Floats, Floats]:
-    """Return the weight of each row and its weighted difference; both 0 if one of the groups has no missions."""
+    """Return the weight of each row and its weighted difference; both are 0 if one side has no missions."""
     both = count.min(axis=1) > 0.5
     safe = np.where(both[:, None], count, 1.0)
     weight = np.where(both, safe[:, 0] * safe[:, 1] / safe.sum(axis=1), 0.0)

@@ -20,7 +20,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 
-FEWEST = 5  # minimum number of missions in a cell for a residual
+FEWEST = 5  # minimum number of missions that visited a cell, to state its residual
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Designed:
 
 
 def designed(fixture: Fixture) -> Designed:
-    """Return the model of a recording for the cells of `following`: its own and one for all others."""
+    """Return the model of a recording, for the recorded cells and one cell for all others (as in `following`)."""
     cells = len(fixture.sample.cells) + 1
     model = fitted(fixture.sample.chain, cells)
     own = Sample(**{**vars(fixture.sample), "cells": ((),) * cells, "lists": ()})
@@ -58,9 +58,10 @@ def residual_maps(
     world: Designed,
     robots: Sequence[Robot],
 ) -> list[ResidualMap]:
-    """Return the map of each robot's missions since its onset, when its difference began.
+    """Return the residual map of each robot, over its missions since the onset of its difference.
 
-    A robot with few missions may show too little noise by chance. Its variance is therefore at least that of as many
+    The residuals of a robot with few missions may vary too little by chance. The variance of its map is therefore at
+    least the variance that the same number of recorded visits would have.
     recorded visits.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
@@ -90,7 +91,7 @@ def since(robot: Robot) -> int:
 
 
 def _mean(sample: Sample, model: Model) -> tuple[Floats, Floats, Floats]:
-    """Return mean residual, its variance and the visits, by cell; missions are independent, steps are not."""
+    """Return the mean residual, its variance and the number of visits, by cell, treating missions as independent."""
     found = residuals(sample, model)
     total = found.move + found.reward
     place = sample.chain.episode * total.shape[1] + sample.chain.cell

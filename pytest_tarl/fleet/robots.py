@@ -1,12 +1,13 @@
 """Find the robots whose world differs from the recorded one, and since when.
 
 Each robot has its own monitor, as in `tarl watch`. An e-value measures evidence against a hypothesis: its expectation
-is at most 1 if the hypothesis is true. The last value of each process is an e-value if the number of missions does not
-depend on their results; it is large if the robot still differs. The adjusted running maximum (monitoring/e_bh.py) is an
-e-value at any time; it is large if the robot differed at some time. The mean of these two e-values, averaged over the
-processes with their shares of α, is an e-value, too. e-BH over the robots keeps the expected share of wrongly named
-robots at or below q, even if robots are dependent. All monitors may therefore start from the same recording. For
-bounds, the share may be larger by the probability that a stated bound is wrong.
+is at most 1 if the hypothesis is true. For each process of a monitor there are two e-values. The last value of the
+process is an e-value if the number of missions does not depend on their results; it is large if the robot still
+differs. The adjusted running maximum (monitoring/e_bh.py) is an e-value at any time; it is large if the robot differed
+at some time. The mean of the two, averaged over the processes with weights proportional to their shares of α, is an
+e-value, too. e-BH over the robots keeps the expected share of false reports at or below q, even if robots are
+dependent; therefore all monitors may use the same recording. For the tests of bounds, the share may be larger by the
+probability that a recorded bound is wrong.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from pytest_tarl.monitoring.monitor import Counts, Monitor, shares
 from pytest_tarl.monitoring.status import Evidence, Status
 from pytest_tarl.monitoring.status import status as status_of
 
-PORTION = 50_000  # number of missions judged together
+PORTION = 50_000  # number of missions judged in one task
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Robots:
-    """All robots by name, and the robots that e-BH names at the false discovery rate `q`, most evidence first."""
+    """All robots by name, and the robots that e-BH reports at the false discovery rate `q`, most evidence first."""
 
     q: float
     every: tuple[Robot, ...]
@@ -56,7 +57,7 @@ class Robots:
 
 
 def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q: float) -> Robots:
-    """Judge each robot's missions in the order of their times; `first` is a monitor without missions."""
+    """Judge each robot's missions in the order of their times; `first` is a monitor that has not seen any mission."""
     rows = database.columns(
         "SELECT any_value(robot) AS robot, max(number) + 1 AS ends FROM missions GROUP BY robot_number ORDER BY ends"
     )
@@ -66,7 +67,7 @@ def judged(database: Database, first: Monitor, scores: Scores, engine: Engine, q
 def watched(
     first: Monitor, scores: Scores, names: Sequence[str], ends: object, engine: Engine, q: float
 ) -> Iterator[Robot]:
-    """Yield the evidence on robots with consecutive missions, those of robot n before `ends[n]`."""
+    """Yield the evidence on the robots. The missions of robot n are numbered from `ends[n - 1]` to `ends[n]` - 1."""
     every: Ints = np.asarray(ends).astype(np.int64)
     some = list(portions(every))
 
@@ -82,7 +83,7 @@ def watched(
 
 
 def named(every: tuple[Robot, ...], q: float) -> Robots:
-    """Return all robots, and the robots that e-BH names."""
+    """Return all robots, and the robots that e-BH reports."""
     return Robots(
         q=q,
         every=every,
@@ -97,7 +98,7 @@ def _chosen(every: Sequence[Robot], evidence: Sequence[float], q: float) -> tupl
 
 
 def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], q: float) -> list[Robot]:
-    """Judge robots with consecutive missions, those of robot n before `ends[n]`; return them in order.
+    """Judge robots, whose missions are numbered from `ends[n - 1]` to `ends[n]` - 1; return them in order.
 
     Robots with enough evidence for a status are judged a second time to find their onsets.
     """
@@ -122,14 +123,14 @@ def portioned(first: Monitor, scores: Scores, ends: Ints, names: Sequence[str], 
 
 
 def portions(ends: Ints) -> Iterator[Ints]:
-    """Divide robots into portions of about PORTION missions; `ends` holds the number after each one's last mission."""
+    """Divide robots into portions of about PORTION missions; the missions of robot n end before number `ends[n]`."""
     which = (ends - 1) // PORTION
     for one in np.unique(which).tolist():
         yield ends[which == one]
 
 
 def fresh(first: Monitor) -> Monitor:
-    """Return a monitor without missions, of the same recording."""
+    """Return a new monitor of the same recording that has not seen any mission."""
     processes = restarts.begun(first.processes.threshold)
     return replace(first, processes=processes, counts=Counts(), moments=Moments(), new={})
 
@@ -148,7 +149,7 @@ def evidence(monitor: Monitor, peak: Floats, latest: Floats) -> tuple[float, flo
 
 
 def _mean(log_evidence: np.ndarray[tuple[int], np.dtype[np.float64]], weight: object) -> float:
-    """Return log2 of the weighted average of e-values; -1 without any."""
+    """Return log2 of the weighted average of e-values; -1 if there are none."""
     if not log_evidence.size:
         return -1.0
     share = np.asarray(weight, np.float64)

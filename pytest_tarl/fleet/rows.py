@@ -1,4 +1,4 @@
-"""The rows of missions: their statistics as Arrow tables, and as Parquet files named by their content."""
+"""The rows of missions: their statistics as Arrow tables, and as Parquet files named by hashes of their content."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Row:
 
     @property
     def mission(self) -> int:
-        """Return the identity of the mission."""
+        """Return the mission ID."""
         return self.sample.seeds[0]
 
     @property
@@ -48,7 +48,7 @@ def date(time: float) -> str:
 
 
 def files(rows: Sequence[Row], where: Origin, lists: Sequence[TaintList]) -> tuple[str, dict[str, bytes]]:
-    """Return the names and contents of the files of some missions, by table; the order of the missions is arbitrary."""
+    """Return the names and contents of the files of some missions, by table; the missions may be in any order."""
     rows = sorted(rows, key=lambda row: (row.robot, row.time, row.mission))
     tables = {"missions": _missions(rows), "cells": _cells(rows), "statements": _statements(rows, lists)}
     about = metadata(where)
@@ -115,7 +115,7 @@ def _cells(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _statements(rows: Sequence[Row], lists: Sequence[TaintList]) -> dict[str, Any]:
-    """Return the visits to statements; the start of a mission is not a visit."""
+    """Return the visits to statements; the first cell of a mission counts as the start, not as a visit."""
     names = _Names()
     size: list[int] = []
     owner, place, cells = [], [], []

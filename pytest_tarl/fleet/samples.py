@@ -25,7 +25,7 @@ MISSIONS = f"""
     SELECT group_number, {COLUMNS} FROM missions WHERE number IN (
         SELECT number FROM compared WHERE group_number >= ? AND group_number < ?
     ) ORDER BY group_number, number"""  # noqa: S608 - a constant
-PORTION = 100_000  # missions read together
+PORTION = 100_000  # number of missions read at a time
 
 
 def groups(
@@ -33,7 +33,7 @@ def groups(
 ) -> Iterator[Sample]:
     """Yield at most `most` missions of each of `count` groups.
 
-    Missions with the smallest identities are chosen; identities are digests, so the choice is random.
+    The missions with the smallest IDs are chosen; IDs are hashes, so the choice is random.
     """
     database.run(COMPARED, most)
     sizes = database.columns(

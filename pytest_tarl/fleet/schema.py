@@ -1,10 +1,10 @@
-"""The tables of a fleet's data set: Parquet files with a schema version and the digests of the recording.
+"""The tables of a fleet's data set: Parquet files with a schema version and hashes of the recording.
 
-    missions/test=…/version=…/date=…/KEY.parquet      one row a mission
-    cells/…, same path                                one row a transition from a cell to the next, in a mission
-    statements/…, same path                           one row a statement and cell, in a mission
+    missions/test=…/version=…/date=…/KEY.parquet      one row per mission
+    cells/…, same path                                one row per mission and transition between cells
+    statements/…, same path                           one row per mission, statement and cell
 
-KEY follows from the content. The file in `missions` is written last: without it, the other two do not count.
+KEY is a hash of the content. The file in `missions` is written last; if it is missing, the other two are ignored.
 
 SCHEMA_VERSION history:
 1  These three tables.
@@ -33,14 +33,14 @@ _NAME = pa.dictionary(pa.int32(), pa.string())
 SCHEMAS = {
     "missions": pa.schema(
         [
-            ("mission", pa.uint64()),  # identity: a digest of its content
+            ("mission", pa.uint64()),  # mission ID: a hash of its content
             ("robot", _NAME),
             ("site", _NAME),
-            ("time", pa.float64()),  # start in seconds since 1970; 0 if a clock was wrong
+            ("time", pa.float64()),  # start in seconds since 1970; 0 if the clock was wrong
             ("passed", pa.bool_()),
             ("total", pa.float64()),
             ("steps", pa.int64()),
-            ("repair", _NAME),  # the repair in the robot's software; empty without one
+            ("repair", _NAME),  # name of the repair in the robot's software; empty if there is none
             ("formulas", pa.map_(pa.string(), pa.float64())),  # robustness, above 0 if the formula holds
         ]
     ),
@@ -75,9 +75,9 @@ class Origin:
     """
 
     test: str
-    sensors: str  # digest of the sensors and their bins
-    statements: str  # digest of the statements of all taint lists
-    recording: str  # digest of the file
+    sensors: str  # hash of the sensors and their bins
+    statements: str  # hash of the statements of all taint lists
+    recording: str  # hash of the file
 
     def fits(self, other: Origin) -> bool:
         """Return whether missions of both origins can be counted together."""
@@ -90,7 +90,7 @@ class Origin:
 
 
 def origin(fixture: Fixture, content: bytes) -> Origin:
-    """Return the digests of a recording; `content` are the bytes of its file."""
+    """Return the origin of missions that are ingested with a recording; `content` is the content of its file."""
     sites = json.dumps(fixture.statements)
     return Origin(
         fixture.test,
@@ -111,7 +111,7 @@ def partition(where: Origin, version: str, date: str) -> str:
 
 
 def repair_path(repair: str) -> str:
-    """Return the path of a repair's file, which names the test and drift for which its patch was accepted."""
+    """Return the path of a repair's file. The file states the test and drift for which the patch was accepted."""
     return f"repairs/{quote(repair, safe='')}.json"
 
 

@@ -1,4 +1,4 @@
-"""The scores of all selected missions, one byte each; workers that read the rows compute them."""
+"""The scores of all selected missions, one byte each. Workers compute them where they read the rows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.monitoring.scores import Scale
 from pytest_tarl.sensors import Cell
 
-PORTION = 25_000  # missions scored together
+PORTION = 25_000  # number of missions scored in one task
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Scores:
         )
 
     def new(self) -> list[Cell]:
-        """Return the cells that the recording lacks, each once per mission that visited it."""
+        """Return the cells that the recording lacks, once for each mission that visited them."""
         return [self.others[number] for number in self.new_cell.tolist()]
 
 

@@ -1,7 +1,7 @@
-"""Watch many robots side by side; each gets exactly the state that its own monitor would have.
+"""Monitor many robots at once; each gets exactly the state that its own monitor would have.
 
-All robots start with the same pool, and the numbers that break ties only depend on a mission's number. The n-th
-missions of many robots are therefore judged in one step.
+All robots start with the same pool, and the random numbers that break ties depend only on the index of the mission. The
+n-th missions of many robots are therefore judged in one step.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pytest_tarl.monitoring import conformal, judging
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.restarts import Processes, log_evidence
 
-COLUMNS = 512  # number of processes judged together; their stakes fit into the processor's cache
+COLUMNS = 512  # number of processes judged together; their state fits into the processor's cache
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Watched:
 
     @property
     def scores(self) -> int:
-        """Return the number of scores of a robot."""
+        """Return the number of scores of each mission."""
         return len(self.pool) // len(self.robots)
 
     def peaks(self) -> Floats:
@@ -39,7 +39,7 @@ class Watched:
         return self._by_robot(self.processes.peak)
 
     def latest(self) -> Floats:
-        """Return log2 of their evidence after the last mission, shape (robots, processes)."""
+        """Return log2 of each robot's evidence after its last mission, shape (robots, processes)."""
         return self._by_robot(log_evidence(self.processes))
 
     def _by_robot(self, columns: Floats) -> Floats:
@@ -48,7 +48,7 @@ class Watched:
         return np.concatenate((stated.reshape(-1, size).T, scored.reshape(size, -1)), axis=1)
 
     def state(self, place: int) -> tuple[Processes, Ints]:
-        """Return processes and pool of one robot."""
+        """Return the processes and the pool of one robot."""
         mine = judging.columns(self.bounds, self.scores, len(self.robots), place)
         values = {one.name: getattr(self.processes, one.name)[..., mine] for one in fields(Processes)}
         return Processes(**values), self.pool[place * self.scores : (place + 1) * self.scores]
@@ -59,8 +59,9 @@ def watched(
 ) -> Iterator[Watched]:
     """Judge the missions of robots, and yield robots with similar numbers of missions together.
 
-    The missions of robot n end before `ends[n]`. `first` is a monitor without missions. `some` are the numbers of the
-    robots to judge (default: all). Without `onsets`, the start of a difference is not tracked, which is faster.
+    The missions of robot n end before `ends[n]`. `first` is a monitor that has not seen any mission. `some` are the
+    indices of the robots to judge (default: all). Without `onsets`, the start of a difference is not tracked, which is
+    faster.
     """
     begins = np.append(0, ends[:-1])
     counts = ends - begins

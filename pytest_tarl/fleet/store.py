@@ -22,7 +22,7 @@ class Store:
     protocol: str
 
     def files(self, folder: str) -> list[str]:
-        """Return the Parquet files below a folder, relative to the root, sorted; none if it does not exist.
+        """Return the Parquet files below a folder, relative to the root, sorted; empty if the folder does not exist.
 
         Raise FleetError if the folder cannot be listed.
         """
@@ -64,7 +64,7 @@ class Store:
             raise FleetError(f"{self.shown(path)} cannot be read ({problem}): {ADVICE}") from problem
 
     def opened(self, path: str) -> Any:
-        """Return a file opened for reading at any position."""
+        """Return a file opened for reading, with random access."""
         return self.fs.open(f"{self.root}/{path}", "rb")
 
     def address(self, path: str) -> str:

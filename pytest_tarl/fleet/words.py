@@ -196,6 +196,6 @@ def notes(answer: Answer) -> Iterator[str]:
             "approximate."
         )
     if answer.copies:
-        yield f"note: {answer.copies:,} missions are in the data set more than once and count once."
+        yield f"note: {answer.copies:,} missions are in the data set more than once; each is counted once."
     for why, count in answer.left_out.items():
         yield f"note: {count:,} missions {why} cannot be compared and are left out."

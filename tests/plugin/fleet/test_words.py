@@ -195,7 +195,7 @@ def test_each_note_appears_only_if_its_condition_holds() -> None:
             "note: 1,234 totals lie outside the recording's total_range; the bounds of their groups' "
             "means are approximate."
         ),
-        "note: 1,001 missions are in the data set more than once and count once.",
+        "note: 1,001 missions are in the data set more than once; each is counted once.",
         "note: 2,000 missions of another test cannot be compared and are left out.",
     ]
 
