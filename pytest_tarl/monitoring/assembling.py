@@ -37,38 +37,40 @@ class Expected:
         if [*names] != [*self.sensors]:
             return (
                 f"{path} was written with the sensors {', '.join(map(str, names))}, but the recording of {self.test} "
-                f"has {', '.join(self.sensors)}: its missions are not counted. Watch it with its own recording."
+                f"has {', '.join(self.sensors)}: its missions are not counted. Name the one it was written for."
             )
         if start.get("test", self.test) != self.test:
             return (
                 f"{path} was written for the recording of {start['test']}, not of {self.test}: its missions are not "
-                "counted. Watch it with its own recording."
+                "counted. Name the one it was written for."
             )
         if start.get("bins", self.digest) != self.digest:
             return (
                 f"{path} was written when the sensors of {self.test} had other bins: its missions are not counted. "
-                "Observe again with the current recording."
+                "Run `tarl observe` again with the current recording."
             )
         return ""
 
 
 @dataclass
 class Assembly:
-    """The state of reading an open log up to the offset `place`, including an unfinished mission."""
+    """The state of reading an open log, which was read up to the offset `place`; includes an unfinished mission."""
 
     expected: Expected
     path: Path
-    begun: Progress  # progress when the log was opened; `refused` says why its missions are currently not counted
+    begun: (
+        Progress  # progress when the log was opened; `refused` says why missions that follow are not counted
+    )
     place: int
     missions: int = 0
     unfinished: int = 0
-    # the last record of the latest mission, or a later record that belongs to no mission
+    # the last record of the latest mission, or a later record that is not part of any mission
     _last: Spot | None = None
     _latest: Spot | None = None  # the last record read
     # start time (in s since 1970) and steps of the unfinished mission
     _mission: tuple[float, list[Steps]] | None = None
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
-    _text: bytes = b""  # JSON from which `_table` was read, if it came with a mission in consecutive records
+    _text: bytes = b""  # JSON from which `_table` was read, if it came from a mission in consecutive records
 
     @property
     def progress(self) -> Progress:
@@ -111,19 +113,19 @@ class Assembly:
         return self._ended(passed == b"true", valid_time(time), [steps], spot)
 
     def _ended(self, passed: bool, time: float, steps: list[Steps], spot: Spot) -> Mission:
-        """Return the mission that ends with the record at this spot."""
+        """Return the mission whose `end` record is at this spot."""
         self._mission, self._last, self.missions = None, spot, self.missions + 1
         new = _new(steps) if any(table.new for table, _, _ in steps) else ()
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Process a record that does not end a counted mission; `before` is the previous record, or None."""
+        """Process a record that does not end a counted mission; `before` is the record before it, or None."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":
             self._mission = valid_time(record["time"]), []
             if not torn and (before is None or before == self._last):
-                return  # the mission begins directly after the last one
+                return  # the mission begins directly after the previous one
             last = before
         elif kind == "start":
             self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))

@@ -1,4 +1,4 @@
-"""Read complete records of a log in blocks; the block boundaries do not affect the result."""
+"""Read complete records of a log in blocks; the result does not depend on where blocks begin."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from typing import BinaryIO
 from pytest_tarl.framed import HEAD, unpack_head
 from pytest_tarl.observing.frames import LARGEST, Record
 
-BLOCK = 1 << 15  # bytes read at once: about 200 records
+BLOCK = 1 << 15  # number of bytes read at once: about 200 records
 _DECODED = json.JSONDecoder().raw_decode
 _TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
-# A mission in three consecutive records (mission, steps, end), as short missions are written
+# a mission in three consecutive records (mission, steps, end); short missions are written like this
 _AT_ONCE = re.compile(
     rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
     rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'
@@ -22,19 +22,19 @@ _AT_ONCE = re.compile(
     + rb'"step_cell":"([^"\n]*)","reward":"([^"\n]*)",.*\}\n'
     rb'\{"kind":"end","passed":(true|false),.*\}\n'
 )
-RECORDS = 3  # number of records of such a mission
+RECORDS = 3  # number of records of a mission that matches `_AT_ONCE`
 
 
 Spot = tuple[int, int, int]  # offset of a record in its log, and length and checksum of its payload
 
 
-# A mission in three consecutive records: its time and cells as JSON, the cells and rewards of its steps as base64,
-# whether it passed as JSON, and the spot of its last record
+# a mission in three consecutive records: its time and its cells (JSON), the cells and the rewards of its steps
+# (base64), whether it passed (JSON), and the spot of its last record
 AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
 
 
 class Block:
-    """Consecutive records of a log, read one by one, or three at a time for missions in consecutive records."""
+    """Consecutive records of a log, read one by one, or three at a time if they form a mission."""
 
     def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
         self._texts = texts
@@ -51,7 +51,7 @@ class Block:
         return self._number < len(self._texts)
 
     def at_once(self) -> Iterator[AtOnce]:
-        """Yield the next missions, up to the first one that is not in three consecutive records."""
+        """Yield missions in three consecutive records, up to the first record that does not begin one."""
         match, lines = _AT_ONCE.match, self._lines
         while (found := match(lines, self._at)) is not None:
             self._at = found.end()
@@ -79,7 +79,7 @@ def end_of(spot: Spot) -> int:
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return the complete records in about `size` bytes from `place` on; the block may be empty."""
+    """Return the complete records in the `size` bytes from `place` on, or one longer record; it may be empty."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []

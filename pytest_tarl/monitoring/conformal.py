@@ -3,11 +3,11 @@
 The pool starts with the scores of the held-out recorded missions. Each new mission is ranked in the pool and then joins
 it. While missions are exchangeable, the smoothed rank of a new score is exactly uniform and independent of all earlier
 ranks, for any number of recorded missions (Vovk, Gammerman & Shafer 2005, theorem 8.1). A fixed pool would not work:
-its few missions are a random selection, and their peculiarities would accumulate as evidence.
+it holds few missions, and whatever is peculiar to them would accumulate as evidence.
 
-Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so binning is a
-fixed function of a score. The pool is then a row of counts, and its size does not grow with the number of missions. The
-test stays exact, because ties are broken at random. A bet is a non-negative function of the rank p with integral 1 over
+Scores are rounded to bins. The edges of the bins come from the other half of the recorded missions, so the bin is a
+fixed function of the score. The pool is then a row of counts, and its size does not grow with the number of missions.
+Ties are broken at random, so the test stays exact. A bet is a non-negative function of the rank p with integral 1 over
 [0, 1].
 """
 
@@ -19,16 +19,16 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-TAIL = 8  # number of bins beyond the fitted scores on either side; each is twice as wide as the previous one
+TAIL = 8  # number of bins beyond the fitted scores at each end; each is twice as wide as its inner neighbour
 TOGETHER = 64  # number of missions ranked together; a multiple of 8 below 256, see `_counted`
-CLOSE = 1e-4  # differences below this share of a score's unit count as equal
+CLOSE = 1e-4  # values that differ by less than this share of a score's unit count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
-    """Return the edges of the bins, shape (BINS - 1,), from scores that are not in the pool.
+    """Return the edges of the bins, shape (BINS - 1,), given the fitted scores, which are not in the pool.
 
     Edges lie midway between neighbouring values, so rounding errors do not move a value into another bin. `unit` is the
-    magnitude of the terms that these scores sum. Unused bins have infinite edges and stay empty.
+    magnitude of the terms of which a score is the sum. Unused bins have infinite edges and stay empty.
     """
     unit = unit or 1.0
     values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
@@ -99,8 +99,8 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 def factors(low: Floats, high: Floats, found: Floats) -> None:
     """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
 
-    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks. The same
-    function of 1 - p wins on large ranks. The same function of the rank's distance to the nearer end of [0, 1] wins on
+    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks, the same
+    function of 1 - p on large ranks, and the same function of twice the distance of p to the nearer end of [0, 1] on
     both. The lines 1 ± (1 - 2p)/2 win on small shifts. Powers are computed by square roots, which round equally on all
     platforms.
     """

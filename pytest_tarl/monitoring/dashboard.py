@@ -1,4 +1,4 @@
-"""The status of a watch for dashboards: a versioned JSON document, specified by `watch.schema.json`."""
+"""The status of `tarl watch` for dashboards: a versioned JSON document, specified by `watch.schema.json`."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Bet against a lower bound on a mean: a sequential test of E[x] ≥ m for observations in [0, 1].
 
 Each observation multiplies the stake by 1 + λ(m - x). For 0 ≤ λ ≤ 1/(1 - m), this factor is never negative. Its mean is
-at most 1 while the mean of x, given all earlier observations, is at least m (Waudby-Smith & Ramdas 2023). If x is 0 or
-1, the stake is the likelihood ratio of the success rate m(1 - λ(1 - m)) against m.
+at most 1 while the mean of x, given all earlier observations, is at least m (Waudby-Smith & Ramdas 2023). If each x is
+0 or 1, the stake is the likelihood ratio of the success rate m(1 - λ(1 - m)) against m.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats
 
-# λ(1 - m), the share of its stake that a bet loses by a success, for each of restarts.BETS bets: small shares
-# detect mild losses of performance, large ones total failure
+# λ(1 - m), the share of its stake that a bet loses when a mission succeeds, for each of the BETS bets (restarts.py);
+# small shares detect mild losses of performance, large ones detect total failure
 SHARES = (0.01, 0.015, 0.023, 0.035, 0.053, 0.08, 0.12, 0.18, 0.27, 0.41, 0.62, 0.9)
 
 

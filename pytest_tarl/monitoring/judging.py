@@ -1,7 +1,7 @@
-"""Update the bets on missions, for one robot or for several robots side by side.
+"""Update the bets on missions, for one robot or for several robots at once.
 
-The columns are first the bounds, each for all robots, and then the scores, robot by robot. Columns do not affect each
-other, so the result of each robot equals, to the last bit, the result that it would get alone.
+The columns are first the bounds (each for all robots), then the scores (robot by robot). Columns do not affect each
+other, so each robot's result equals, to the last bit, the result that it would get alone.
 """
 
 from __future__ import annotations
@@ -54,27 +54,27 @@ def judged(
 
 
 def begun(threshold: Floats, bounds: int, robots: int) -> Processes:
-    """Return the processes of several robots before the first mission; `threshold` holds a single robot's."""
+    """Return the processes of several robots before the first mission; `threshold` holds the values of one robot."""
     return restarts.begun(
         np.append(np.repeat(threshold[:bounds], robots), np.tile(threshold[bounds:], robots))
     )
 
 
 def columns(bounds: int, scores: int, robots: int, robot: int) -> Ints:
-    """Return the columns of one of several robots, in the order in which a single robot has them."""
+    """Return the columns of one of several robots, in the order that a single robot's columns have."""
     rows = np.append(np.arange(bounds) * robots + robot, bounds * robots + robot * scores + np.arange(scores))
     return rows.astype(np.int64)
 
 
 def _told(bound: Bound, total: Floats) -> Truths:
-    """Return which missions provide an observation for a bound, in the shape of the totals."""
+    """Return which missions yield an observation for a bound, in the shape of the totals."""
     testable = e_process.testable(float(bound.share(bound.least)))
     told: Truths = testable & (np.isfinite(total) | (bound.what == "success"))
     return told
 
 
 def _against(bound: Bound, passed: Truths, total: Floats) -> Floats:
-    """Return the factors of the stakes against a bound, shape (missions, bets, robots)."""
+    """Return the factors of the bets against a bound, shape (missions, bets, robots)."""
     least = float(bound.share(bound.least))
     if not e_process.testable(least):
         return np.ones((1, 1, 1))

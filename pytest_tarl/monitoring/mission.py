@@ -1,4 +1,4 @@
-"""A mission read from a log, and the progress in the log after it."""
+"""A mission read from a log, and the progress through the log."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pytest_tarl.sensors import Cell
 
 
 class Progress(NamedTuple):
-    """The progress in a log, which was read up to `offset`.
+    """How far a log was read: up to `offset`.
 
     The last record that was read begins at the offset `last`; `mark` identifies it by its length and checksum. `log`
     identifies the log by its first record, so a renamed log is recognised. `refused` says why missions after the offset
-    are not comparable with the recording, or is empty.
+    cannot be compared with the recording; it is empty if they can.
     """
 
     log: str
@@ -34,9 +34,9 @@ class Progress(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """The cells of a `steps` record: `rows` are their rows in the recording, with -1 appended.
+    """The cells of a `steps` record; `rows` are their rows in the recording, followed by -1.
 
-    `new` holds the cells that the recording does not know.
+    `new` holds the cells that the recording lacks.
     """
 
     cells: list[Any]
@@ -44,14 +44,14 @@ class Table:
     new: Sequence[Cell | None]  # None for known cells; empty if all are known
 
 
-# The steps of a mission as stored in the log: their cells as little-endian int32, their rewards as float64
+# the steps of a mission as stored in the log: their cells as little-endian int32, their rewards as float64
 Steps = tuple[Table, bytes, bytes]
 
 
 class Mission(NamedTuple):
-    """A finished mission, its cells that the recording does not know, and the progress in its log.
+    """A finished mission, its cells that the recording lacks, and the progress in its log.
 
-    The progress extends from `begun`, when the log was opened, to the record at `last`.
+    The progress is that of `begun` (when the log was opened), advanced to the record at `last`.
     """
 
     passed: bool
@@ -65,12 +65,12 @@ class Mission(NamedTuple):
 
     @property
     def progress(self) -> Progress:
-        """Return the progress in its log after this mission."""
+        """Return the progress in the log after this mission."""
         return advanced(self.begun, self.last, self.missions, self.unfinished)
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return `begun` advanced to the record at `last`, or only with new counts if `last` is None."""
+    """Return `begun` with new counts, and advanced to the record at `last` unless that is None."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted
@@ -78,7 +78,7 @@ def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int)
 
 
 def mark(spot: Spot) -> str:
-    """Return a text that identifies a record by its length and checksum."""
+    """Return a text that identifies a record: its length and checksum."""
     _, length, checksum = spot
     return f"{length}:{checksum}"
 

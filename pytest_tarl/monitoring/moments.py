@@ -1,4 +1,4 @@
-"""Keep start times of evenly spaced missions, to find the time of a mission by its number."""
+"""Keep the start times of evenly spaced missions, to look up when a given mission took place."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-MOST = 1024  # maximum number of times to keep
+MOST = 1024  # maximum number of stored times
 
 
 @dataclass
 class Moments:
-    """The start times of every `stride`-th mission, in seconds since 1970; the stride doubles at MOST times."""
+    """The start times of every `stride`-th mission, in seconds since 1970; the stride doubles when MOST are stored."""
 
     stride: int = 1
     times: list[float] = field(default_factory=list)

@@ -2,7 +2,7 @@
 
 An e-process measures evidence that may be checked at any time. Two tests share α: whether performance is below the
 recorded bound, and whether missions differ from the recorded ones. Each test divides its half of α among its processes
-(union bound). The probability that a false alarm is ever raised is therefore at most α, plus the probability that a
+(union bound). The probability that there is ever a false alarm is therefore at most α, plus the probability that a
 bound is wrong.
 """
 
@@ -26,9 +26,9 @@ from pytest_tarl.monitoring.stated import Bound, bounds
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
-PORTION = 512  # number of missions scored together
-MOST_NEW = 256  # maximum number of new cells to count
-DRAWS = 4096  # number of random numbers drawn together
+PORTION = 512  # number of missions scored at a time
+MOST_NEW = 256  # maximum number of cells in `Monitor.new`
+DRAWS = 4096  # number of random numbers drawn at a time
 
 
 @dataclass
@@ -62,20 +62,20 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order; however they are divided into calls, the state is the same to the last bit."""
+        """Update with missions in order; the state does not depend, to the last bit, on their division into calls."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
         """Update with missions in order; an unknown total is NaN.
 
-        Cells are numbered as in the scale. All other cells, listed in `new`, share the next number.
+        Cells are numbered as in the scale. All other cells share the next number and are listed in `new`.
         """
         self.moments.add(self.counts.missions, time.tolist())
         self.judge(sample.passed, sample.total, binned(self.scale, sample))
         self._count(sample.steps, sample.total, new)
 
     def judge(self, passed: NDArray[np.bool_], total: Floats, bins: NDArray[np.integer[Any]]) -> None:
-        """Update the processes with missions in order; `bins` are those of the scores, shape (missions, scores)."""
+        """Update the processes with missions in order; `bins` are the bins of the scores, shape (missions, scores)."""
         for begin in range(0, len(passed), conformal.TOGETHER):
             some = slice(begin, begin + conformal.TOGETHER)
             self._judge(passed[some], total[some], bins[some].astype(np.int64))
@@ -91,10 +91,10 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def draws(self, first: int, count: int) -> Floats:
-        """Return numbers in (0, 1] that break ties; they depend only on the seed and the mission's number."""
+        """Return numbers in (0, 1] that break ties; they depend only on the seed and the index of the mission."""
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
-            drawn = self.drawn  # read once, since threads may share a monitor
+            drawn = self.drawn  # read once, because threads may share a monitor
             if drawn[0] != which:
                 drawn = self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
             begin = which * DRAWS
@@ -109,7 +109,7 @@ class Monitor:
         time: Floats,
         new: Sequence[Cell] = (),
     ) -> None:
-        """Count missions whose processes have already been updated (judging.py)."""
+        """Count missions whose processes judging.py has already updated."""
         self.moments.add(self.counts.missions, time.tolist())
         self.counts.missions += len(passed)
         self.counts.passed += int(passed.sum())
@@ -142,7 +142,8 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 def shares(stated: int, scores: int) -> Floats:
     """Return the shares of α, shape (processes,).
 
-    Half goes to the bounds, if there are any; the rest is divided evenly between scores of whole missions and of cells.
+    Half goes to the bounds, if there are any; the rest is divided evenly among the scores of whole missions and the
+    scores of cells.
     """
     cells = scores - len(WHOLE)
     rest = 0.5 if stated else 1.0

@@ -18,17 +18,17 @@ TOPIC = "/diagnostics"
 NAME = "tarl_watch"
 OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
-NOTICED = 0.5  # maximum delay in seconds between a signal and the end of the watch
+NOTICED = 0.5  # maximum delay between a signal and the end of the watch (s)
 
-Look = Callable[[], tuple[bool, Watch, Status]]  # returns (whether to continue, the watch, its status)
+Look = Callable[[], tuple[bool, Watch, Status]]  # returns whether to continue, the watch and its status
 
 
 def run(library: str, look: Look, period: float, stopped: Event) -> None:
     """Read the logs every `period` seconds of ROS time and publish the status.
 
-    End when a signal sets `stopped` or ROS shuts the node down. The signal handlers of ROS stay off, because they would
-    shut the node down in the middle of a publish call. Raise SettingsError if the library or the message package is not
-    installed.
+    End when a signal sets `stopped` or ROS shuts the node down. ROS does not install its own signal handlers, because
+    they would shut the node down in the middle of a publish call. Raise SettingsError if the library or the message
+    package is not installed.
     """
     try:
         ros, messages = import_module(library), import_module("diagnostic_msgs.msg")
@@ -59,7 +59,7 @@ def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_leve
 
 
 def values(watch: Watch, status: Status) -> list[tuple[str, str]]:
-    """Return the status by key.
+    """Return the status as keys and values.
 
     Evidence is given as log10; an alarm is raised at -log10(alpha).
     """

@@ -19,18 +19,18 @@ from pytest_tarl.observing.frames import MAGIC, next_record
 
 @dataclass
 class LogReader:
-    """A log that may grow, be rotated or truncated, or not exist yet.
+    """A log that may grow, be rotated or be truncated, or that may not exist yet.
 
-    `problem` is a sentence about its current problem, or empty.
+    `problem` is a sentence about the current problem of the log, or empty.
     """
 
     path: Path
     expected: Expected
-    known: Mapping[str, Progress]  # progress in every log that was ever read
+    known: Mapping[str, Progress]  # progress in each log that was ever read, by log ID
     owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # whether the caller of `missions` stopped before the last mission
+    _ahead: bool = False  # whether the caller of `missions` stopped before it got the last mission
 
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
@@ -110,8 +110,8 @@ class LogReader:
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
         """Return whether the log was rotated or truncated.
 
-        After a rotation, another file has the log's name; after a truncation, the log is shorter than the part already
-        read.
+        After a rotation, the path names another file; after a truncation, the file is shorter than the part that was
+        read before.
         """
         mine = os.fstat(file.fileno())
         try:
@@ -143,7 +143,7 @@ class LogReader:
 
 
 def _unchanged(file: BinaryIO, at: Progress) -> bool:
-    """Return whether the file still has the last record that was read."""
+    """Return whether the last record that was read is still in the file."""
     file.seek(at.last)
     payload = next_record(file)
     if payload is None:

@@ -1,17 +1,17 @@
 """Many e-processes in parallel, each a mixture over bets and over start times (restarts before each mission).
 
-One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If it starts before observation τ, its value is 1
-until then, and the product of the f_t with t ≥ τ afterwards. The mixture over k and τ with weights that sum to 1 is
+A bet k multiplies its stake by a factor f ≥ 0 whose mean is at most 1. If it starts before observation τ, its value is
+1 until then, and afterwards the product of the f_t with t ≥ τ. The mixture over k and τ with weights that sum to 1 is
 again an e-process (Shin, Ramdas & Rinaldo 2023, e-detectors): by Ville's inequality, the probability that it ever
 exceeds 1/α is at most α. A restart before every observation costs only one product, since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
 Half of the weight is on a start before the first observation. The other half falls by the factor 2^(-1/8) from one
-octave of τ to the next, so a change after 100,000 quiet missions lowers the natural logarithm of the evidence by only
-about 15.
+octave of τ to the next, so a change after 100,000 missions without a change lowers the natural logarithm of the
+evidence by only about 15.
 
-Only sums, products and square roots are used, which IEEE 754 rounds the same everywhere: equal observations give
+Only sums, products and square roots are used, which IEEE 754 rounds equally on all platforms: equal observations give
 equal bits, however they are divided into portions.
 """
 
@@ -26,9 +26,9 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BETS = 12  # number of bets per process
-LARGE = 600  # stakes above 2^LARGE are scaled down; one factor is below 2^70
-# stakes are checked when the mission's number is a multiple of this, so that the division into calls does not
-# matter
+LARGE = 600  # stakes above 2^LARGE are scaled down; a single factor is below 2^70
+# the size of stakes is checked after missions whose number is a multiple of this, so that it does not matter how
+# missions are divided into calls
 LOOK = 4
 
 
@@ -39,7 +39,7 @@ class Processes:
     `stake`, `best` and `since` have shape (bets, processes), the others (processes,). `stake` is Σ_τ w_τ ∏f, and `best`
     is the largest term of that sum, both divided by 2^exponent. `since` is the mission before which the largest term
     started. `age` is the number of observations. `peak` is log2 of the largest evidence so far, and `onset` is the
-    mission before which the largest term at that moment had started. `alarm` is the mission at which the evidence
+    mission before which the term that was then the largest had started. `alarm` is the mission at which the evidence
     reached `threshold`, or -1.
     """
 
@@ -60,7 +60,7 @@ class Processes:
 
 
 def begun(threshold: Floats) -> Processes:
-    """Return processes without observations; `threshold` is log2 of the evidence of an alarm, shape (processes,)."""
+    """Return processes without observations; `threshold` is log2 of the evidence for an alarm, shape (processes,)."""
     count = len(threshold)
     return Processes(
         stake=np.zeros((BETS, count)),
@@ -76,7 +76,7 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the weight of all future restarts after `age` observations: 1 for none, then ½·age^(-1/8)."""
+    """Return the total weight of future restarts after `age` observations: 1 for age 0, then ½·age^(-1/8)."""
     root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
     return np.where(age > 0, 0.5 / root, 1.0)
 
@@ -93,7 +93,7 @@ def advance(
 
     `taken`, shape (missions, processes), says whether a mission has an observation for a process. `factors`, shape
     (missions, bets, processes), multiply the stakes and are 1 without an observation. If processes have different
-    numbers of missions, `ends`, shape (processes,), holds them, and the other rows are padding. Without `onsets`,
+    numbers of missions, `ends`, shape (processes,), holds these numbers, and later rows are padding. Without `onsets`,
     `best`, `since` and `onset` are not updated, which halves the time.
     """
     rows = np.flatnonzero(taken.any(axis=0))
@@ -119,9 +119,9 @@ def advance(
 
 @dataclass(frozen=True)
 class _Products:
-    """The stakes after each mission: their sums over the bets, and exponents, each of shape (missions, rows).
+    """The sums of the stakes over the bets after each mission, and their exponents, each of shape (missions, rows).
 
-    `added`, `multiplied` and `shrinks` are the operations of each mission, in this order, for all bets of all rows.
+    `added`, `multiplied` and `shrinks` are the operands of each mission's operations on all stakes, in this order.
     """
 
     sums: Floats
@@ -136,7 +136,7 @@ def _multiplied(
 ) -> _Products:
     """Update the stakes mission by mission.
 
-    A row of the local array `stake` holds all bets of all processes, before the first mission or after one.
+    A row of the local array `stake` holds the stakes of all bets and processes, before the first or after each mission.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
@@ -190,13 +190,13 @@ def _started(processes: Processes, rows: Ints, products: _Products, first: int, 
 
 
 def _latest(fresh: NDArray[np.bool_], earlier: Ints, first: int) -> Ints:
-    """Return, along the first axis, the last mission at which a term was `fresh`, or `earlier` if there was none."""
+    """Return, for each column, the last mission at which a term was `fresh`, or `earlier` if there was none."""
     last = first + len(fresh) - 1 - fresh[::-1].argmax(axis=0)
     return np.where(fresh.any(axis=0), last, earlier)
 
 
 def _summed(stake: Floats) -> Floats:
-    """Sum over the bets of shape (missions, bets, processes), in the same order for any number of processes."""
+    """Sum stakes of shape (missions, bets, processes) over the bets, in an order that does not depend on the shape."""
     total: Floats = stake[:, 0] + stake[:, 1]
     for bet in range(2, BETS):
         total += stake[:, bet]

@@ -29,10 +29,10 @@ FEWEST = 2  # minimum number of episodes in each half of a recording
 
 @dataclass(frozen=True)
 class Missions:
-    """Missions in order; columns of steps have shape (steps,).
+    """Missions in order; the columns of steps have shape (steps,).
 
-    `cell` is the row of the step's cell in the scale. For a cell that is not in the scale, it is the number of rows;
-    until all sensors have a value, it is -1. A mission may have no steps.
+    `cell` is the row that a step's cell has in the scale's table of cells; it is the number of rows for a cell that is
+    not in the table, and -1 until all sensors have a value. A mission may have no steps.
     """
 
     passed: NDArray[np.bool_]
@@ -40,7 +40,7 @@ class Missions:
     mission: Ints  # index of each step's mission
     cell: Ints
     reward: Floats
-    new: tuple[Cell, ...] = ()  # cells that are not in the scale, once for each mission that visited them
+    new: tuple[Cell, ...] = ()  # cells that the scale lacks, once for each mission that visited them
 
     @property
     def count(self) -> int:
@@ -53,14 +53,14 @@ class Scale:
     """How missions are scored: the fitted model, its cells, and the edges of all bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    # whether the model was fitted in a cell; the last entry, False, is for all other cells
+    # whether the model was fitted for a cell; the last entry, False, is for cells that the scale lacks
     known: NDArray[np.bool_]
     model: Model
     edges: Floats
 
     @property
     def number(self) -> Mapping[Cell, int]:
-        """Return the row of each cell."""
+        """Return the row of each cell in the table of cells."""
         return {cell: row for row, cell in enumerate(self.cells)}
 
 
@@ -82,7 +82,9 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     model = fitted(chain, count, tiled(sample.cells, fixture.sensors))
     model = Model(*(np.append(getattr(model, one.name), np.nan) for one in fields(Model)))
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
-    wide = replace(sample, cells=(*sample.cells, ()))  # same layout as new missions, so that sums round alike
+    wide = replace(
+        sample, cells=(*sample.cells, ())
+    )  # same layout as new missions, so that sums are rounded equally
     values = _values(bare, wide)
     units = _units(chain, int(fit.sum()), count)
     found = [
@@ -95,8 +97,8 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 def binned(scale: Scale, sample: Sample) -> Ints:
     """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission lacks the score.
 
-    A mission without steps only has the score of its success. A mission without rewards lacks the scores that need
-    them.
+    A mission without steps has no score but that of its success. A mission without rewards lacks the scores that need
+    rewards.
     """
     return _binned(scale, _values(scale, sample))
 
@@ -110,7 +112,7 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 
 
 def _values(scale: Scale, sample: Sample) -> Floats:
-    """Return the scores, shape (missions, scores), with NaN if a mission lacks one.
+    """Return the scores, shape (missions, scores); NaN if a mission lacks the score.
 
     The score of a cell is its mean residual per visit.
     """
@@ -136,7 +138,7 @@ def _values(scale: Scale, sample: Sample) -> Floats:
 
 
 def _units(chain: Chain, episodes: int, cells: int) -> Floats:
-    """Return the magnitude of the terms summed in each score, shape (scores,), as the scale of rounding errors."""
+    """Return the magnitude of the terms summed in each score, shape (scores,); rounding errors scale with it."""
     size = float(np.abs(chain.reward).sum())
     mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
     whole = {"success": 1.0, "total": mission, "residual": mission, "unknown": 1.0, "steps": 1.0}
@@ -144,7 +146,7 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 
 
 def sampled(scale: Scale, missions: Missions) -> Sample:
-    """Return missions in the form of recorded episodes, with one more cell for all unknown cells.
+    """Return missions in the form of recorded episodes, with one additional cell for all cells that the scale lacks.
 
     The total of a mission is NaN if it has no steps or an unknown reward.
     """
@@ -171,7 +173,7 @@ def _totals(missions: Missions) -> Floats:
 
 
 def _chain(mission: Ints, cell: Ints, reward: Floats, width: int) -> Chain:
-    """Return the transitions of consecutive steps, rounded as in a recording."""
+    """Return the transitions between consecutive steps, with sums rounded as in a recording."""
     following = np.append(cell[1:], END)
     following[np.flatnonzero(np.diff(mission))] = END
     codes, place, count = np.unique(

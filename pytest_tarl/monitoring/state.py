@@ -1,10 +1,10 @@
 """The state of a watch on disk: a small file, written atomically, from which the watch resumes.
 
-A `.npz` without pickle, like a recording: a JSON header with a digest, and the columns of the processes and the pool.
+A `.npz` without pickle, like a recording: a JSON header with a hash, and the columns of the processes and the pool.
 
 FORMAT history:
 1  First version.
-2  The onset of each process at its largest evidence.
+2  Adds the onset of each process at its largest evidence.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _UNREADABLE = (
 
 
 def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: str) -> None:
-    """Write the state atomically; `fixture` is the digest of the recording. Raise MonitorError on failure."""
+    """Write the state atomically; `fixture` is the hash of the recording. Raise MonitorError on failure."""
     columns = _columns(monitor)
     header: dict[str, Any] = {
         "kind": KIND,
@@ -78,7 +78,7 @@ def load(
 ) -> tuple[Monitor, dict[str, Progress]]:
     """Return the monitor and the progress in its logs from a state file, or a new monitor if there is no file.
 
-    Raise MonitorError if the file is damaged, or belongs to another recording, α or seed. Raise FixtureError if the
+    Raise MonitorError if the file is damaged or belongs to another recording, α or seed. Raise FixtureError if the
     recording has too few episodes.
     """
     fresh = begun(fixture, alpha=alpha, seed=seed)

@@ -18,7 +18,7 @@ from pytest_tarl.model import Bound as Rate
 class Bound:
     """A lower bound on the mean of a quantity within [low, high].
 
-    `what` is "success" or "total". `confidence` is the probability over recordings that the bound holds.
+    `what` is "success" or "total". `confidence` is the probability, over repeated recordings, that the bound holds.
     """
 
     what: str
@@ -28,14 +28,14 @@ class Bound:
     high: float = 1.0
 
     def share(self, value: NDArray[np.float64] | float) -> Floats:
-        """Scale values of any shape from [low, high] to [0, 1]; clip values outside."""
+        """Scale values from [low, high] to [0, 1], clipping values outside; keep the shape."""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
-    """Return the bounds of the recording: of success, and of the mean total if its range was declared.
+    """Return the bounds of a recording: of success, and of the mean total if its range was declared.
 
-    There are no bounds if all episodes are equal, because equal episodes do not show how much episodes can vary.
+    There are no bounds if all episodes are equal, because such episodes do not show how much episodes can vary.
     Recordings of older versions state no bounds; then the bound of success is computed from the episodes.
     """
     told = fixture.stated

@@ -13,9 +13,9 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-# indices of bets on low and on high ranks; the other bets of conformal.factors are on both ends
+# indices of bets on low and on high ranks; the other bets of conformal.factors are on both extremes
 LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)
-FEWEST_NEW = 2  # a new cell is named if at least this many missions visited it
+FEWEST_NEW = 2  # minimum number of missions that visited a new cell, to name it in the status
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The evidence against one hypothesis, now and at its maximum, as log10; an alarm is raised at -log10(α).
+    """The current and the largest evidence against one hypothesis, as log10; an alarm is raised at -log10(α).
 
     `since` is the mission before which the difference probably began. `alarm` is the mission that raised the alarm.
     """
@@ -41,7 +41,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Score:
-    """A score of whole missions or of one cell, and the side on which new missions deviate."""
+    """A score of whole missions or of one cell, and the direction in which new missions deviate."""
 
     name: str
     cell: Cell | None
@@ -50,7 +50,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Status:
-    """The status of a watch; evidence is None for a bound that cannot be violated, such as 0."""
+    """The status of a watch; the evidence is None for a bound that cannot be violated, such as 0."""
 
     missions: int
     passed: int
@@ -74,12 +74,12 @@ class Status:
 
     @property
     def alarm(self) -> bool:
-        """Return whether an alarm was ever raised; an alarm is not withdrawn, since α covers the whole watch."""
+        """Return whether an alarm was ever raised; alarms are not withdrawn, since α covers the whole watch."""
         return self.below or self.drifted
 
     @property
     def error(self) -> float:
-        """Return the probability that a false alarm is ever raised, including the probability that a bound is wrong."""
+        """Return the probability that there is ever a false alarm, including the probability that a bound is wrong."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
@@ -113,7 +113,7 @@ def _testable(bound: Bound) -> bool:
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
-    """Return the largest evidence among the processes in these rows, relative to their shares of α."""
+    """Return the evidence of the processes in these rows (the largest among them), relative to their shares of α."""
     processes = monitor.processes
     unit = -processes.threshold[rows] - np.log2(monitor.alpha)
     now = restarts.log_evidence(processes)[rows] + unit

@@ -24,12 +24,12 @@ from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
 
-SAVED = 1.0  # seconds between two saves of the state while there are more missions to read
+SAVED = 1.0  # time between two saves of the state while there are more missions to read (s)
 
 
 @dataclass
 class Watch:
-    """The watched logs; `known` is the progress in each log, by the id of the log."""
+    """The watched logs; `known` is the progress in each log, by log ID."""
 
     fixture: Fixture
     digest: str
@@ -41,8 +41,7 @@ class Watch:
     def poll(self) -> Iterator[None]:
         """Count the missions that ended since the last call, in the order of their times.
 
-        Yield after each portion. Save the state every `SAVED` seconds and at the end. Raise MonitorError if it cannot
-        be saved.
+        Yield after each portion. Save the state every `SAVED` seconds and at the end. Raise MonitorError if that fails.
         """
         logs = [one.missions() for one in self.readers]
         coming = logs[0] if len(logs) == 1 else heapq.merge(*logs, key=lambda mission: mission.time)
@@ -81,7 +80,7 @@ class Watch:
 
 
 def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
-    """Return a watch that resumes from its state file, or a new one if there is no file.
+    """Return a watch that resumes from its state file, or a new watch if there is no such file.
 
     Raise FixtureError or MonitorError if the recording or the state cannot be used.
     """
