@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # unpacked bytes allowed for a file of any size
-RATIO = 100  # unpacked bytes allowed beyond FREE, per byte of the file; recordings need 2 to 20
+FREE = 256_000_000  # number of unpacked bytes allowed for a file of any size
+RATIO = 100  # number of further unpacked bytes allowed per byte of the file; recordings need 2 to 20
 # bytes of memory per unpacked byte while a recording is read (benchmarks/limits.py, case recording)
 NEEDED = 9
 KINDS = "biuf"  # numpy kinds: booleans, integers and floats
@@ -27,14 +27,14 @@ class DamagedError(ValueError):
 
 
 class TooLargeError(ValueError):
-    """Raised if there is too little memory to read an archive; the argument is a clause that says how much it takes."""
+    """Raised if there is too little memory to read an archive; the argument is a clause that states the need."""
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
     """Return the arrays by name, in the shapes that the file states.
 
-    Raise TooLargeError before unpacking if memory is short, and DamagedError if the archive is not valid. Damaged zip
-    and npy headers raise other exceptions.
+    Raise TooLargeError before unpacking if there is too little memory, and DamagedError if the archive is not valid.
+    Damaged zip and npy headers raise other exceptions.
     """
     with ZipFile(io.BytesIO(content)) as archive:
         members = archive.infolist()
@@ -78,5 +78,5 @@ def _array(archive: ZipFile, member: ZipInfo) -> NDArray[Any]:
     body = stream.read()
     whole = dtype.kind in KINDS and all(size >= 0 for size in shape)
     if not whole or math.prod(shape) * dtype.itemsize != len(body):
-        raise DamagedError(f"its member {member.filename[:40]!r} has another length than its shape")
+        raise DamagedError(f"its member {member.filename[:40]!r} has a length that does not match its shape")
     return np.frombuffer(body, dtype).reshape(shape, order="F" if by_columns else "C").copy()

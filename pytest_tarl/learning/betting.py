@@ -17,19 +17,18 @@ from statistics import fmean, variance
 from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares of the wealth that each bet may lose in the worst possible episode
-# Initial share of the wealth for the bold bet. Of 200 correct repairs that lose 3 % and never fail, 0.9
-# accepts 197 and
-# 0.5 accepts 93. Correct repairs that seldom fail are accepted equally often with both.
+# initial share of the wealth for the bold bet; of 200 correct repairs that lose 3 % of the reward and never fail, 0.9
+# accepts 197 and 0.5 accepts 93; of correct repairs that seldom fail, both accept equally many
 OF_BOLD = 0.9
 DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes
-CERTAIN = 0.005  # approximate probability of stopping early although the mean is above the limit
+CERTAIN = 0.005  # approximate probability of giving up early although the mean is above the limit
 
 
 @dataclass(frozen=True, slots=True)
 class Bet:
     """Bets that the mean difference is above `-margin`.
 
-    Differences below `least` count as `least`. `stakes` are per unit of reward.
+    Differences below `least` count as `least`. `stakes` are the amounts bet per unit of reward.
     """
 
     margin: float
@@ -38,11 +37,11 @@ class Bet:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Return the initial share of the wealth of each stake."""
+        """Return the share of the initial wealth that each stake gets."""
         return (OF_BOLD, 1.0 - OF_BOLD) if len(self.stakes) > 1 else (1.0,)
 
     def wealth(self, differences: Sequence[float]) -> float:
-        """Return the logarithm of the wealth; the initial wealth is 1, and the result is -inf if everything is lost."""
+        """Return the logarithm of the wealth, which is 1 initially; -inf if everything is lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
         if most == -inf:
@@ -50,11 +49,11 @@ class Bet:
         return most + log(sum(share * exp(one - most) for share, one in zip(self.shares, each, strict=True)))
 
     def powerless(self, episodes: int, risk: float) -> bool:
-        """Return whether the bet cannot be won even by `episodes` episodes without any loss."""
+        """Return whether the bets cannot win within `episodes` episodes, even if none has a loss."""
         return self.wealth([0.0] * episodes) < -log(risk)
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
-        """Return whether `left` more episodes are unlikely to win the bet, even at an optimistic mean."""
+        """Return whether the bets are unlikely to win within `left` more episodes, even at an optimistic mean."""
         counted = [max(one, self.least) for one in differences]
         best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:
@@ -82,6 +81,6 @@ def _grown(stake: float, differences: Sequence[float], margin: float, least: flo
 
 
 def _bounded(stake: float, margin: float, least: float, share: float) -> float:
-    """Return the stake, reduced to lose at most `share` of the wealth in the worst episode."""
+    """Return the stake, reduced so that the worst episode loses at most `share` of the wealth."""
     deepest = -least - margin
     return stake if deepest <= 0.0 else min(stake, share / deepest)

@@ -10,15 +10,15 @@ import numpy as np
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.sensors import Sensor
 
-DIGITS = 4  # edges are rounded to this many digits of the range of the values
+DIGITS = 4  # edges are rounded to this many decimal digits, relative to the range of the values
 
 
 def learned_edges(
     sensors: Iterable[Sensor], read: Mapping[str, Sequence[float]]
 ) -> dict[str, tuple[float, ...]]:
-    """Return the edges of each sensor whose bins are to be learned; `read` holds the values by sensor.
+    """Return the edges of each sensor whose bins are to be learned; `read` holds the values of each sensor.
 
-    Raise RecordingError if a sensor read nothing or always the same value.
+    Raise RecordingError if a sensor has no value or always the same one.
     """
     return {s.name: quantiles(s.name, read.get(s.name, ()), s.bins or 1) for s in sensors if s.to_learn}
 

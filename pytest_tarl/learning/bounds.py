@@ -1,4 +1,4 @@
-"""Compute bounds on future episodes of a world: success rate, mean and quantiles of total reward, loss.
+"""Compute bounds for future episodes of a world: success rate, mean and quantiles of the total reward, loss.
 
 Each bound assumes that episodes are drawn independently from one world. Each bound holds on its own; the probability
 that any of several bounds is wrong is at most the sum of their risks. Further assumptions:
@@ -38,7 +38,7 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
 POWER = 0.8  # probability of detecting the smallest detectable loss
-STAKE = 0.75  # maximum share of the wealth that one bet may lose: the truncation c of Waudby-Smith & Ramdas
+STAKE = 0.75  # maximum share of the wealth that one bet may lose; the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):
@@ -49,7 +49,7 @@ class Range(NamedTuple):
 
 
 def rate(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return one-sided Clopper-Pearson bounds of a success rate, each at the confidence."""
+    """Return one-sided Clopper-Pearson bounds on a success rate, each at the confidence."""
     risk = 1.0 - confidence
     low = rate_low(passed, episodes, risk)
     high = 1.0 - rate_low(episodes - passed, episodes, risk)
@@ -57,7 +57,7 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the rate at which `passed` or more passes have the probability `risk`."""
+    """Return the success rate at which `passed` or more passes have the probability `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -67,7 +67,7 @@ def rate_low(passed: int, episodes: int, risk: float) -> float:
 
 
 def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return one-sided bounds of a success rate that hold simultaneously after every episode."""
+    """Return one-sided bounds on a success rate that hold simultaneously after every episode."""
     risk = 1.0 - confidence
     low = _sequence_low(passed, episodes, risk)
     high = 1.0 - _sequence_low(episodes - passed, episodes, risk)
@@ -97,7 +97,7 @@ def evidence_above(passed: int, episodes: int, least: float) -> float:
 def mean_of(
     totals: Sequence[float], confidence: float, declared: Range | None = None, *, anytime: bool = False
 ) -> Bound:
-    """Return one-sided bounds of a mean, each at the confidence; exact if the range is declared.
+    """Return one-sided bounds on a mean, each at the confidence; exact if the range is declared.
 
     With `anytime`, they hold simultaneously after every episode. A betting bound can exceed the observed mean if a bet
     won early; it is then clipped to the mean. Raise ValueError if a total lies outside the range.
@@ -109,7 +109,7 @@ def mean_of(
     width = declared.high - declared.low
     share = (values - declared.low) / width
     if share.size and not (share.min() >= 0.0 and share.max() <= 1.0):
-        raise ValueError(f"a total lies outside of {declared.low:g} to {declared.high:g}")
+        raise ValueError(f"a total lies outside {declared.low:g} to {declared.high:g}")
     risk = 1.0 - confidence
     low, high = (
         min(bet_low(one, risk, anytime=anytime), float(one.mean())) if one.size else 0.0
@@ -121,7 +121,7 @@ def mean_of(
 
 
 def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
-    """Return a lower bound of the mean of `values` in [0, 1], shape (episodes,).
+    """Return a lower bound on the mean of `values` in [0, 1], shape (episodes,).
 
     A bet against each candidate mean m stakes λ on values above m. If m is the mean, the wealth is a martingale, so it
     rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only on earlier values.
@@ -144,7 +144,7 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
 
 def quantile_low(totals: Sequence[float], share: float, confidence: float) -> float | None:
-    """Return a total that at least a share 1 - `share` of all episodes reach; None if there are too few episodes.
+    """Return a total that at least a share 1 - `share` of all episodes reaches; None if there are too few episodes.
 
     The bound is the k-th smallest total, for the largest k with P(Bin(n, share) < k) ≤ 1 - confidence.
     """
@@ -155,14 +155,14 @@ def quantile_low(totals: Sequence[float], share: float, confidence: float) -> fl
 
 
 def episodes_for_quantile(share: float, confidence: float) -> int:
-    """Return the number of episodes whose lowest total bounds the quantile `share` at the confidence."""
+    """Return the smallest number of episodes whose lowest total bounds the quantile `share` at the confidence."""
     return ceil(log(1.0 - confidence) / log1p(-share) - 1e-9)
 
 
 def loss_between(
     offline: Sequence[float], online: Sequence[float], confidence: float, declared: Range | None = None
 ) -> Bound:
-    """Return one-sided bounds of mean(offline) - mean(online), each at the confidence.
+    """Return one-sided bounds on mean(offline) - mean(online), each at the confidence.
 
     Without a declared range, the result is the wider of two intervals. The first holds the shifts that a studentised
     permutation test does not reject (Janssen 1997). It is exact if the totals of both worlds differ by a constant,

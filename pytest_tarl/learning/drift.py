@@ -1,7 +1,7 @@
 """Compare two worlds: test for a loss of performance and for a drift, and find the cells that differ.
 
-The designed world is the one of the recording (`offline`), the deployed world is the one compared (`online`). A cell is
-a combination of sensor bins. The drift test compares Bellman residuals, that is the differences between what a step
+The designed world is the recorded one (`offline`), the deployed world is the one compared with it (`online`). A cell is
+a combination of sensor bins. The drift test compares Bellman residuals, which are the differences between what a step
 brings and what the recorded utility predicts. Whole episodes are permuted, and p-values are corrected over all columns
 by the largest statistic.
 """
@@ -46,7 +46,7 @@ class Difference:
 def tolerated(offline: Sample, stated: float | None) -> float:
     """Return δ, the tolerated loss per episode.
 
-    It is 5 % of the mean recorded reward or the marker's tolerance, whichever is larger.
+    It is 5 % of the mean recorded reward or the tolerance of the marker, whichever is larger.
     """
     return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
 
@@ -64,9 +64,9 @@ def compare(
 ) -> Difference:
     """Compare the deployed world with the designed one; `tolerance` is the tolerated loss per episode.
 
-    `sensors` are needed only for tiled utilities; without them the utility is a table. A correction over many
-    comparisons needs more `permutations`. `declared` is the range of totals, if known. Both samples are rounded as in a
-    recording.
+    `sensors` are needed only for tiled utilities; without them, the utility is a table. If p-values are corrected over
+    many comparisons, more `permutations` are needed. `declared` is the range of totals, if known. Both samples are
+    rounded as in a recording.
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
@@ -90,7 +90,7 @@ def as_compared(sample: Sample) -> Sample:
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with the result that follows from its p-values and loss."""
+    """Return the verdict with the result that its p-values and its loss imply."""
     result: Result = "no difference"
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
         result = "degraded"
@@ -100,7 +100,7 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 
 
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
-    """Return the verdicts of several comparisons, with Holm's correction of their p-values and the new results."""
+    """Return the verdicts of several comparisons with p-values corrected by Holm's method, and results to match."""
     p_drift, p_loss = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_loss"))
     return [
         judged(replace(one, p_drift=drift, p_loss=loss), alpha)
@@ -191,7 +191,7 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 
 
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the significant cells whose difference is at least MATERIAL of the largest one, shape (cells,).
+    """Return the significant cells whose difference is at least MATERIAL times the largest one, shape (cells,).
 
     The designed mean per visit has an estimation error. Where deployed episodes visit a cell more or less often, this
     error becomes significant with enough episodes. It stays small, so the limit removes such cells.

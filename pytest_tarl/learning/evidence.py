@@ -13,7 +13,7 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # minimum number of visits to a novel cell, that is, a cell that the fit does not know
+NOVEL_VISITS = 3  # minimum number of visits to a novel cell (a cell that the fit does not know)
 NOVEL_EPISODES = 2  # minimum number of episodes that visit a novel cell
 
 
@@ -25,7 +25,7 @@ class Evidence:
     cells that share a bin of one sensor, and a column for the total reward of each episode.
     """
 
-    move: Floats  # one column per cell, like the next two fields
+    move: Floats  # one column per cell, as in the next two fields
     reward: Floats
     novel: Floats
     move_error: Floats  # rounding errors of `move` and `reward`; values below their error are set to 0
@@ -34,7 +34,7 @@ class Evidence:
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:
-        """Return the blocks of columns, each of shape (episodes, …): move, reward, novel, two of slabs, totals."""
+        """Return the blocks of columns, each of shape (episodes, …): move, reward, novel, both slab blocks, totals."""
         parts = ((self.move, self.move_error), (self.reward, self.reward_error))
         slabs = [beyond(_summed(part, self.slabs), _summed(error, self.slabs)) for part, error in parts]
         return (self.move, self.reward, self.novel, *slabs, self.totals)
@@ -48,7 +48,7 @@ class Evidence:
 
 
 def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
-    """Fit a model to one half of the recorded episodes; compare the other half with the deployed ones."""
+    """Fit a model to one half of the recorded episodes, and compare the other half with the deployed episodes."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
@@ -74,8 +74,8 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
 def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
     """Return the row numbers of the cells in each slab, arrays of shape (cells of the slab,).
 
-    There is a slab for every bin of every sensor, and a last one with all cells. A single sensor has only the last one,
-    because its bins are the cells themselves.
+    There is a slab for every bin of every sensor, and a last slab with all cells. With a single sensor, there is only
+    the last one, because the bins are the cells themselves.
     """
     table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
     columns = table.T if table.shape[1] > 1 else ()

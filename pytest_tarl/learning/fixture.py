@@ -1,14 +1,13 @@
 """The recording of a test: `--tarl-record` writes it, `--tarl-online` reads it.
 
-It is one `.npz` file: a JSON header with a format version and a digest, and the packed columns of the statistics. It
-is loaded without pickle. It is written to a temporary file, which is then renamed. The same episodes give the same
-bytes.
+It is one `.npz` file: a JSON header with a format version and a hash, and the packed columns of the statistics. It is
+loaded without pickle. It is written to a temporary file, which is then renamed. Equal episodes give equal bytes.
 
 Format versions:
 1  Columns of float64.
-2  Sums as logarithms (packing.py), which takes a sixth of the size; Σ|f| per episode and site. If the test has
+2  Sums as logarithms (packing.py), which take a sixth of the size; Σ|f| per episode and site. If the test has
    formulas, the header also has `formulas` and `signals`, and there are columns `robustness` and `lost`. Older
-   readers of format 2 ignore these, and also `stated` (bounds) and `world` (digests of the test's modules).
+   readers of format 2 ignore these, and also `stated` (bounds) and `world` (hashes of the test's modules).
 """
 
 from __future__ import annotations
@@ -66,7 +65,7 @@ class Fixture:
     design: tuple[str, ...] = ()  # names of permanent drifts that are part of the design
     signals: tuple[Signal, ...] = ()  # signals that formulas read from messages
     stated: Guarantee | None = None
-    # file → definition → digest, see modules_of_tests.py
+    # file → definition → hash, see modules_of_tests.py
     world: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
@@ -76,7 +75,7 @@ class Fixture:
 
 
 def save(fixture: Fixture, path: Path) -> None:
-    """Write the recording atomically. Raise FixtureError if it cannot be written."""
+    """Write the recording atomically. Raise FixtureError if that fails."""
     columns = _columns(fixture)
     header = {
         "format": FORMAT_VERSION,
@@ -189,7 +188,7 @@ def _why(problem: Exception) -> str:
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
-    """Return for each taint list the bytes that its columns take on disk."""
+    """Return, for each taint list, the number of bytes that its columns take on disk."""
     with ZipFile(path) as archive:
         entries = archive.infolist()
     return tuple(

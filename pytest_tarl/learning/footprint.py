@@ -1,7 +1,8 @@
 """Estimate the memory that recording episodes needs, and warn before it runs out.
 
 While episodes run, their statistics are kept as columns with 8 bytes per number. Merging, packing and writing them
-takes `PEAK` times as much. Both grow in proportion to the episodes, so the first few allow an estimate for all.
+takes `PEAK` times as much memory. Both grow in proportion to the number of episodes, so the first episodes allow an
+estimate for all.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.free_memory import available
 from pytest_tarl.learning.tables import Sample
 
-PEAK = 5  # peak bytes of memory per byte of columns (benchmarks/limits.py, case recording)
-# number of episodes before the first estimate; each doubling of the number leads to another estimate
+PEAK = 5  # peak memory per byte of columns, in bytes (benchmarks/limits.py, case recording)
+# number of episodes before the first estimate, which is repeated whenever that number has doubled
 FIRST = 3
 STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9
@@ -41,7 +42,7 @@ def _arrays(value: Any) -> Iterator[np.ndarray[Any, Any]]:
 
 @dataclass
 class Footprint:
-    """The memory of the episodes so far and of all expected episodes; `tell` receives the warning."""
+    """The memory of the episodes so far and of all expected episodes; `tell` is called with the warning."""
 
     expected: int
     tell: Callable[[str], None] = lambda _: None
@@ -52,7 +53,7 @@ class Footprint:
     _look_at: int = field(default_factory=lambda: STRIDE)
 
     def add(self, sample: Sample) -> None:
-        """Count an episode. Raise RecordingError if the memory no longer suffices to write the episodes so far."""
+        """Count an episode. Raise RecordingError if too little memory is left to write the episodes so far."""
         self.episodes += 1
         self.held += nbytes(sample)
         if self.episodes == self._estimate_at:

@@ -1,4 +1,4 @@
-"""State bounds on future episodes in the worlds that a test samples."""
+"""State bounds for future episodes in the worlds that a test samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import (
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 
-CONFIDENCE = 0.95  # default confidence of the marker
+CONFIDENCE = 0.95  # default of the marker's confidence
 QUANTILE = 0.05
 
 
@@ -32,7 +32,7 @@ def stated(
 ) -> Guarantee:
     """Return the bounds that these episodes support; each holds on its own.
 
-    Set `anytime` if the number of episodes depended on their results; then there is no bound of a quantile. Raise
+    Set `anytime` if the number of episodes depends on their results; then there is no bound on a quantile. Raise
     ValueError if a total lies outside the declared range.
     """
     sure, count = confidence or CONFIDENCE, len(passed)

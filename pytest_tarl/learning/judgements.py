@@ -68,7 +68,7 @@ def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
 
 
 def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple[FormulaRow, ...]:
-    """Return one row per formula: first those in `order`, then others that any world has."""
+    """Return one row per formula: first the formulas in `order`, then others that any world has."""
     others = sorted({name for one in worlds.values() if one is not None for name in one.formulas})
     found = []
     for formula in dict.fromkeys((*order, *others)):
@@ -80,7 +80,7 @@ def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple
 def with_worlds(
     known: Sequence[FormulaRow], worlds: Mapping[str, Sequence[Sequence[Judged]]]
 ) -> tuple[FormulaRow, ...]:
-    """Add to each formula's row its results in further worlds; `worlds` holds each world's results by episode."""
+    """Add results in further worlds to each formula's row; `worlds` holds, for each world, the results by episode."""
     summed = {name: stacked(episodes) for name, episodes in worlds.items()}
     return tuple(
         replace(
@@ -116,7 +116,7 @@ def accounts(judged: Judgements | None) -> tuple[str, ...]:
 
 
 def never_judged(judged: Judgements | None) -> tuple[str, ...]:
-    """Return the formulas for which every episode was too short."""
+    """Return the formulas that no episode judged, because every episode was too short."""
     if judged is None:
         return ()
     columns = enumerate(judged.formulas)

@@ -1,6 +1,6 @@
 """Rank sites, the statements that may cause a loss.
 
-The slices of Eq. 2 of the paper give a first ranking; effects confirmed by simulation replace it.
+The slices of Eq. 2 of the paper give a first ranking; effects measured in simulation replace it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ BELOW = 0.49  # maximum score of a site without a changeable operand, if other s
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
     """Sum the utility of each site over the region (Eq. 2); inputs have shape (cells, sites).
 
-    Cells that one of the worlds has not visited at a site do not count for this site.
+    Cells that one of the worlds has not visited at a site are ignored for this site.
     """
     both = ~np.isnan(offline[region]) & ~np.isnan(online[region])
     before = np.where(both, offline[region], 0.0).sum(axis=0)
@@ -72,7 +72,7 @@ def culprits(
     """Rank sites by the effects that simulation found, or by their slices if it found none.
 
     `effects` maps site ids to effects in reward per episode. An effect equal to `loss` has the score 1. The sites of
-    the confirmed repair get the highest score; sites that were not simulated get 0.
+    the confirmed repair get the highest score; sites that were not tried in simulation get 0.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]

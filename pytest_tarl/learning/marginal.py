@@ -12,13 +12,13 @@ from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sa
 from pytest_tarl.sensors import Cell
 
 FEW = 0.05  # worlds share no cells if at most this share of the deployed steps is in recorded cells
-ENOUGH = 0.5  # minimum share of steps in recorded cells that leaving out sensors must reach
+ENOUGH = 0.5  # minimum share of steps in recorded cells that must be reached by leaving out sensors
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
-    """Return the fewest sensors to leave out so that the worlds overlap.
+    """Return the fewest sensors that must be left out for the worlds to overlap.
 
-    The result is empty if they already overlap, or if no choice achieves it.
+    The result is empty if they already overlap, or if no choice of sensors achieves it.
     """
     width = len(offline.cells[0]) if offline.cells else 0
     if _met(offline, online, tuple(range(width))) > FEW:
@@ -36,7 +36,7 @@ def apart(offline: Sample, online: Sample) -> bool:
 
 
 def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
-    """Return the share of deployed steps in recorded cells, if only the sensors in `kept` count."""
+    """Return the share of deployed steps in recorded cells if cells consist of the sensors `kept` only."""
     known = {_shortened(offline.cells[i], kept) for i in np.unique(offline.chain.cell).tolist()}
     steps = sum_by(online.chain.cell, online.chain.count, len(online.cells))
     inside = sum(steps[i] for i, cell in enumerate(online.cells) if _shortened(cell, kept) in known)
@@ -44,7 +44,7 @@ def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
 
 
 def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, ...], Ints]:
-    """Return the distinct cells without some sensors, sorted, and for each cell its row there, shape (cells,)."""
+    """Return the distinct cells without some sensors (sorted), and for each cell its row among them, shape (cells,)."""
     kept = [d for d in range(len(cells[0])) if d not in without] if cells else []
     short = [_shortened(cell, kept) for cell in cells]
     found = tuple(sorted(set(short)))
@@ -61,9 +61,9 @@ def projected(sample: Sample, without: Sequence[int]) -> Sample:
 
 
 def lent(table: Floats, recorded: ListSample, cells: Sequence[Cell], without: Sequence[int]) -> Floats:
-    """Fill unknown entries of a table, shape (cells, sites), with the mean of similar cells.
+    """Fill unknown entries of a table, shape (cells, sites), with the mean over similar cells.
 
-    Similar cells differ only in the sensors left out. The mean is weighted by visits.
+    Similar cells differ only in the sensors that are left out. The mean is weighted by visits.
     """
     _, row = groups(cells, without)
     visits = recorded.visits

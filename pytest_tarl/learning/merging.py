@@ -21,7 +21,7 @@ Columns = TypeVar("Columns", Chain, Edges, Visits)
 def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
     """Return the union of samples by seed; if a seed occurs twice, the first sample wins.
 
-    The table of cells includes those of all samples and the given ones. At least one sample is required.
+    The table of cells includes the cells of all samples and the given ones. At least one sample is required.
     """
     cells = tuple(sorted({*cells, *(cell for one in samples for cell in one.cells)}))
     names = tuple(sorted({name for one in samples for name in one.part_names}))
@@ -56,9 +56,9 @@ def aligned(first: Sample, second: Sample) -> tuple[Sample, Sample]:
 
 @dataclass(frozen=True)
 class _Place:
-    """The rows of a sample in the merged one.
+    """The rows of a sample in the merged sample.
 
-    `episode` is -1 for episodes whose seed an earlier sample has.
+    `episode` is -1 for an episode whose seed occurs in an earlier sample.
     """
 
     sample: Sample
@@ -122,7 +122,7 @@ def _merge_list(places: Sequence[_Place], i: int, episodes: int) -> ListSample:
 
 
 def _kept(columns: Columns) -> Columns:
-    """Drop the rows of episodes that come from another sample."""
+    """Drop the rows of episodes that are taken from another sample."""
     keep = columns.episode >= 0
     return type(columns)(*(getattr(columns, f.name)[keep] for f in fields(columns)))
 

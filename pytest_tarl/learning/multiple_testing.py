@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def holm(p_values: Sequence[float]) -> tuple[float, ...]:
-    """Return the p-values corrected step by step, valid under any dependence (Holm 1979)."""
+    """Return the p-values corrected by Holm's step-down method (1979), valid under any dependence."""
     order = sorted(range(len(p_values)), key=lambda i: p_values[i])
     corrected = [1.0] * len(p_values)
     reached = 0.0

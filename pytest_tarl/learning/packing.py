@@ -2,11 +2,11 @@
 
 Integers are stored unchanged. A sum z is stored as its sign and round(2¹⁶·log₂|z|), minus a prediction; the relative
 error is at most 5.3e-6. In this form, proportional values, such as those of `delta` and `5 * delta`, differ by a
-constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count, so only the
-difference is stored, with an error of at most 0.14 %. Packing unpacked arrays again gives the same arrays.
+constant, which deflate compresses well. A sum of squares is close to the squared sum divided by the count; only the
+difference from it is stored, with an error of at most 0.14 %. Packing unpacked arrays again gives the same arrays.
 
 Samples that are compared with a recording are rounded in the same way (`represented`). Otherwise, if rewards are
-constant, rounding alone would make the recorded world differ from the live one.
+constant, rounding alone would make the live world differ from the recorded one.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ ROUNDING = 5.3e-6  # maximum relative error of a packed sum: 2^(1/2 / UNIT) - 1
 
 
 def represented(sample: Sample) -> Sample:
-    """Return the sample rounded as in a recording; doing it again changes nothing."""
+    """Return the sample rounded as in a recording; rounding it again changes nothing."""
     lists = (
         unpacked_list("list", packed_list("list", one), one.width) if one.width else one
         for one in sample.lists

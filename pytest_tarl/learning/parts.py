@@ -18,7 +18,7 @@ MATERIAL = 0.1  # a cell is reported if its loss is at least this share of the l
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return for each part of the reward its mean sum per episode, in the designed and the deployed world."""
+    """Return the mean sum per episode of each part of the reward, in the designed and in the deployed world."""
     names = sorted({*offline.part_names, *online.part_names})
     return {
         name: (
@@ -32,10 +32,10 @@ def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
 def lost(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> Mapping[str, tuple[Cell, ...]]:
-    """Return the cells where each part earns significantly less in the deployed world.
+    """Return, for each part, the cells in which it is significantly lower in the deployed world.
 
     Both samples must share one table of cells. P-values are corrected over all cells of all parts. The result includes
-    cells that earn less because episodes no longer reach them.
+    cells with a lower sum because episodes no longer reach them.
     """
     names = sorted({*offline.part_names, *online.part_names})
     if not names:

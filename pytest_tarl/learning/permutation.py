@@ -16,13 +16,13 @@ from pytest_tarl.learning.tables import Floats, Ints
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
 ARITHMETIC = 1e-12  # rounding error of a few sums of floats, relative to the largest of them
-# further shuffles do not refine a p-value that is at least this large after PERMUTATIONS shuffles
+# if the p-value after PERMUTATIONS shuffles is at least this large, it is not refined by further shuffles
 SETTLED = 0.2
 AT_ONCE = 64  # number of shuffles drawn together; few enough for the processor's cache
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
-    """Return the number of shuffles that allows a significant result after a correction for the comparisons."""
+    """Return the number of shuffles that makes a significant result possible after correcting for the comparisons."""
     return (
         min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
         if comparisons > 1
@@ -40,7 +40,7 @@ def permuted_loss(
 ) -> float:
     """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ only by rounding errors are ties and count against a loss. P-values below SETTLED use all shuffles.
+    Sums that differ only by rounding errors are ties and count against a loss. p-values below SETTLED use all shuffles.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
@@ -99,8 +99,8 @@ def _p_values(
     """Return one-sided p-values, shape (counts,).
 
     `reached` receives the sums of some shuffles and returns how many of them reach the observed value, for each
-    statistic. More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over
-    many comparisons. The remaining shuffles are skipped if the smallest p-value is at least SETTLED after that many.
+    More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over many
+    comparisons. If the smallest p-value is at least SETTLED after that many, the remaining shuffles are skipped.
     Skipping never creates a p-value below SETTLED.
     """
     counts, done = None, 0

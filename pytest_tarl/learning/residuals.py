@@ -4,8 +4,8 @@ A residual is the difference between what a step brings and what the designed ut
 wherever the world is unchanged since the fit. Residuals therefore locate the change itself, and not the cells upstream
 of it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual smaller than its error is set to 0. If the reward is constant, so small a residual only reflects rounding
-(packing.py) and the order of sums.
+A residual smaller than its error is set to 0. If the reward is constant, a residual that small reflects only rounding
+(packing.py) and the order of summation.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pytest_tarl.learning.utility import GAMMA_STEP
 class Residuals:
     """The two parts of the Bellman residual and the visits to novel cells, each of shape (episodes, cells).
 
-    The errors bound the rounding error of each residual. The error of a sum is the sum of the errors.
+    The errors bound the rounding error of each residual. The error of a sum of residuals is the sum of their errors.
     """
 
     move: Floats
@@ -87,12 +87,12 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, with 0 for those not larger than their error; all arrays have the same shape."""
+    """Return the values, with 0 for those that do not exceed their error; all arrays have the same shape."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:
-    """Return γU(x')-U(x) of each transition: 0 for the last step, NaN if a utility is unknown."""
+    """Return γU(x')-U(x) for each transition: 0 for the last step, NaN if a utility is unknown."""
     inside = chain.next_cell != END
     return np.where(
         inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0

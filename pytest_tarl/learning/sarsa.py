@@ -24,7 +24,7 @@ class Learner:
 
     The learning signal is ρ = r·[last event of its step] + r·|f|/F, where f is the flow value. F, the mean of |f|, is
     known only after the last episode. All rules are linear in ρ, so each term has its own table, and F is applied when
-    both are added. Thus no episode has to be stored.
+    both are added. Therefore no episode has to be stored.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -89,8 +89,8 @@ class Sarsa(Learner):
 class ExpectedSarsa(Learner):
     """Expected SARSA: q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)].
 
-    P are the transition frequencies of all episodes so far. This is Sutton & Barto 2018, §6.6; program and world,
-    instead of a policy, choose the next site and cell.
+    P is estimated by the transition frequencies of all episodes so far. This is Sutton & Barto 2018, §6.6, except that
+    the program and the world, instead of a policy, choose the next site and cell.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:

@@ -34,12 +34,12 @@ class EventSequence:
 
 
 def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence, ...]:
-    """Return the events of a taint list whose n-th site has the global number `members[n]`, or -1 if unknown.
+    """Return the events of a taint list; its n-th site has the global number `members[n]`, or -1 if unknown.
 
-    There is one sequence per thread, and at least one, because events of two threads in one step have no order. A
-    step's reward goes to its last event; if several threads have one, they get equal shares. The reward of a step
-    without events goes to the latest earlier step with events, or to the start of the first sequence. So the rewards
-    sum to the total of the episode. Events before the first cell are dropped.
+    There is one sequence per thread, and at least one, because events of two threads in one step have no order. The
+    reward of a step goes to its last event; if several threads have events in the step, they get equal shares. The
+    reward of a step without events goes to the latest earlier step with events, or to the start of the first sequence.
+    The rewards therefore sum to the total of the episode. Events before the first cell are dropped.
     """
     index = _places(trace, members)
     known = (index >= 0) & (trace.event_cell >= 0)
@@ -62,7 +62,7 @@ def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence
 
 
 def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: Floats) -> EventSequence:
-    """Prepend the start, which receives the reward of all steps before the first event."""
+    """Prepend the start, which receives the rewards of all steps before the first event."""
     whole = np.empty(state.size + 1, np.int64)
     whole[0], whole[1:] = START, state
     columns = [np.empty(state.size + 1) for _ in range(3)]

@@ -24,7 +24,7 @@ class Look:
 
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
-    """Return at most `looks` looks; each doubles the episodes of the previous one, and the last has all of them."""
+    """Return at most `looks` looks; each has twice as many episodes as the one before, and the last has all of them."""
     return spending([episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)])
 
 
@@ -44,7 +44,7 @@ def certain(difference: Difference) -> bool:
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
     """Return the result of the last look, with p-values and interval adjusted for all looks.
 
-    The adjusted p-value is the smallest p / share. The interval of the last look uses the risk of that look, so it is
+    The adjusted p-value is the smallest p / share. The interval is computed with the risk of the last look, so it is
     valid at whichever look the comparison ends.
     """
     last = seen[-1][1]

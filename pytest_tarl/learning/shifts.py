@@ -16,11 +16,11 @@ from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.seeds import generator
 
-COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse for more precision
+COARSE = 30  # number of bisection steps; p-values from shuffles are too coarse to need more
 LEAST_PERMUTATIONS = 999
-PER_RISK = 20  # expected number of permutations beyond the statistic at the requested risk
+PER_RISK = 20  # expected number of shuffles whose statistic is beyond the observed one, at the requested risk
 MOST_PERMUTATIONS = 40_000
-AT_ONCE = 2_000  # number of shuffles drawn together; they take a few MB
+AT_ONCE = 2_000  # number of shuffles drawn together; takes a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
@@ -90,7 +90,7 @@ def _sums(deployed: Floats, designed: Floats, rows: Ints) -> _Sums:
 
 
 def _studentised_p(group: _Sums, whole: _Sums, shift: float, sign: float) -> float:
-    """Return the one-sided p-value that a shifted group is lower, by t statistics for unequal variances.
+    """Return the one-sided p-value of the hypothesis that a shifted group is lower (t for unequal variances).
 
     The first row of `group` is the observed one.
     """

@@ -1,4 +1,4 @@
-"""Check that the columns of a recording are consistent, once when it is read."""
+"""Check, once when a recording is read, that its columns are consistent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, ListSample, S
 
 
 def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
-    """Raise DamagedError if columns refer to missing episodes, cells or states, or have invalid values."""
+    """Raise DamagedError if columns refer to missing episodes, cells or states, or contain invalid values."""
     if not sample.episodes or len(set(sample.seeds)) < sample.episodes:
         raise DamagedError("it does not have one seed per episode")
     whole = all(type(bin_) is int for cell in sample.cells for bin_ in cell)

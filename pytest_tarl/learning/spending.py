@@ -1,7 +1,7 @@
-"""Share a fixed number of episodes among several comparisons: further episodes go to an undecided one.
+"""Divide a fixed number of episodes among several comparisons: further episodes go to an undecided one.
 
 The looks of every comparison are planned before the first episode, and together spend its whole α. The sum of their
-shares bounds the error of a comparison at whichever look it ends. The choice of the comparison that continues may
+shares bounds the error of a comparison, whichever look it ends at. The choice of the comparison that continues may
 therefore depend on all data, including those of other comparisons.
 """
 
@@ -17,7 +17,7 @@ MOST = 1.5  # maximum number of episodes of a comparison, as a multiple of an ev
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of a comparison: all looks of the comparison, and the number of episodes after which this part ends."""
+    """A part of a comparison: the planned looks, and the number of episodes after which this part ends."""
 
     looks: tuple[Look, ...]
     episodes: int
@@ -55,7 +55,7 @@ def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> i
     """Return the index of the comparison that continues, or None if none can reach its next look.
 
     `left` is the number of episodes left. The undecided comparison with the smallest p-value for a loss continues,
-    since it is nearest to a decision; among equal ones, the first.
+    since it is nearest to a decision; if several have the same p-value, the first one.
     """
     able = [
         number

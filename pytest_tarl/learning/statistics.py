@@ -1,4 +1,4 @@
-"""Compute the sufficient statistics of a recorded episode, for the utility and the comparison.
+"""Compute sufficient statistics of a recorded episode, for the utility and the comparison.
 
 Statistics of several episodes can be merged (merging.py).
 """
@@ -30,8 +30,8 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
-CANCELLED = 1e-13  # a sum below this share of the sum of magnitudes is a rounding error
-DENSE = 4  # pairs are counted in a table if there are at most this many possible pairs per row
+CANCELLED = 1e-13  # a sum below this share of the sum of magnitudes counts as a rounding error
+DENSE = 4  # maximum number of possible pairs per row for counting pairs in a table; otherwise they are sorted
 
 
 def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]) -> Sample:
@@ -84,7 +84,7 @@ def total_reward(reward: Floats) -> float:
 
 
 def total_rewards(reward: Floats, ends: Ints) -> Floats:
-    """Return the same bits as `total_reward` for each episode.
+    """Return the same bits as `total_reward`, for each episode.
 
     `ends` has shape (episodes + 1,) and holds the boundaries of the episodes. Episodes of equal length are summed
     together: numpy sums each row of a matrix to the same bits as the row alone.

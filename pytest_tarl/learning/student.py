@@ -1,4 +1,4 @@
-"""Bounds by Student's t of a mean and of a difference of means, for totals that are about normal.
+"""Bounds by Student's t on a mean and on a difference of means, for totals that are about normal.
 
 For skewed totals and few episodes, their coverage is too low. Only learning/bounds.py, which documents this, may use
 them.
@@ -12,11 +12,11 @@ from statistics import NormalDist, fmean, variance
 
 import numpy as np
 
-FEW_DEGREES = 20  # below this many degrees of freedom, the density is integrated
+FEW_DEGREES = 20  # below this number of degrees of freedom, the density is integrated
 
 
 def difference_bounds(first: Sequence[float], second: Sequence[float], risk: float) -> tuple[float, float]:
-    """Return one-sided lower and upper bounds of mean(first) - mean(second), each at `risk` (Welch)."""
+    """Return one-sided lower and upper bounds on mean(first) - mean(second), each at `risk` (Welch)."""
     unit = max(map(abs, (*first, *second))) or 1.0  # scaled so that squares neither overflow nor underflow
     parts = [_spread([value / unit for value in group]) for group in (first, second)]
     spread = sqrt(sum(parts))
@@ -28,7 +28,7 @@ def difference_bounds(first: Sequence[float], second: Sequence[float], risk: flo
 
 
 def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, float]:
-    """Return the two-sided confidence interval of a mean (Student)."""
+    """Return the two-sided confidence interval for a mean (Student)."""
     reach = student_quantile((1 + confidence) / 2, max(len(values) - 1, 1)) * sqrt(_spread(values))
     return fmean(values) - reach, fmean(values) + reach
 

@@ -80,7 +80,7 @@ class ListSample:
 class Judgements:
     """Results of formulas; columns have shape (episodes, formulas).
 
-    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, or NaN without one.
+    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, or NaN if there is none.
     """
 
     formulas: tuple[str, ...]  # sorted

@@ -17,14 +17,14 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-# factor of the mean number of visits; added to the diagonal, because tilings leave some weights undetermined
+# multiple of the mean number of visits that is added to the diagonal, because tilings leave some weights undetermined
 RIDGE = 1e-6
 DENSE = 1500  # maximum number of weights for a direct solution
 
 
 @dataclass(frozen=True)
 class Tiles:
-    """The tiles of every cell: `of` has shape (cells, tilings) and holds numbers from 0 to `count` - 1."""
+    """The tiles of every cell; `of` has shape (cells, tilings) and holds tile numbers from 0 to `count` - 1."""
 
     of: Ints
     count: int
@@ -46,7 +46,8 @@ def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
 def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
     """Return the tile of each cell in one grid, shape (cells,).
 
-    Each sensor is shifted by a different odd multiple, so that tile boundaries do not coincide.
+    The grid shifts each sensor by its number times a different odd number of bins, so that tile boundaries do not
+    coincide.
     """
     columns = []
     for d, sensor in enumerate(sensors):

@@ -1,4 +1,4 @@
-"""Compute the utility, the expected reward from a site in a cell on, from the statistics.
+"""Compute the utility (the expected reward from a site in a cell onwards) from the statistics.
 
 The learning signal is ρ = r·[last event of its step] + r·|f|/F, with the reward-scaled flow value of Lyons & Zahra
 2020; F is the mean |f| of the recording. `batch` computes the fixed point to which SARSA converges, q = (I - γP)⁻¹ρ̄,
@@ -16,8 +16,8 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
 DENSE = 150  # maximum number of states for a direct solution
-PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest one
-STEPS = 300  # maximum number of biconjugate gradient steps; sweeps then complete the solution
+PRECISE = 1e-12  # sweeps end when no utility changes by more than this share of the largest utility
+STEPS = 300  # maximum number of biconjugate gradient steps; sweeps then improve the solution
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
@@ -56,8 +56,8 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
-    This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by γ: one or
-    two suffice if the gradients converged, more are needed if they broke down.
+    This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the factor
+    γ: one or two suffice if the gradients converged, more are needed if they broke down.
     """
 
     def ahead(values: Floats) -> Floats:

@@ -126,7 +126,7 @@ def test_bounds_of_a_mean_contain_it_and_scale_with_its_unit(
 
 
 def test_a_total_outside_the_declared_range_is_refused() -> None:
-    with pytest.raises(ValueError, match="outside of 0 to 1"):
+    with pytest.raises(ValueError, match="outside 0 to 1"):
         mean_of([0.5, 1.5], 0.95, Range(0, 1))
 
 
