@@ -1,1 +1,1 @@
-"""`--tarl-repair`: search for a mutation and its guard (condition), test them on fresh seeds, write the patch."""
+"""`--tarl-repair`: search for a mutation and its guard (condition), test both on fresh seeds, write the patch."""

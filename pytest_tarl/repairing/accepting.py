@@ -1,4 +1,4 @@
-"""Examine confirmed candidates one by one: choose a guard and test on fresh seeds, until one is accepted."""
+"""Examine confirmed candidates one after another: choose a guard, test on fresh seeds; stop at the first acceptance."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome,
 from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Candidate, Trials
 
-QUICK = 3  # number of known seeds on which to try a guard before its test on fresh seeds
+QUICK = 3  # number of known seeds on which a guard is tried before its test on fresh seeds
 WORLDS = 3  # number of worlds in which a test runs: drifted, designed, and designed without the candidate
-OLD_WORLD = 8  # episodes in the old world, to display the reward there if the drift is permanent
+OLD_WORLD = 8  # number of episodes in the old world, to display the reward there if the drift is permanent
 MOST = 5  # maximum number of candidates to test per search
-SHARE = 2  # maximum number of tests for the same operands, until the candidates of other operands were tested
+SHARE = 2  # maximum number of tests for the same operands while candidates of other operands are untested
 WORSE: Reason = "nominal gets worse"
-SCREENED = 20  # maximum number of candidates to run on fresh seeds per search
+SCREENED = 20  # maximum number of candidates that are run on fresh seeds per search
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Accepted:
 
 
 class Examiner:
-    """Try guards on confirmed candidates, test each candidate once, and keep the best refused one."""
+    """Try guards on confirmed candidates, test each candidate once, and keep the best refused candidate."""
 
     def __init__(self, mutants: Mutants, guards: Sequence[Guard]) -> None:
         self.mutants = mutants
@@ -54,15 +54,15 @@ class Examiner:
         self.ledger = Ledger()
         self.waiting: list[
             Candidate
-        ] = []  # waiting: they hold on known seeds, but `SHARE` candidates of the same operands were already tested
+        ] = []  # they pass on known seeds, but `SHARE` candidates of the same operands were already tested
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
         self.tested = 0
-        self._ran = 0  # episodes run in the current test
-        self.turns = 1  # number of searches so far; each has its own `MOST` tests
+        self._ran = 0  # number of episodes run in the current test
+        self.turns = 1  # number of searches so far; each may spend `MOST` tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # one sentence for each other test that earned less with a candidate
+        self.lost: tuple[str, ...] = ()  # one sentence for each other test whose reward fell with a candidate
         self.cut = False  # whether the budget ended the search
 
     @property
@@ -85,8 +85,8 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then with other values: stronger, milder and neighbouring ones."""
-        edges: list[Candidate] = []  # candidates that hold on known seeds but fail on some fresh ones
+        """Examine a candidate under every guard, then with other values (stronger, milder and neighbouring ones)."""
+        edges: list[Candidate] = []  # candidates that pass on known seeds but fail on some fresh seeds
         weak: list[Guard] = []  # guards under which the reward in the drifted world stays too low
         for guard in self.guards:
             if any(_narrower(guard, known) for known in weak):
@@ -103,10 +103,12 @@ class Examiner:
                 if accepted is not None or self._exhausted():
                     return accepted
             if operands(examined.candidate) == operands(candidate):
-                candidate = replace(candidate, mutations=examined.candidate.changes)  # is not centred again
+                candidate = replace(
+                    candidate, mutations=examined.candidate.changes
+                )  # so that it is not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                break  # this guard is as wide as the one of the search, so narrower ones cannot gain more
+                break  # this guard is as wide as the guard of the search, so narrower guards cannot gain more
         for others in (
             *(self.others.inward(edge, trials) for edge in edges),
             *(self.others.beyond(edge) for edge in edges),
@@ -122,7 +124,7 @@ class Examiner:
         return None
 
     def _followed(self, others: OtherValues, trials: Trials) -> Accepted | None:
-        """Examine other values of a candidate, where each result determines the next value."""
+        """Examine other values of a candidate; each result determines the next value."""
         told: Tried | None = None
         while True:
             try:
@@ -137,7 +139,7 @@ class Examiner:
             told = examined
 
     def _conditionally(self, examined: Tried, trials: Trials) -> Accepted | Tried:
-        """If a value holds in the drifted world but not in the designed one, examine it under every condition."""
+        """If a value passes in the drifted world but not in the designed one, examine it under every condition."""
         candidate, found = examined.candidate, examined
         for guard in self.guards if not candidate.guard.conjuncts else ():
             with_guard = self._examined(replace(candidate, guard=guard, mutations=candidate.changes), trials)
@@ -180,7 +182,7 @@ class Examiner:
         return self._on_fresh_seeds(candidate)
 
     def _centred(self, candidate: Candidate, trials: Trials) -> Candidate | Tried:
-        """Return the candidate with the best value nearby, or the known result if no examination is needed."""
+        """Return the best candidate with a value nearby, or a known result that makes an examination unnecessary."""
         known = self._known(candidate)
         if known is not None:
             return known
@@ -190,19 +192,19 @@ class Examiner:
         if same is not None:
             return self.ledger.enter(Tried(candidate, same.reason, ()))
         better = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
-        # If centring leads to a value that was examined before, examine the original value.
+        # if centring leads to a value that was examined before, examine the original value
         return candidate if self.ledger.alike(better) else better
 
     def _known(self, candidate: Candidate) -> Tried | None:
-        """Return the result of a similar candidate that was examined before, or that waits for its test."""
+        """Return the result of a similar candidate that was examined before or waits for its test."""
         waiting = (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate))
         return self.ledger.alike(candidate) or next(waiting, None)
 
     def _acting_alike(self, candidate: Candidate, trials: Trials) -> Tried | None:
-        """Return a tested candidate that earned too little and that equals this candidate on all known seeds.
+        """Return a tested candidate that earned too little and equals this candidate on all known seeds.
 
-        Entries whose missions failed do not count: two values with equal outcomes on known seeds may still differ on
-        hard seeds.
+        Tested candidates whose missions failed are ignored: two values with equal outcomes on known seeds may still
+        differ on hard seeds.
         """
         return next(
             (
@@ -216,7 +218,7 @@ class Examiner:
         )
 
     def _goes_further(self, candidate: Candidate) -> bool:
-        """Return whether a smaller step of the same operands under the same guard already did harm."""
+        """Return whether a smaller step of the same operands under the same guard did harm before."""
         return any(
             one.reason in STRONG
             and one.candidate.guard == candidate.guard
@@ -225,7 +227,7 @@ class Examiner:
         )
 
     def _of_those_waiting(self) -> Accepted | None:
-        """Test the waiting candidates while tests are left."""
+        """Test the waiting candidates while any tests are left."""
         while self.waiting and not self._exhausted():
             examined = self._on_fresh_seeds(self.waiting.pop(0))
             if isinstance(examined, Accepted):
@@ -273,10 +275,10 @@ class Examiner:
         return "worse than unrepaired" if worse else reason
 
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Return the reason why a candidate fails on known episodes, "" if it does not.
+        """Return why a candidate fails on known episodes, or "" if it does not fail.
 
-        Known episodes are drifted ones (all with a loss, some without), and recorded ones in which the guard holds.
-        Raise BudgetSpentError and RepairError.
+        Known episodes are drifted episodes with a loss, a few drifted episodes without a loss, and recorded episodes in
+        which the guard holds. Raise BudgetSpentError and RepairError.
         """
         goal, offline = self.order.goal, self.order.fixture.sample
         known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))

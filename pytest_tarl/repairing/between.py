@@ -20,11 +20,11 @@ WEAK: tuple[Reason, ...] = (
     "not over the whole range",
 )
 STRONG: tuple[Reason, ...] = ("nominal gets worse", "breaks other missions")
-FINEST = 1.05  # stop when the ratio of the two factors is below this
+FINEST = 1.05  # the bisection stops when the ratio of the two factors is below this
 
 
 class Between:
-    """A bisection of all operands of a candidate together, on a log scale; signs and booleans are not bisected."""
+    """A bisection of all operands of a candidate together, on a log scale; a boolean or a change of sign ends it."""
 
     def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
         self.candidate = candidate
@@ -41,7 +41,7 @@ class Between:
                 self.weak = max(self.weak, log(weak) / log(strong))
 
     def middle(self) -> Candidate | None:
-        """Return the candidate halfway between the weak and the strong exponent, None when the bisection is over."""
+        """Return the candidate halfway between the weak and the strong exponent, or None when the bisection is over."""
         factors = [one for one in self._factors if one is not None]
         if self.steps >= STEPS or len(factors) < len(self._factors):
             return None
@@ -58,7 +58,7 @@ class Between:
         return replace(self.candidate, mutations=moved) if moved else None
 
     def told(self, reason: Reason) -> bool:
-        """Receive the result of the last candidate; return whether it decides on which side to continue."""
+        """Store the result of the last candidate; return whether it decides on which side to continue."""
         share = (self.weak + self.strong) / 2
         if reason in WEAK:
             self.weak = share
@@ -72,7 +72,7 @@ class Between:
 def stronger(
     candidate: Candidate, power: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Candidate | None:
-    """Return a candidate with its factors raised to a power; None if one has no positive factor other than 1."""
+    """Return a candidate with its factors raised to a power, or None if no factor is positive and different from 1."""
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
         by = searched_step(mutation)
@@ -86,7 +86,7 @@ def stronger(
 
 
 def further(candidate: Candidate, other: Candidate) -> bool:
-    """Return whether a candidate moves the same operands in the same direction as `other`, at least as far."""
+    """Return whether a candidate moves the same operands as `other` in the same direction, at least as far."""
     mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
     if mine.keys() != its.keys():
         return False
@@ -99,13 +99,13 @@ def _beyond(one: float, other: float) -> bool:
 
 
 def searched_step(mutation: Mutation) -> float | None:
-    """Return the factor on a constant or on a structural repair's parameter; None if there is none."""
+    """Return the factor on a constant or on a structural repair's parameter, or None if there is none."""
     searched = mutation.form is not None and mutation.form.parameter
     return float(mutation.value) if searched else factor(mutation)
 
 
 def on_grid(mutation: Mutation) -> bool:
-    """Return whether only multiples of a number are tried for a structural repair's parameter."""
+    """Return whether a structural repair's parameter can only be a multiple of a given number."""
     form = mutation.form
     return form is not None and any(
         one.name == form.parameter and one.grid for one in form.template.parameters
@@ -113,7 +113,7 @@ def on_grid(mutation: Mutation) -> bool:
 
 
 def factor(mutation: Mutation) -> float | None:
-    """Return the positive factor, or step on a chart, by which a mutation moves its operand; None if there is none."""
+    """Return the positive factor (or step on a chart) by which a mutation moves its operand, or None."""
     operand, value = mutation.operand, mutation.value
     if mutation.form is not None or isinstance(operand.value, bool) or isinstance(value, bool):
         return None

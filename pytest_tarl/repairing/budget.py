@@ -1,4 +1,4 @@
-"""Budget of one repair, in episodes or seconds, shared by all phases of the search."""
+"""The budget of one repair, in episodes or seconds, shared by all phases of the search."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 @dataclass
 class Purse:
-    """A budget from which the phases of a search are paid in turn.
+    """A budget that pays for the phases of a search, one after another.
 
     A phase ends when it has spent `share` of the budget that was left at its start. `late` is set when the time is up.
     """
@@ -25,7 +25,7 @@ class Purse:
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
-        """Return the trials of a phase, which raise BudgetSpentError at its end; pass them to `settle` afterwards."""
+        """Return the trials of a phase. They raise BudgetSpentError when it ends; then pass them to `settle`."""
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)
 
@@ -50,5 +50,5 @@ class Purse:
         return trials
 
     def settle(self, trials: Trials) -> None:
-        """Subtract the episodes that a phase has spent."""
+        """Subtract the episodes that a phase spent."""
         self.spent += trials.spent

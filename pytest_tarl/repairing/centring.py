@@ -1,9 +1,9 @@
-"""Improve the value of a candidate that holds but loses much of the margin, before its expensive test.
+"""Improve the value of a candidate that passes but loses much of the margin, before its expensive test.
 
 A test can hardly distinguish a loss of more than half of the margin from a loss of the whole margin. The mean reward on
-the known seeds is biased upwards, because the candidate was chosen on them. A candidate that loses a third of the
-margin on the known seeds may lose half of the margin on other seeds. A value in the middle of the range of good values
-loses less. Finding it costs a few episodes on known seeds and saves a test of hundreds of episodes.
+the known seeds is biased upwards, because the candidate was chosen on them: a candidate that loses a third of the
+margin there may lose half of the margin on other seeds. A value in the middle of the range of good values loses less.
+Finding it costs a few episodes on known seeds and can save a test of hundreds of episodes.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 
 THIN = 0.35  # candidates that lose less than this share of the margin are not improved
-STEPS = (1.3, 1.12, 1.04)  # ratios of neighbouring values
+STEPS = (1.3, 1.12, 1.04)  # ratios between neighbouring values, tried in this order
 SEEDS = 5  # maximum number of seeds on which to compare values
-BEHIND = 2  # seeds after which a value that earned less is dropped
+BEHIND = 2  # number of seeds after which a value that earned less is dropped
 MOVES = 3  # maximum number of moves in one direction with one ratio
-ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios to the neighbours of a value that fails on some seeds
+ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios of the values tried in place of one that fails on some seeds
 
 
 def centred(
@@ -45,7 +45,7 @@ def centred(
 
 
 def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
-    """Yield the candidate with a smaller and a larger value; nothing if it has several sites or no factor."""
+    """Yield the candidate with slightly smaller and larger values; nothing if it has several sites or no factor."""
     for ratio in ASIDE:
         other = moved(candidate, ratio, mutate)
         if other is not None:
@@ -53,7 +53,7 @@ def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
 
 
 def in_place(candidate: Candidate) -> Candidate:
-    """Return the candidate with its changes at the uses of the constants instead of their definitions."""
+    """Return the candidate with its changes at the uses of the constants instead of at their definitions."""
     return replace(candidate, mutations=candidate.changes)
 
 
@@ -71,7 +71,7 @@ def _climbed(candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, e
 
 
 def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its value scaled by `ratio`; parameters on a grid, such as powers, stay.
+    """Return a candidate with its value scaled by `ratio`; parameters on a grid, such as powers, are unchanged.
 
     Return None if the candidate has several sites or no factor.
     """
@@ -95,8 +95,8 @@ def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | Non
 def _better(candidate: Candidate, trials: Trials, goal: Goal, totals: Sequence[float]) -> list[float] | None:
     """Return a candidate's totals if their mean is higher than that of `totals`.
 
-    Return None as soon as the candidate falls behind or a mission fails. Also return None if it loses missions that
-    rejected candidates lost.
+    Return None as soon as the candidate falls behind or a mission fails. Also return None if it loses reward in
+    missions in which rejected candidates lost reward.
     """
     earned: list[float] = []
     try:

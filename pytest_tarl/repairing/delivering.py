@@ -1,4 +1,4 @@
-"""Deliver the result: the patch of an accepted repair, or the best refused candidate and the reason."""
+"""Deliver the result: the patch of an accepted repair, or the best refused candidate and the reason for its refusal."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ def delivered(
 
 
 def _written(order: Order, diff: str) -> str:
-    """Write patch and SARIF; return the patch's path relative to the root, "" if it cannot be written.
+    """Write the patch and a SARIF file; return the patch's path relative to the root, or "" if that fails.
 
-    If it cannot be written, the report shows the whole patch, so that the repair is not lost.
+    If the patch cannot be written, the report shows all of it, so that the repair is not lost.
     """
     try:
         written = patch.write(diff, order.patches, order.fixture.test, order.drift)
@@ -70,7 +70,7 @@ def _written(order: Order, diff: str) -> str:
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
-    """Check that files lose nothing except the changed lines. Raise RepairError."""
+    """Check that the files differ only in the changed lines. Raise RepairError."""
     for shown, original in order.analysis.sources.items():
         text = changed.get(order.root / shown)
         if text is not None:
@@ -99,7 +99,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 
 
 def partial(mutants: Mutants, found: Best) -> Partial | None:
-    """Write a change that helps without being a repair to a file of quoted lines; return None if that fails."""
+    """Write a change that helps but is no repair as quoted lines to a file; return None if that fails."""
     order, candidate = mutants.order, found.candidate
     what = repair_words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(
@@ -155,14 +155,14 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
 def _guard(order: Order, candidate: Candidate) -> str:
     try:
         return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
-    except RepairError:  # the node cannot evaluate the guard; the candidate was dropped for this reason
+    except RepairError:  # the node cannot evaluate the guard, which is why the candidate was dropped
         return " and ".join(
             f"{one.low:g} <= {one.sensor.name} <= {one.high:g}" for one in candidate.guard.conjuncts
         )
 
 
 def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
-    """Return the edits in order, with one edit for all uses that share a definition."""
+    """Return the edits in order; uses that share a definition have one edit."""
     placed = {one.place or one: one for one in reversed(candidate.mutations)}
     return tuple(_edit(order, one) for one in candidate.mutations if placed[one.place or one] is one)
 
@@ -215,7 +215,7 @@ def _evidence(
 
 
 def _constants(candidate: Candidate) -> Iterator[str]:
-    """Yield the definitions of the changed constants; they reveal conflicts between two patches."""
+    """Yield where the changed constants are defined; two patches conflict if they share a definition."""
     for mutation in candidate.mutations:
         operand = mutation.operand
         span = operand.definition or operand.span
@@ -229,7 +229,7 @@ def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
 
 
 def _jumps(candidate: Candidate) -> list[str]:
-    """Describe how far the constants jump at the threshold of a numeric condition; empty if there is none."""
+    """Describe by how much constants jump at the threshold of a numeric condition; empty if there is none."""
     sensors = edges(candidate.guard)
     if not sensors:
         return []
@@ -268,7 +268,7 @@ def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
 
 
 def _recorded(order: Order) -> list[str]:
-    """Return the header line with digest and path of the recording to which the repair was compared."""
+    """Return the header line with hash and path of the recording with which the repair was compared."""
     path = order.recorded
     if path is None:
         return []
@@ -278,7 +278,7 @@ def _recorded(order: Order) -> list[str]:
 
 
 def _again(order: Order) -> str:
-    """Return the shell command that repeats the comparison when run in the root."""
+    """Return the shell command that repeats the comparison; it is run in the root."""
     return next_commands.command(replace(_in_root(order), flags=order.options.flags))
 
 

@@ -1,12 +1,13 @@
 """If few missions fail, find more seeds whose missions fail, and their rewards in the designed world.
 
-A few failing missions have something in common, such as a person on the road, which makes them harder in the designed
-world, too. A repair cannot be expected to reach the recorded mean on such a selection. Each mission is therefore
-compared with the designed mission of its own seed. Acceptance draws fresh seeds, so the selection does not bias its
-test.
+When few missions fail, they have something in common, such as a person on the road, which makes them harder in the
+designed world, too. A repair cannot be expected to reach the recorded mean on such a selection. Each mission is
+therefore compared with the designed mission of the same seed. Acceptance draws fresh seeds, so the selection does not
+bias its test.
 
-A repair may earn even less than that on such a mission, as long as few missions do: a rover that skips its longest
-round in the frost earns a fifth less in one mission of eight, which is 2.5 % of the reward.
+On a few of these missions, a repair may earn even less than the designed mission of the same seed. Example: a rover
+that skips its longest round in the frost loses a fifth of the reward in one mission of eight, but only 2.5 % on
+average.
 """
 
 from __future__ import annotations
@@ -22,18 +23,18 @@ from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, Pair, Trials
 
 ENOUGH = 1 + CONFIRMATIONS  # number of losing seeds that a search needs
-LOOKED_AT = 12  # maximum number of recorded missions to run under the drift to find such seeds
-SELECTED = 0.5  # if this share of episodes fails or more, the failing ones are no selection
+LOOKED_AT = 12  # maximum number of recorded missions that are run under the drift to find such seeds
+SELECTED = 0.5  # if at least this share of episodes fails, the failing ones are not a selection
 SHARE = 0.6  # share of the margin that the selected missions may use up
-HALF = 0.5  # largest share of its loss that a mission may keep after a repair
+HALF = 0.5  # maximum share of its loss that a mission may keep after a repair
 CONTROLS = 2  # number of drifted episodes without loss, in which a candidate must not lose reward
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
-    """Return the goal with enough failing seeds, each with its reward in the designed world.
+    """Return the goal with enough failing seeds, and for each seed the reward in the designed world.
 
-    The episodes are charged to the budget. The goal is returned unchanged if the budget does not suffice. If most
-    drifted episodes lose reward, nothing runs and the goal is returned unchanged, too.
+    The episodes are charged to the budget. If the budget does not suffice, the goal is returned unchanged. If most
+    drifted episodes lose reward, no episode is run and the goal is returned unchanged, too.
     """
     order = mutants.order
     goal, online = order.goal, order.online.recorded.sample
@@ -74,11 +75,11 @@ def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> floa
 
 
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
-    """Yield seeds and totals of recorded missions that are likely to lose under the drift, most likely first.
+    """Yield seeds and totals of recorded missions that are likely to lose reward under the drift, most likely first.
 
     Each bin of a sensor has a score: the share of drifted episodes with a loss that visited it, minus the share of
-    those without a loss. A mission's score is that of its best bin. Bins of single sensors are scored instead of cells,
-    because one sensor may suffice to detect the drift.
+    those without a loss. A mission's score is the score of its best bin. Bins of single sensors are scored instead of
+    cells, because one sensor may suffice to detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}

@@ -1,4 +1,4 @@
-"""Guarantees for a repaired program, from fresh episodes that neither the search nor the acceptance used."""
+"""Guarantees for a repaired program, from fresh episodes that neither the search nor the acceptance has used."""
 
 from __future__ import annotations
 

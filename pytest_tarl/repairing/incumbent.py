@@ -1,4 +1,4 @@
-"""Track the candidates of a search: the best one so far, and the dropped ones with the reason."""
+"""Track the candidates of a search: the best one so far, and the dropped ones with the reasons."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
-LEAST = 2  # a candidate with more runs than this was tried for confirmation
+LEAST = 2  # a candidate with more runs than this reached the confirmation stage
 
 
 class Watch:
@@ -23,25 +23,25 @@ class Watch:
         self.best: Candidate | None = None
 
     def saw(self, candidate: Candidate, seed: int, outcome: Outcome) -> None:
-        """Store the outcome of an episode."""
+        """Store the outcome of one episode."""
         self.seen.setdefault(candidate, {})[seed] = outcome
         if self.best is None or self._worth(candidate) > self._worth(self.best):
             self.best = candidate
 
     def gain(self, candidate: Candidate) -> float:
-        """Return a candidate's gain per episode over the unmutated runs of the same seeds."""
+        """Return a candidate's gain per episode, relative to unmutated runs with the same seeds."""
         usual = self.order.goal.online
         return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
 
     def best_so_far(self, refused: Refused) -> Refused:
-        """Return `refused` if it has a candidate, else the best candidate of the search with its figures."""
+        """Return `refused` if it has a candidate, or else the best candidate of the search with its figures."""
         if refused.candidate is not None or self.best is None:
             return refused
         totals = [run.total for run in self.seen[self.best].values()]
         return Refused(self.best, refused.reason, fmean(totals), len(totals))
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
-        """Return the candidates that nearly reached the goal once but not on further seeds, in order."""
+        """Return, in order, the candidates that nearly reached the goal once, but not on further seeds."""
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():
@@ -53,7 +53,7 @@ class Watch:
         return dropped
 
     def progress(self, method: str) -> str:
-        """Name the search and the gain of its best candidate so far."""
+        """Return the name of the search and the gain of its best candidate so far."""
         if self.best is None:
             return method
         wanted = self.order.goal.wanted

@@ -1,9 +1,9 @@
 """Labels: constants that are not quantities, so that no search moves them.
 
 A factor on a member of an enumeration raises an error. A factor on `self.done` in `if not self.done` changes nothing.
-Other constants are fixed by notation, not chosen by the author. The exponents in `(x**2 + y**2) ** 0.5` are geometry,
-the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares. Booleans
-and zeros are not labels, because a search can change them from false to true.
+Other constants follow from notation and were not chosen by the author: the exponents in `(x**2 + y**2) ** 0.5` are
+geometry, the `1e-9` in `stamp.nanosec * 1e-9` converts a unit, and the `1.0` in `1.0 - alpha` is the sum of two shares.
+Booleans and zeros are not labels, because a search can change them from false to true.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ _ENUMERATIONS = frozenset({"Enum", "Flag", "IntEnum", "IntFlag", "StrEnum"})
 
 
 def quantities(analysis: Analysis, operands: Iterable[Operand]) -> list[Operand]:
-    """Return the operands without labels, in their order."""
+    """Return the operands that are not labels, in their order."""
     return [operand for operand in operands if not _is_label(analysis, operand)]
 
 
 def is_member(source: Document, node: ast.expr, texts: Iterable[str]) -> bool:
-    """Return whether an expression is, or is compared with, an enumeration member, or is compared by `is`.
+    """Return whether an expression is an enumeration member, is compared with one, or is compared by `is`.
 
     `texts` are the modules in which enumerations may be defined.
     """
@@ -73,7 +73,7 @@ def _is_unit(source: Document, node: ast.expr) -> bool:
 
 
 def _is_whole(source: Document, node: ast.expr) -> bool:
-    """Return whether an expression is the 1 in a weighted mean, such as `alpha * x + (1.0 - alpha) * y`."""
+    """Return whether an expression is the 1 of a weighted mean such as `alpha * x + (1.0 - alpha) * y`."""
     match source.parents.get(node):
         case ast.BinOp(
             left=ast.Constant(value=1) as left, op=ast.Sub(), right=ast.Name() | ast.Attribute() as right
@@ -85,7 +85,7 @@ def _is_whole(source: Document, node: ast.expr) -> bool:
 
 
 def _only_truth(source: Document, node: ast.expr) -> bool:
-    """Return whether only the truth of a value is used, in a condition, and not the value itself."""
+    """Return whether a condition uses only the truth of a value, and not the value itself."""
     inner: ast.AST = node
     for around in source.ancestors(node):
         if isinstance(around, ast.UnaryOp) and isinstance(around.op, ast.Not):

@@ -1,4 +1,4 @@
-"""Results of all examined candidates, so that none is examined twice."""
+"""The results of all examined candidates, so that none is examined twice."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.patching.mutate import Mutation, step_of
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
-ALIKE = 0.05  # relative difference up to which values of the same operands and guard count as equal
-# Reasons for refusing candidates that held in the drifted world (first) or in both worlds (second).
+ALIKE = 0.05  # values of the same operands and guard count as equal up to this relative difference
+# reasons for refusing candidates that passed in the drifted world (first) or in both worlds (second)
 HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 
 
@@ -20,7 +20,7 @@ HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 class Tried:
     """An examined candidate and its result; `reason` is "" if it was accepted.
 
-    `fresh` is true if its totals are from fresh seeds, `tested` if it had a test of its own.
+    `fresh` is true if its totals are from fresh seeds, and `tested` if the candidate had a test of its own.
     """
 
     candidate: Candidate
@@ -32,7 +32,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, -inf if it ran on none."""
+    """A refused candidate and the reason; `mean` is its mean reward on fresh seeds, or -inf if it ran on none."""
 
     candidate: Candidate | None
     reason: Reason
@@ -52,7 +52,7 @@ class Ledger:
         return tried
 
     def alike(self, candidate: Candidate) -> Tried | None:
-        """Return the entry of an equal or nearly equal candidate, None if there is none."""
+        """Return the entry of an equal or nearly equal candidate, or None if there is none."""
         return next((one for one in self.tried if alike(one.candidate, candidate)), None)
 
     def tests(self, candidate: Candidate) -> int:
@@ -67,7 +67,7 @@ def operands(candidate: Candidate) -> frozenset[Operand]:
 
 
 def alike(one: Candidate, other: Candidate) -> bool:
-    """Return whether two candidates have the same operands and guard, and values (or steps on a chart) within 5 %."""
+    """Return whether two candidates have equal operands and guards, and values (or steps on a chart) within 5 %."""
     if one.guard != other.guard or operands(one) != operands(other):
         return False
     values = {mutation.operand: mutation for mutation in other.mutations}
@@ -92,7 +92,7 @@ def of_fresh_seeds(tried: Sequence[Tried]) -> int:
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return the candidate that held in more worlds; on ties, the one with more reward on fresh seeds."""
+    """Return the candidate that passed in more worlds; on ties, the one with the higher reward on fresh seeds."""
 
     def came(refused: Refused) -> tuple[bool, int, float]:
         held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0

@@ -23,7 +23,7 @@ class Joined:
 
 
 def joined(paths: Sequence[Path], cwd: Path) -> Joined:
-    """Merge the patches of a run that share a file, where possible. Raise RepairError."""
+    """Merge those patches of a run that share a file, where possible. Raise RepairError."""
     lines: list[str] = []
     commands: list[str] = []
     for group in _groups([read(path) for path in paths]):
@@ -41,7 +41,7 @@ def joined(paths: Sequence[Path], cwd: Path) -> Joined:
 
 
 def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
-    """Return sentences about different patches of the same files, and the patches to apply."""
+    """Return sentences about different patches of the same files, and the patches that are left to apply."""
     paths = [one.path for one in patches]
     if len(patches) < 2:
         return [], paths
@@ -61,7 +61,7 @@ def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
 
 
 def _combined(patches: Sequence[Patch]) -> Path:
-    """Write one patch for several. Raise RepairError if the files have changed since."""
+    """Merge several patches and write the result. Raise RepairError if the files have changed since."""
     root = patches[0].root
     if root is None or len({one.base for one in patches}) > 1:
         raise RepairError("they belong to different repositories.")
@@ -81,7 +81,7 @@ def _combined(patches: Sequence[Patch]) -> Path:
 
 
 def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
-    """Yield groups of patches that share files or constants, directly or through other patches, in order."""
+    """Yield, in order, groups of patches that share files or constants, directly or through other patches."""
     left = list(patches)
     while left:
         group, files = [left.pop(0)], set[tuple[str, str]]()

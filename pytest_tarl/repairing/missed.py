@@ -1,4 +1,4 @@
-"""Missions that refused candidates lost; later candidates run on them before their own test."""
+"""Missions in which refused candidates lost reward; later candidates run on them before their own test."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
-FEW = 0.25  # a candidate that loses at most this share of its missions has a nearly right value
+FEW = 0.25  # the value of a candidate that loses reward in at most this share of its missions is nearly right
 SPREAD = 5  # number of missions that represent a test
 
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """A mission of a refused candidate: its seed, the candidate's total, and the designed total."""
+    """A mission of a refused candidate: its seed, the candidate's total reward, and the designed total reward."""
 
     seed: int
     total: float
@@ -28,11 +28,11 @@ class Lost:
 
 @dataclass
 class Missed:
-    """Seeds on which tested candidates lost, each with the total that counts as close to its designed mission.
+    """Seeds on which tested candidates lost reward, each with the total that counts as close to the designed mission.
 
-    `few` holds the lost seeds of candidates that lost at most `FEW` of their missions. `poor` holds the candidates that
-    failed hardly any mission but earned too little. For each of these, `spread` holds missions of its test, from the
-    smallest to the largest loss.
+    `few` holds these seeds for candidates that lost reward in at most `FEW` of their missions. `poor` holds the
+    candidates that failed hardly any mission but earned too little. For each of these, `spread` holds missions of its
+    test, from the smallest to the largest loss.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
@@ -41,7 +41,7 @@ class Missed:
     spread: dict[Candidate, list[Lost]] = field(default_factory=dict)
 
     def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
-        """Store the missions that a refused candidate lost."""
+        """Store the missions in which a refused candidate lost reward."""
         slack, lost = reference.mean - goal.near, []
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
             near = min(designed, reference.mean) - slack
@@ -56,7 +56,7 @@ class Missed:
             self.spread[candidate] = _spread(found)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses most of the missions that were stored last. Raise BudgetSpentError."""
+        """Return whether a candidate loses reward in most of the missions stored last. Raise BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
             lost += _loses(candidate, trials, goal, seed, near)
@@ -65,12 +65,12 @@ class Missed:
         return False
 
     def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Return whether a candidate loses none of the missions that `refused` lost. Raise BudgetSpentError."""
+        """Return whether a candidate loses no reward in the missions in which `refused` did. Raise BudgetSpentError."""
         return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
 
 
 def _spread(found: Acceptance) -> list[Lost]:
-    """Return missions at equally spaced ranks of the loss, so that their mean loss is near that of the test."""
+    """Return missions at equally spaced ranks of the loss, so that their mean loss is close to that of the test."""
     rows = zip(found.seeds, found.drifted, found.designed, strict=False)
     ranked = sorted(
         (Lost(seed, outcome.total, total) for seed, outcome, total in rows), key=lambda one: one.loss

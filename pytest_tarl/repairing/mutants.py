@@ -20,20 +20,20 @@ MOST_KEPT = 128  # maximum number of candidates whose source is cached
 
 
 class Mutants:
-    """Write candidates into the source and run them; workers may also run them ahead of requests."""
+    """Write candidates into the source and run them; workers may run them before they are requested."""
 
     def __init__(self, order: Order) -> None:
         self.order = order
         self._ahead = Ahead(order.rollout)
-        self.texts: dict[str, str] = {}  # files that define constants but were not analysed
+        self.texts: dict[str, str] = {}  # files that define constants but are outside the analysis
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return the mutation of an operand by a factor; None if it changes nothing."""
+        """Return the mutation of an operand by a factor, or None if it changes nothing."""
         return mutations(operand, factor, is_integral(self.order.analysis, operand))
 
     def source(self, candidate: Candidate) -> Mapping[Path, str]:
-        """Return path → text of every file that a candidate changes. Raise RepairError."""
+        """Return the text of every file that a candidate changes, by path. Raise RepairError."""
         if candidate not in self._sources:
             order = self.order
             self._read_places(candidate)
@@ -52,7 +52,7 @@ class Mutants:
                 self.texts[place.path] = (self.order.root / place.path).read_bytes().decode("utf-8")
 
     def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:
-        """Announce the episodes that are likely to be requested next, in order."""
+        """Announce, in order, the episodes that are likely to be requested next."""
         self._ahead.foresee(self._foreseen(wanted, drift))
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
@@ -63,9 +63,9 @@ class Mutants:
     def run_at(
         self, rollout: Rollout, worst: float, candidate: Candidate | None, seed: int, drift: str | None = None
     ) -> Outcome:
-        """Run one episode of another test, with the unrepaired program if `candidate` is None.
+        """Run one episode of another test; if `candidate` is None, with the unrepaired program.
 
-        `worst` is the total reward to assume if the candidate breaks that test. Raise RepairError.
+        `worst` is the total reward that counts if the candidate breaks the test. Raise RepairError.
         """
         plan = EpisodePlan(seed, drift, self.source(candidate) if candidate else {})
         return _outcome(lambda: rollout(plan), worst)
@@ -82,7 +82,7 @@ class Mutants:
 
 
 def _check_text(ended: EpisodeRun) -> None:
-    """Raise StaleTextError if an episode ran an older version of the source than the candidate's."""
+    """Raise StaleTextError if an episode ran older source than the candidate's."""
     if ended.older:
         names = ", ".join(path.name for path in ended.older)
         raise StaleTextError(
@@ -95,9 +95,9 @@ def _check_text(ended: EpisodeRun) -> None:
 def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode of a candidate and return its outcome. Raise StaleTextError.
 
-    The unrepaired program ran in this test, so any error now (a silent node, a reward that is not a number) is due to
-    the candidate. After an error or a crash of the node, the reward so far means nothing. The total is then at most
-    that of the worst recorded episode.
+    The unrepaired program ran in this test without an error, so any error now (a silent node, a reward that is not a
+    number) is due to the candidate. After an error or a crash of the node, the reward so far is meaningless. The total
+    is then at most that of the worst recorded episode.
     """
     try:
         ended = run()

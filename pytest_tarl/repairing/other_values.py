@@ -1,4 +1,4 @@
-"""Propose other values of an examined candidate: larger steps, neighbouring values, or smaller steps.
+"""Propose other values of an examined candidate: larger steps, neighbouring values or smaller steps.
 
 Each method is a generator that yields the next candidate to examine and receives its result by `send`.
 """
@@ -19,19 +19,19 @@ from pytest_tarl.searching.accept import TOO_LITTLE
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of the range of good values
-MILDER = (0.75, 0.5)  # exponents for a candidate whose missions succeed but earn too little
-RATIOS = (1.1, 1.03)  # ratios of neighbouring values, around a value that loses too much in its test
-MOVES = 3  # largest number of moves in one direction with one ratio
-BETTER = 0.1  # a neighbour must earn more by at least this share of the margin
-CLOSE = 1.3  # two rejected values within this ratio may have good values between them
+POWERS = (1.5, 2.0)  # exponents of the factors of a candidate at the edge of the range of good values
+MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions succeed but earn too little
+RATIOS = (1.1, 1.03)  # ratios between neighbouring values, around a value that loses too much in its test
+MOVES = 3  # maximum number of moves in one direction with one ratio
+BETTER = 0.1  # a neighbour must earn at least this share of the margin more
+CLOSE = 1.3  # good values may lie between two rejected values if their ratio is at most this
 
 OtherValues = Generator[Candidate, Tried, None]
 Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Propose other values of a candidate; each method runs at most once per set of operands and guard."""
+    """Propose other values of a candidate; each method acts at most once for a set of operands and a guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants
@@ -42,11 +42,11 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        # values that earned more than the tested value on missions of its test
+        # values that earned more than the tested value, in missions of its test
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps if the candidate fails on some seeds, smaller ones if it only earns too little.
+        """Propose larger steps if the candidate fails on some seeds, or smaller ones if it only earns too little.
 
         A candidate that fails on some seeds is at the edge of the range of good values.
         """
@@ -63,11 +63,11 @@ class Others:
                 return
 
     def inward(self, refused: Candidate, trials: Trials) -> OtherValues:
-        """Propose a smaller change than `refused`, which lost few missions in its test and may go too far.
+        """Propose a smaller change than `refused`, which lost reward in few missions of its test and may go too far.
 
         Bisect between the original value and the refused one. A change that fails on the first seed of the search is
-        too small; one that passes may be too large. Of the values that also pass the missions lost in the test, propose
-        the middle one. Raise BudgetSpentError.
+        too small; one that passes may be too large. Of the values that also pass in the missions in which `refused`
+        lost reward, propose the middle one. Raise BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
         if not self.missed.few.get(refused) or place in self._inward:
@@ -91,7 +91,7 @@ class Others:
             return False
 
     def beside(self, trials: Trials) -> OtherValues:
-        """Propose neighbours of a candidate that lost few missions in its test, if they lose none of these missions.
+        """Propose neighbours of a candidate that lost reward in few missions of its test, if they lose none in these.
 
         If a close value was rejected as well, the value halfway between the two comes first. Raise BudgetSpentError.
         """
@@ -105,7 +105,7 @@ class Others:
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose the best value near a refused one whose missions succeed but earn too little in its test.
 
-        Values are compared on missions that represent the test, so that small improvements are found. Raises
+        Values are compared on missions that represent the test, so that small improvements are found. Raise
         BudgetSpentError.
         """
         place = (operands(refused), refused.guard)
@@ -130,10 +130,10 @@ class Others:
     def _earned(
         self, candidate: Candidate, missions: Sequence[Lost], most: float, trials: Trials
     ) -> float | None:
-        """Return a candidate's total reward on missions minus the designed total.
+        """Return a candidate's total reward in missions, minus the designed total.
 
         The reward of a mission is capped at its designed reward. Return None if the difference cannot exceed `most` or
-        a mission fails.
+        if a mission fails.
         """
         earned = 0.0
         trials.expect((candidate, one.seed) for one in missions)
@@ -148,7 +148,7 @@ class Others:
         return earned
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Return whether a smaller and a larger close value lost few missions, so that good values may lie between."""
+        """Return whether close values on both sides lost reward in few missions, so that good ones may lie between."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)
@@ -185,7 +185,7 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return the ratio of two candidates' factors for their only operand; None if they differ in anything else."""
+    """Return the ratio of two candidates' factors on their only operand, or None if they differ in anything else."""
     if one.guard != other.guard or operands(one) != operands(other) or len(one.mutations) != 1:
         return None
     mine, its = factor(one.mutations[0]), factor(other.mutations[0])

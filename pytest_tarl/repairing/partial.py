@@ -1,4 +1,4 @@
-"""Partial repairs: candidates that significantly gain and do no harm in the designed world, but gain too little."""
+"""Partial repairs: candidates whose gain is significant but too small, and that do no harm in the designed world."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.accept import PASS_RATE_LOSS, Outcome
 from pytest_tarl.searching.search import Candidate
 
-MOST = 2  # number of candidates to test
-EPISODES = 40  # episodes per world, each paired with one of the unrepaired program
-SCREENED = 12  # maximum number of candidates to screen
+MOST = 2  # maximum number of candidates that are tested
+EPISODES = 40  # number of episodes per world, each paired with an episode of the unrepaired program
+SCREENED = 12  # maximum number of candidates that are screened
 KNOWN = 3  # number of recorded episodes of the designed world in which a candidate is screened
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (
@@ -34,16 +34,16 @@ HARMFUL: tuple[Reason, ...] = (
 
 @dataclass(frozen=True)
 class Gained:
-    """Gain per episode over the unrepaired program on fresh seeds; `low` is its lower confidence bound."""
+    """Gain per episode over the unrepaired program, on fresh seeds; `low` is its lower confidence bound."""
 
     mean: float
     low: float
-    failures: int  # additional failures compared with the unrepaired program
+    failures: int  # number of additional failures, compared with the unrepaired program
 
 
 @dataclass(frozen=True)
 class Best:
-    """A candidate that helps, with its gains in the drifted and in the designed world."""
+    """A candidate that helps, with its gains in the drifted and the designed world."""
 
     candidate: Candidate
     drifted: Gained
@@ -51,7 +51,7 @@ class Best:
 
 
 def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
-    """Test the best candidates; return the first with a significant gain, if any, and the number of episodes."""
+    """Test the best candidates; return the first with a significant gain (or None), and the number of episodes."""
     spent, number = 0, -1
     for candidate in islice(_promising(examiner, watch), SCREENED):
         try:
@@ -91,7 +91,7 @@ def _harmless(mutants: Mutants, designed: Gained) -> bool:
 
 
 def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
-    """Yield the best refused candidate, then those with the highest gains in the search, without harmful ones."""
+    """Yield the best refused candidate, then those with the highest gains in the search; skip harmful ones."""
     goal = watch.order.goal
     harmful = [one.candidate.changes for one in examiner.tried if one.reason in HARMFUL]
     furthest = [examiner.refused.candidate] if examiner.refused.candidate is not None else []

@@ -14,9 +14,9 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-LOOKED_AT = 3  # seeds on which a repair at the definition must hold
-MOST_PLACES = 6  # configuration files to try for one parameter
-MOST_NAMED = 5  # maximum number of other users of a constant to name in a note
+LOOKED_AT = 3  # number of seeds on which a repair at the definition must pass
+MOST_PLACES = 6  # maximum number of configuration files to try for one parameter
+MOST_NAMED = 5  # maximum number of other users of a constant that a note names
 
 
 class Placing:
@@ -29,7 +29,7 @@ class Placing:
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Return the candidate with its final places; None if the place required by `--tarl-edit` does not work."""
+        """Return the candidate with its final places, or None if the place required by `--tarl-edit` does not work."""
         edit = self.order.options.edit
         movable = [one for one in candidate.mutations if not one.operand.literal and one.form is None]
         if edit == "use" or candidate.guard.conjuncts or not movable:
@@ -41,7 +41,7 @@ class Placing:
         return moved or (None if edit == "definition" else candidate)
 
     def notes(self, candidate: Candidate) -> Iterator[str]:
-        """Yield notes on why a constant is changed where it is used, and on other users of a changed definition."""
+        """Yield notes that say why a constant is changed at its use, and who else uses a changed definition."""
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
@@ -49,7 +49,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move mutations to definitions that the test uses; return None if there are none or the result then fails."""
+        """Move mutations to definitions that the test uses; return None if there are none or if the result fails."""
         mutations = []
         for mutation in candidate.mutations:
             stays = mutation.operand.literal or mutation.form is not None
@@ -67,7 +67,7 @@ class Placing:
         pairs = self.order.goal.pairs[:LOOKED_AT]
         first = pairs[0].seed
         if trials(moved, first) == trials(candidate, first):
-            return moved  # equal rewards at definition and use, so nothing else in the test depends on the definition
+            return moved  # equal rewards at definition and use: nothing else in this test depends on the definition
         if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved
         for mutation in mutations:
@@ -89,7 +89,7 @@ class Placing:
         return self._in_force[operand]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
-        """Return the first place at which a change affects the episode, so the test must use that definition."""
+        """Return the first place at which a change affects the episode, which shows that the test uses it."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
@@ -127,7 +127,7 @@ class Placing:
         return False
 
     def _given(self, name: str, operand: Operand) -> str:
-        """Explain that a parameter's value comes from the test."""
+        """Explain that the test determines a parameter's value."""
         test = self.order.root / self.order.fixture.test.partition("::")[0]
         text = test.read_text("utf-8", "replace") if test.is_file() else ""
         key = name.rpartition("/")[2].removeprefix("~")
@@ -149,7 +149,7 @@ class Placing:
 
 
 def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:
-    """Return Python files outside the analysis that contain both the constant's name and its module's name."""
+    """Return Python files outside the analysis that contain the names of the constant and of its module."""
     if not place.path.endswith(".py"):
         return []
     module, found = Path(place.path).stem, []

@@ -1,6 +1,6 @@
 """Constants that need not be searched, because a factor on another constant has the same effect.
 
-They are the factors of one product, and constants that a constructor only stores for a use elsewhere.
+These are factors of one product, and constants that a constructor stores for later use.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
     """Split operands into those that a search must move and those that are equivalent to one of them.
 
     The first constant of a product, in the given order, must be moved. So must a constant that a statement uses twice,
-    such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. An operand in `self.limit = limit`
-    of a constructor is equivalent to the later use of that attribute.
+    such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because both uses move together. The operand in `self.limit =
+    limit` of a constructor is equivalent to the later use of that attribute.
     """
     stored = {operand for operand in operands if _stored(analysis, operand)}
     used = {one.definition for one in operands if one not in stored and one.definition is not None}
@@ -45,7 +45,7 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
 
 
 def _stored(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether the operand is a parameter that a constructor assigns without changing it."""
+    """Return whether the operand is a parameter that a constructor stores unchanged."""
     if operand.literal or operand.site.qualname.rpartition(".")[2] != "__init__":
         return False
     try:
@@ -59,7 +59,7 @@ def _stored(analysis: Analysis, operand: Operand) -> bool:
 
 
 def _product(analysis: Analysis, operand: Operand) -> Product | None:
-    """Return the product of which an operand is a factor; None if there is none or the operand has no factor."""
+    """Return the product of which an operand is a factor, or None if there is none or the operand has no factor."""
     if operand.value == 0 or isinstance(operand.value, bool):
         return None
     path = operand.span.path
@@ -75,7 +75,7 @@ def _product(analysis: Analysis, operand: Operand) -> Product | None:
 
 
 def _outermost(source: Document, node: ast.expr) -> ast.expr:
-    """Return the outermost expression that is proportional to the node's value."""
+    """Return the outermost expression whose value is proportional to that of the node."""
     top = node
     for around in source.ancestors(node):
         factor = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult)

@@ -1,4 +1,4 @@
-"""Drifts whose size varies by episode within a range: a repair must hold in every part of the range."""
+"""Drifts whose size varies by episode within a range: a repair must work in every part of the range."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
-LEAST_NEAR = 2  # minimum number of successful episodes for saying that a candidate fits a part of the range
+LEAST_NEAR = (
+    2  # minimum number of successful episodes for the note that a candidate works in a part of the range
+)
 
-STRATA = 4  # number of strata (parts of the range); each interim test has a multiple of this many episodes
+STRATA = 4  # number of strata (parts of the range); the episodes of each interim test are a multiple of this number
 
-Test = Callable[[Sequence[int]], Acceptance]  # test of a candidate on these seeds
+Test = Callable[[Sequence[int]], Acceptance]  # tests a candidate on the given seeds
 
 
 @dataclass(frozen=True)
 class Ranged:
-    """The seeds of a test in order, and the parts of the range in which the candidate held or lost."""
+    """The seeds of a test in order, and the parts of the range in which the candidate passed or lost reward."""
 
     seeds: tuple[int, ...] = ()
     held: tuple[Band, ...] = ()
@@ -33,11 +35,11 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
     """Test a candidate once; if the drift has a range, spread the seeds evenly over it.
 
     Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than for
-    a single size. The bound on the risk stays valid for two reasons. Over a block, the expected growth of a fixed bet
-    is no larger than with episodes from random strata (inequality of geometric and arithmetic mean). And with different
-    failure rates, a small number of failures is less likely than in a binomial distribution with the mean rate
-    (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin on average in each third of the
-    range; this check can only refuse.
+    a single size. The bound on the risk remains valid for two reasons. First, over a block, the expected growth of a
+    fixed bet is not larger than with episodes from random strata (inequality of arithmetic and geometric means).
+    Second, if strata have different failure rates, a small number of failures is less likely than in a binomial
+    distribution with the mean rate (Hoeffding 1956). In addition, an accepted candidate must lose less than the margin
+    on average in each third of the range; this check can only turn an acceptance into a refusal.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:
@@ -51,7 +53,7 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
 
 
 def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
-    """Return fresh seeds in an order in which each block of `STRATA` seeds has one from each stratum."""
+    """Return fresh seeds, ordered so that each block of `STRATA` seeds has one from each stratum."""
     strata: list[list[int]] = [[] for _ in range(STRATA)]
     wanted = -(-most // STRATA)
     for index in count():
@@ -77,7 +79,7 @@ def _stratum(order: Order, seed: int) -> int:
 
 
 def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
-    """Return whether a candidate loses at most the margin on average in a part of the range."""
+    """Return whether a candidate loses at most the margin, on average, in a part of the range."""
     lost = [
         designed - outcome.total
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=True)
@@ -87,7 +89,7 @@ def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
 
 
 def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
-    """Return the drift sizes of the comparison and, in addition, those of the repair's acceptance test."""
+    """Return the drift sizes of the comparison, with those of the repair's acceptance test added."""
     drawn = [_drawn(order, seed) for seed in ranged.seeds]
     return {
         part: replace(one, of={**one.of, "repaired": tuple(each[part] for each in drawn)})
@@ -96,7 +98,7 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """Describe the sizes at which a candidate held if they form one end of a range; else return ""."""
+    """Describe the sizes at which a candidate passed if they form one end of a range; otherwise return ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]
@@ -108,7 +110,7 @@ def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
 
 
 def bands_in_words(ranged: Ranged) -> str:
-    """Describe the parts of the range in which a candidate held."""
+    """Describe the parts of the range in which a candidate passed."""
     held, lost = (" and ".join(map(str, bands)) for bands in (ranged.held, ranged.lost))
     return (
         f"it holds for {held}, but not for {lost}" if held else f"it holds for no part of the range ({lost})"

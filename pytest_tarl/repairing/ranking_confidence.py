@@ -19,7 +19,7 @@ def ranking_confidence(
     accepted: Accepted | None,
     ranking: Ranking | None,
 ) -> str:
-    """Return a sentence about the evidence for the ranking; "" if nothing was simulated."""
+    """Return a sentence about the evidence for the ranking, or "" if nothing was simulated."""
     if not effects:
         return ""
     sites = len({step.site for step in order.analysis.sites})

@@ -16,12 +16,12 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
 MOST = 5  # maximum number of other tests to run
-EPISODES = 8  # episodes per test: the first ones in which the guard holds
+EPISODES = 8  # number of episodes per test; the first ones in which the guard holds are chosen
 
 
 @dataclass(frozen=True)
 class Beside:
-    """Results of the other tests: sentences about tests that held and tests that lost reward, and the episodes run."""
+    """Results of the other tests: sentences about tests that kept and tests that lost reward, and the episodes run."""
 
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
@@ -50,7 +50,7 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Return whether a test depends on changed files: they are its nodes, or a node or the test mentions them."""
+    """Return whether a test depends on changed files: they are its nodes, or its nodes or the test mention them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the indices of the recorded episodes to run: if known, those in which the guard holds."""
+    """Return the indices of the recorded episodes to run: those in which the guard holds, if that is known."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))
@@ -73,7 +73,7 @@ def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
 def _compared(
     mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
 ) -> tuple[bool, str]:
-    """Compare a test's missions with its recording; return whether they lose reward, and a sentence."""
+    """Compare a test's missions with its recording; return whether they lose reward, and a sentence about it."""
     if not chosen:
         return False, f"{neighbour.test}: as recorded, because the condition never holds there"
     sample = neighbour.fixture.sample

@@ -1,4 +1,4 @@
-"""Run a whole repair: search, choose a guard, accept, deliver."""
+"""Run a whole repair: search, choose a guard, accept and deliver."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
 CONSTANTS = 2 / 3  # share of the budget for the search of constants; structural changes get the rest
-RESERVE = 1 / 6  # share of the budget added to the search of constants if a candidate gained much
-NAMED_FROM = 3  # minimum number of episodes for reporting that a candidate fits a part of a range
+RESERVE = 1 / 6  # share of the budget that is added to the search of constants if a candidate has gained much
+NAMED_FROM = 3  # minimum number of episodes for the note that a candidate works in a part of a range
 
 
 @dataclass(frozen=True)
 class Repaired:
-    """Result: the comparison with culprits, curves and repair, the accepted candidate, and episodes by kind."""
+    """The result: the comparison with culprits, curves and repair, the accepted candidate, and episodes by kind."""
 
     comparison: Comparison
     accepted: Accepted | None
@@ -45,7 +45,7 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """Results of the searches so far; `method` names the search that found `effects`, the first with any."""
+    """Results of the searches so far; `method` names the first search that found any `effects`."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
@@ -55,10 +55,10 @@ class _Findings:
     late: bool = False  # whether the search reached its time limit
     episodes: int = 0
     ranking: Ranking | None = None  # set if all sites were ranked
-    structure: int = 0  # episodes spent on structural changes, part of `episodes`
+    structure: int = 0  # number of episodes spent on structural changes; included in `episodes`
 
     def take(self, purse: Purse) -> None:
-        """Add the spent episodes of a budget."""
+        """Add the episodes that a budget spent."""
         self.episodes += purse.spent
         self.late = self.late or purse.late
 
@@ -90,7 +90,7 @@ def repair(order: Order) -> Repaired:
 
 
 def _enrich(mutants: Mutants, purse: Purse) -> None:
-    """Search for more missions that fail, if few do."""
+    """If few missions fail, search for more that fail."""
     trials = purse.phase(mutants, "missions that fail", Watch(mutants.order))
     goal = enriched(mutants, trials)
     purse.settle(trials)
@@ -133,7 +133,7 @@ def _restructure(
     searched: Sequence[Guard],
     purse: Purse,
 ) -> None:
-    """Try structural changes with the remaining episodes, since no change of constants was accepted."""
+    """Spend the remaining episodes on structural changes, because no change of constants was accepted."""
     trials = purse.phase(mutants, "structure", watch)
     chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
     structures = Structures(mutants.order, chief, trials)
@@ -150,7 +150,7 @@ def _restructure(
 
 
 def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> None:
-    """Rank all sites, under the guard of the repair or else the most promising guard."""
+    """Rank all sites under the guard of the repair, or else under the most promising guard."""
     if found.accepted is not None:
         guard = found.accepted.candidate.guard
     purse = Purse(mutants.order.options.budget, mutants.order.options.seconds)
@@ -186,7 +186,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
-        with suppress(KeyboardInterrupt):  # Ctrl-C skips only the bounds; the repair stays accepted
+        with suppress(KeyboardInterrupt):  # Ctrl-C only skips the bounds; the repair stays accepted
             bounds, spent = guaranteed(mutants, accepted)
     part = None
     if accepted is None and not found.interrupted:
@@ -218,7 +218,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
 
 
 def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]:
-    """Return the verdicts of formulas, including the episodes in which an accepted repair was tested."""
+    """Return the verdicts on formulas, including the episodes in which an accepted repair was tested."""
     if accepted is None:
         return order.comparison.formulas
     worlds = {"repaired": accepted.acceptance.drifted, "nominal_repaired": accepted.acceptance.nominal}
@@ -227,7 +227,7 @@ def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:
-    """Return the best refused candidate; if nothing was tested, its reason tells what ended the search."""
+    """Return the best refused candidate; if nothing was tested, its reason says what ended the search."""
     if found.interrupted:
         return replace(examiner.refused, reason="interrupted")
     if found.late and examiner.refused.reason == "budget":
@@ -236,7 +236,7 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
 
 
 def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch) -> Iterator[str]:
-    """Yield notes on what was not searched, which candidates were dropped, and what ended the search early."""
+    """Yield notes that say what was not searched, which candidates were dropped, and what ended the search early."""
     order, accepted = mutants.order, found.accepted is not None
     told = found.accepted.candidate if found.accepted else examiner.refused.candidate
     if told is not None:
@@ -267,7 +267,7 @@ def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch)
 
 
 def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[str]:
-    """Yield notes on candidates that fit only a part of the range."""
+    """Yield notes on candidates that work only in a part of the range."""
     for one in examiner.tried:
         ranged = examiner.ranged.get(one.candidate)
         if one.reason == "not over the whole range" and ranged is not None:
@@ -279,7 +279,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites in the order of the slices, then those that are not in the recording or in any flow."""
+    """Return the sites in the order of the slices, then the sites that are not in the recording or not in any flow."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     aside = (*order.analysis.deciding, *order.analysis.timing)

@@ -19,28 +19,28 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
 from pytest_tarl.searching.search import Goal, Pair
 from tarl_lint.api import Analysis
 
-SMALL = 0.05  # margin as a share of the loss, used if designed missions earn nothing
+SMALL = 0.05  # margin as a share of the loss, used if designed missions have no reward
 
 
 @dataclass(frozen=True)
 class Neighbour:
-    """Another recorded test: its nodes' files, how to run it, and the tolerated loss per episode."""
+    """Another recorded test: its nodes' files, a function that runs it, and the tolerated loss per episode."""
 
     test: str
     nodes: tuple[Path, ...]
     rollout: Rollout
     fixture: Fixture
     margin: float
-    drift: str | None = None  # the drift to repair, if it is permanent and this test declares it, too
+    drift: str | None = None  # the drift to repair, if it is permanent and this test declares it as well
 
 
 @dataclass(frozen=True)
 class Order:
-    """A degraded test under one drift: how to run it, its recording, and where patches go."""
+    """A degraded test under one drift: a function that runs it, its recording, and where patches go."""
 
     rollout: Rollout
     analysis: Analysis
-    root: Path  # folder to which the analysis' paths are relative
+    root: Path  # folder to which paths in the analysis are relative
     fixture: Fixture
     online: Online
     options: Options
@@ -51,7 +51,7 @@ class Order:
         tuple  # called only after a candidate has passed all other checks
     )
     world: Drift | None = None  # the declaration of the drift
-    declared: tuple[float, float] | None = None  # declared range of an episode's total reward
+    declared: tuple[float, float] | None = None  # declared range of the total reward of an episode
     searched: Goal | None = None  # the goal with the additional seeds of `enriching`, if it ran
 
     @property
@@ -71,7 +71,7 @@ class Order:
 
     @cached_property
     def reference(self) -> Reference:
-        """Return the designed world to which repairs are compared."""
+        """Return the designed world with which repairs are compared."""
         offline, verdict = self.fixture.sample, self.comparison.verdict
         margin = verdict.tolerance or SMALL * verdict.loss
         totals, passed = offline.total.tolist(), float(offline.passed.mean())
@@ -96,12 +96,12 @@ class Order:
 
     @cached_property
     def worst(self) -> float:
-        """Return the lowest total of any recorded episode; a candidate that breaks the test gets this total."""
+        """Return the lowest total of any recorded episode, which a candidate gets if it breaks the test."""
         return float(min(self.fixture.sample.total.min(), self.online.recorded.sample.total.min()))
 
 
 def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
-    """Yield the indices of (size, index) pairs, in an order in which the first few already span the sizes."""
+    """Yield the indices of (size, index) pairs, in an order in which the first few span the range of sizes."""
     parts = [[index for _, index in sorted(drawn)]]
     while parts:
         part = parts.pop(0)
@@ -112,7 +112,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Return the goal: the drifted episodes with a loss, worst last, and the totals that a mutation must reach."""
+    """Return the goal: the drifted episodes with a loss (the worst last), and the totals that a mutation must reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

@@ -1,4 +1,4 @@
-"""Choose the constants that move on a scale of their own.
+"""Choose the constants that are moved on a scale other than factors.
 
 These are zeros, shares close to 1, and named offsets that are small compared with the values to which they are added.
 """
@@ -16,11 +16,11 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.typical_sizes import TypicalSizes
 from tarl_lint.model import Operand
 
-NEARLY_ALL = 0.8  # from this share on, the distance to 1 is the better scale
+NEARLY_ALL = 0.8  # from this share on, the distance to 1 is a better scale than the share
 
 
 def charts(order: Order, operands: Sequence[Operand]) -> Mapping[Operand, Chart]:
-    """Return the scales on which constants move, in addition to factors on their values."""
+    """Return the scales on which constants are moved in addition to factors on their values."""
     sizes = TypicalSizes(order)
     found: dict[Operand, Chart] = {}
     for operand in operands:
@@ -44,7 +44,7 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
     if NEARLY_ALL <= value < 1.0:
         return SHARE
     if operand.literal and value:
-        return None  # literals inside a line are numerous and rarely offsets of a wrong size
+        return None  # literals within a line are numerous and rarely offsets of a wrong size
     size = max(_beside(source, node, operand, sizes), default=0.0)
     return offset(size) if size > abs(value) else None
 
@@ -52,7 +52,7 @@ def _chart(order: Order, operand: Operand, sizes: TypicalSizes) -> Chart | None:
 def _beside(source: Document, node: ast.expr, operand: Operand, sizes: TypicalSizes) -> Iterator[float]:
     """Yield the usual sizes of the values to which a constant is added, and of the sum.
 
-    For a zero, also yield the sizes of values that it is combined or compared with. Yield nothing if the constant is a
+    For a zero, also yield the sizes of values that are combined or compared with it. Yield nothing if the constant is a
     factor or stands alone.
     """
     inner: ast.AST = node

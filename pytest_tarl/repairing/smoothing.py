@@ -1,6 +1,6 @@
 """Replace a change that jumps at a sensor's threshold by one that grows with the sensor.
 
-`margin + self.length` reads better than `margin * 1.5 if self.length >= 0.3 else margin`, and holds for other lengths.
+`margin + self.length` reads better than `margin * 1.5 if self.length >= 0.3 else margin`, and suits other lengths.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from pytest_tarl.sensors import Sensor
 
 SUM, SCALE = "sum", "scale"
 ALIKE = (
-    2.0  # a plain sum is tried if the constant's change and the sensor's value differ at most by this ratio
+    2.0  # a plain sum is tried if the constant's change and the sensor's value differ by at most this ratio
 )
-REST = 0.9  # the sensor must be about zero in this share of the recorded steps
+REST = 0.9  # minimum share of the recorded steps in which the sensor must be about zero
 
 
 def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:

@@ -22,11 +22,11 @@ from pytest_tarl.searching.search import Strategy, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand
 
-MOST_GUARDS = 3  # guards per search
+MOST_GUARDS = 3  # maximum number of guards per search
 
 
 def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
-    """Return the search of that name. Raise SearchError and SettingsError for unsuitable plug-ins."""
+    """Return the search with this name. Raise SearchError or SettingsError for unsuitable plug-ins."""
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
@@ -67,7 +67,7 @@ def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, plainest changes first, then in the order of the slices."""
+    """Return all operands of the analysed flows, most readable changes first, then in the order of the slices."""
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     found = dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site))
@@ -75,7 +75,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:
-    """Return operands that decide when or what the nodes publish but are in no data flow, plainest first.
+    """Return operands that decide when or what the nodes publish but are in no data flow, most readable first.
 
     The slices do not rank them.
     """

@@ -1,6 +1,6 @@
-"""Structural repairs, for drifts that no constant repairs: templates applied at the expressions ranked first.
+"""Structural repairs, for drifts that no constant repairs: templates applied to the expressions ranked first.
 
-Each parameter of a template at an expression is an operand like any other, so the sweep can search it.
+Each parameter of a template at an expression is an operand like any other, so that the sweep can search it.
 """
 
 from __future__ import annotations
@@ -32,16 +32,18 @@ MOST = {
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
-FIRST = 2  # number of expressions tried first: the one ranked first and the one nearest to a publish call
+FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = 50  # minimum number of episodes for templates with a telling sensor; limited to a third of the budget
+LEAST = (
+    50  # minimum number of episodes for templates with a telling sensor, but at most a third of the budget
+)
 
 
 class Structures:
-    """A search over templates, cheapest first; the best `FIRST` expressions of each kind come first.
+    """A search over templates, cheapest first; for each kind, the best `FIRST` expressions come first.
 
     Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
-    parameters. If one of its templates gains much, it also gets half of the episodes left for the other groups.
+    parameters. If one of its templates gains much, the group also gets half of the episodes left for the other groups.
     """
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
@@ -86,7 +88,7 @@ class Structures:
                 self.trials.budget, self.trials.reserve = whole, 0
 
     def _beyond_its_share(self, candidate: Candidate, whole: int) -> Iterator[Candidate]:
-        """Yield a candidate; its examination may spend more than the share of its templates."""
+        """Yield a candidate; its examination may spend more than its templates' share of the episodes."""
         trials = self.trials
         budget, reserve, spent = trials.budget, trials.reserve, trials.spent
         trials.budget, trials.reserve = whole, 0
@@ -103,14 +105,14 @@ class Structures:
         return found
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return the mutation of one parameter by a factor; a template without parameters has a single mutation."""
+        """Return the mutation of one parameter by a factor; a template without parameters has only one mutation."""
         form = self._found[operand]
         if not form.parameter:
             return Mutation(operand, True, form=form)
         if factor == 1.0 and form.parameter != form.defaults[0][0]:
-            return None  # factor 1 is the same change for all parameters; only the first proposes it
+            return None  # factor 1 is the same change for all parameters, so only the first one proposes it
         grid = next((one.grid for one in form.template.parameters if one.name == form.parameter), 0.0)
-        if grid:  # a grid is only on the first parameter, so factor 1 was already proposed
+        if grid:  # only a first parameter has a grid, so factor 1 was proposed before
             start = dict(form.defaults)[form.parameter]
             factor = round(start * factor / grid) * grid / start
             if not factor:
@@ -124,7 +126,7 @@ class Structures:
         return 0.0 < factor != 1.0 and (factor < 1.0) == growing.get(form.parameter, factor > 1.0)
 
     def given(self, operand: Operand) -> list[Operand]:
-        """Return the fixed parameters of a structural change, which are moved only after it gains much."""
+        """Return the fixed parameters of a structural change, which are moved only after the change gained much."""
         form = self._found[operand]
         bare = replace(form, parameter="")
         return [
@@ -175,7 +177,7 @@ def form_words(order: Order, mutation: Mutation) -> str:
 
 
 def _forms(order: Order, template: Template, among: Sequence[Spot]) -> Iterator[list[tuple[Operand, Form]]]:
-    """Yield, for every expression that a template fits, an operand for each of its parameters."""
+    """Yield, for each expression that a template fits, an operand for each of its parameters."""
     if template.on == "pair":
         for one, other in pairs(among, MOST["pair"]):
             partner = _span(other.source, other.node)
@@ -202,9 +204,8 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":
-        # Sensors are read where messages arrive. They correct sent values before the values are limited, so
-        # that the
-        # limits still hold.
+        # sensors are read where messages arrive; they correct sent values before the values are limited, so that the
+        # limits still hold
         fitting.sort(key=lambda spot: (spot.kind != kind, not spot.hears, _limited(spot.node), spot.away))
     else:
         fitting.sort(key=lambda spot: spot.kind != kind)
@@ -212,7 +213,7 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
 
 
 def _limited(node: ast.expr) -> bool:
-    """Return whether an expression limits a value between two bounds, by `max(low, min(high, x))` or `clamp(x)`."""
+    """Return whether an expression limits a value to a range, as `max(low, min(high, x))` or `clamp(x)` do."""
     if not isinstance(node, ast.Call):
         return False
     name = ast.unparse(node.func).rpartition(".")[2]
@@ -221,7 +222,7 @@ def _limited(node: ast.expr) -> bool:
 
 
 def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
-    """Map each key of `of` in a template (such as `usual`) to the size by which defaults are multiplied."""
+    """Return, for each key of `of` in a template (such as `usual`), the size by which defaults are multiplied."""
     drifted = usual(order, sensor)
     scales = {"sensor": 1.0 / drifted, "usual": drifted}
     if sensor.low is not None and sensor.low >= 0.0:
@@ -232,7 +233,7 @@ def _scales(order: Order, sensor: Sensor) -> dict[str, float]:
 def _operands(
     template: Template, spot: Spot, bare: Form, scales: Mapping[str, float]
 ) -> Iterator[tuple[Operand, Form]]:
-    """Yield an operand for each parameter; nothing if a default cannot be known."""
+    """Yield an operand for each parameter; nothing if a default is unknown."""
     if any(one.of and one.of not in scales for one in template.parameters):
         return
     defaults = tuple(
@@ -247,7 +248,7 @@ def _operands(
 
 
 def _fixed(form: Form) -> bool:
-    """Return whether the parameter of a form is fixed: moved only after the change gains much."""
+    """Return whether the parameter of a form is fixed, that is, moved only after the change gained much."""
     return any(one.name == form.parameter and one.of == FIXED for one in form.template.parameters)
 
 

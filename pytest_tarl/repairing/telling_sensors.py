@@ -1,4 +1,4 @@
-"""Find telling sensors, whose values usually show whether the world is drifted or designed."""
+"""Find telling sensors, whose values usually show whether the world is the drifted or the designed one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def telling(order: Order) -> list[Sensor]:
 
 
 def continuous(sensor: Sensor) -> bool:
-    """Return whether a program can calculate with a sensor's value."""
+    """Return whether a program can use a sensor's value in calculations."""
     return sensor.numeric and not sensor.angle and sensor.guardable
 
 
@@ -37,7 +37,7 @@ def usual(order: Order, sensor: Sensor, world: Sample | None = None) -> float:
 
 
 def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield (low end, high end, number of steps) of the sensor's bin for every entry of the Markov chain."""
+    """Yield, for every entry of the Markov chain, the low and high end of the sensor's bin and the number of steps."""
     names = [one.name for one in order.comparison.sensors]
     at = names.index(sensor.name)
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
@@ -46,7 +46,7 @@ def bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, f
 
 
 def _overlap(order: Order, sensor: Sensor) -> float:
-    """Return the share of steps that both worlds spend in the same bins, 1 if either world has no steps."""
+    """Return the share of steps that both worlds spend in the same bins; 1 if either world has no steps."""
     designed = _shares(order, order.fixture.sample, sensor)
     drifted = _shares(order, order.online.recorded.sample, sensor)
     if not designed or not drifted:

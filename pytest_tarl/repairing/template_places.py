@@ -1,4 +1,4 @@
-"""The expressions at which templates of structural repairs may be written, in the order to try them."""
+"""The expressions to which templates of structural repairs may be applied, in the order to try them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Spot:
-    """An expression of a kind at which a template may be written.
+    """An expression of a kind to which a template may be applied.
 
-    `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in both
+    `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in the two
     worlds. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
     topics, so that a template can read a sensor there.
     """
@@ -62,9 +62,9 @@ def spots(order: Order) -> Iterator[Spot]:
 
 
 def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
-    """Return the flows' statements, alternately from the slices' ranking and from the publish calls backwards.
+    """Return the flows' statements, alternately in the order of the slices and backwards from the publish calls.
 
-    The publish calls count because limits, filters and offsets of a command belong where the command is sent.
+    Publish calls matter because limits, filters and offsets of a command belong where the command is sent.
     """
     rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
     ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
@@ -86,7 +86,7 @@ def _expressions(
 ) -> Iterator[tuple[ast.expr, str]]:
     """Yield (expression, kind) for the expressions to change in the statement at a span.
 
-    `numeric` says whether the recording has numbers for the statement; `returned` names functions that returned
+    `numeric` says whether the recording has numbers for the statement; `returned` names the functions that returned
     numbers.
     """
     statements = [

@@ -1,4 +1,4 @@
-"""Usual sizes (mean absolute values) of expressions in the recording, as start values of structural changes."""
+"""Usual sizes (mean absolute values) of expressions in the recording, used as start values of structural changes."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ class TypicalSizes:
         return self.by_site.get(str(site)) or self._estimated(site, node) or 1.0
 
     def known(self, site: SiteId, node: ast.expr) -> float | None:
-        """Return the usual size of a part of a site's expression, estimated from its own parts; None if unknown."""
+        """Return the usual size of a part of a site's expression, estimated from its operands, or None if unknown."""
         return self._estimated(site, node)
 
     def _estimated(self, site: SiteId, node: ast.expr) -> float | None:
-        """Return the size estimated from the parts (for a sum: the largest part's size); None if unknown."""
+        """Return the size estimated from the parts (for a sum, the size of the largest part), or None if unknown."""
         if isinstance(node, ast.Constant):
             number = finite_number(node.value)
             return None if number is None else abs(number)
@@ -72,14 +72,14 @@ def called(call: ast.Call) -> str:
 
 
 def threshold(node: ast.expr) -> float:
-    """Return the absolute value of the number in a comparison, 1 if there is none."""
+    """Return the absolute value of the number in a comparison, or 1 if there is none."""
     numbers = [each.value for each in ast.walk(node) if isinstance(each, ast.Constant)]
     sizes = [abs(float(value)) for value in numbers if isinstance(value, int | float) and value]
     return sizes[0] if sizes else 1.0
 
 
 def _recorded(order: Order, world: Sample | None) -> Mapping[str, float]:
-    """Return the mean flow value of each site in a world, the recorded one by default, by site id."""
+    """Return the mean flow value of each site, by site ID, in a world (default: the recorded one)."""
     sample = world or order.fixture.sample
     found: dict[str, float] = {}
     for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):
@@ -103,7 +103,7 @@ def _returned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str,
 
 
 def _assigned(order: Order, by_site: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-    """Yield the names and attributes assigned in the flows, each with the size recorded at the assignment."""
+    """Yield the names and attributes that flows assign, each with the size recorded at the assignment."""
     for step in order.analysis.sites:
         size = by_site.get(str(step.site))
         try:

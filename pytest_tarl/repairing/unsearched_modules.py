@@ -1,4 +1,4 @@
-"""Find modules through which a flow passes but which are not searched, because the marker does not name them."""
+"""Find modules in flows that are not searched, because the marker does not name them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def unnamed_modules(order: Order) -> Iterator[str]:
 
 
 def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path]]:
-    """Yield (name, file) for names that a module imports from files of the project."""
+    """Yield each name that a module imports from files of the project, and the file."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for each in node.names:
@@ -46,7 +46,7 @@ def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path
 
 
 def _files(module: str, level: int, at: Path, root: Path) -> list[Path]:
-    """Return the file of a module, next to the importing file or in a parent folder up to the root."""
+    """Return the files of a module, next to the importing file or in a parent folder up to the root."""
     starts = [at.parents[level - 1]] if level else [each for each in at.parents if each.is_relative_to(root)]
     parts = module.split(".")
     wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]
