@@ -1,4 +1,4 @@
-"""Check whether code already raises or is skipped while a variable is None (before the first message)."""
+"""Check whether code already raises, or is skipped, while a variable is None (before the first message)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.patching.document import Document
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether, while `code` is None, a place is skipped or the code there or around it already raises."""
+    """Return whether, while `code` is None, a place is skipped or the code at or around it already raises."""
     if isinstance(place, ast.stmt) and _relies_on(place, code):
         return True
     inner = place
@@ -47,7 +47,7 @@ def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
 
 
 def _relies_on(statement: ast.stmt, code: str) -> bool:
-    """Return whether a statement always evaluates an operation on `code` that raises for None."""
+    """Return whether a statement always evaluates an operation on `code` that raises if `code` is None."""
     if hasattr(statement, "body"):
         return False
     waiting: list[ast.AST] = [statement]
@@ -65,7 +65,7 @@ def _relies_on(statement: ast.stmt, code: str) -> bool:
 
 
 def _calculated(node: ast.AST) -> Iterator[ast.expr]:
-    """Yield the operands of an expression that must not be None."""
+    """Yield the operands of an expression for which None would raise."""
     if isinstance(node, ast.BinOp):
         yield from (node.left, node.right)
     elif isinstance(node, ast.UnaryOp) and not isinstance(node.op, ast.Not):

@@ -58,21 +58,21 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield places to subscribe: subscriptions in the site's flows, those in its file, then starts of nodes.
+    """Yield places to subscribe: at subscriptions in the site's flows, at those in its file, then at starts of nodes.
 
-    Starts of nodes serve nodes that have no usable subscription.
+    Starts of nodes are for nodes without a usable subscription.
     """
     own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
     sources = dict.fromkeys(flow.source for flow in analysis.flows)
     for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
         yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        with suppress(RepairError):  # a file that cannot be parsed starts no node
+        with suppress(RepairError):  # a file that cannot be parsed does not start a node
             yield from _started(document(name, analysis.sources[name]))
 
 
 def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
-    """Return the place for another subscription: after `call`, but outside any loop; None if there is none."""
+    """Return the place for another subscription, after `call` but outside any loop; None if there is none."""
     statement = source.statement(call)
     within = [statement, *_until_function(source, statement)]
     loops = [each for each in within if isinstance(each, Loop)]
@@ -128,7 +128,7 @@ def _started(source: Document) -> Iterator[Anchor]:
 
 
 def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
-    """Return 0 if a call certainly runs once at node start, 1 or 2 if this is less certain, else `_NO_START`."""
+    """Return 0 if a call certainly runs once, at a node's start; 1 or 2 if this is less certain; else `_NO_START`."""
     name = _called(call)
     if not ros2:
         return 0 if name == "init_node" else _NO_START
@@ -181,6 +181,6 @@ def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]
 
 
 def _leader(source: Document, statement: ast.stmt) -> ast.stmt | None:
-    """Return the first statement on a statement's line; None if it is a definition."""
+    """Return the first statement on a statement's line, or None if that is a definition."""
     around = [*reversed(source.block(statement)), *_until_function(source, statement)]
     return next((each for each in around if each.lineno == statement.lineno and source.leads(each)), None)

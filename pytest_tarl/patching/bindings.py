@@ -1,4 +1,4 @@
-"""Bindings of a module: the places that assign a name, and its values before the first message."""
+"""Bindings of a module: the places that assign a name, and the values that it may have before the first message."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
-    """Return whether `a.b.c` can be evaluated at a place, except where the surrounding code raises anyway."""
+    """Return whether `a.b.c` can be evaluated at a place, or is evaluated there by the original code anyway."""
     chain = prefixes(code)
     read = {ast.unparse(node) for node in _read_at(place)}
     if code in read:
@@ -90,7 +90,7 @@ def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant],
 
 
 def _read_at(place: ast.AST) -> Iterator[ast.expr]:
-    """Yield the names, attributes and items that a statement reads; for a compound statement only its header."""
+    """Yield the names, attributes and items that a statement reads (for a compound statement, in its header)."""
     waiting = [place]
     while waiting:
         node = waiting.pop()

@@ -1,8 +1,8 @@
 """Charts: scales on which a search moves a constant, in addition to factors on its value.
 
-A share such as 0.95 moves by its distance from 1: if it should be 0.994, this distance is wrong by a factor of 8. An
-offset such as -0.012 moves in steps of the size of the numbers to which it is added. On these two scales, a search
-takes the same steps as for factors.
+A share such as 0.95 is moved by its distance from 1: if it should be 0.994, this distance is wrong by a factor of 8. An
+offset such as -0.012 is moved in steps of the size of the numbers to which it is added. On these two scales, a search
+takes the same steps as with factors.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ class Chart:
 
 
 def distance(step: float) -> float:
-    """Return the change made by a step, in multiples of the size: 4 for a step of 5, -4 for a step of 0.2."""
+    """Return the change that a step makes, in multiples of the size: 4 for a step of 5, -4 for a step of 0.2."""
     return step - 1.0 if step >= 1.0 else 1.0 - 1.0 / step
 
 
 def step_to(distance: float) -> float:
-    """Return the step that makes this change; the inverse of `distance`."""
+    """Return the step that makes this change (the inverse of `distance`)."""
     return 1.0 + distance if distance >= 0.0 else 1.0 / (1.0 - distance)
 
 

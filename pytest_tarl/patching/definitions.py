@@ -38,7 +38,7 @@ class Place:
 
 
 def defined(analysis: Analysis, operand: Operand) -> Place | None:
-    """Return the definition of an operand's constant; None unless it is one number at another place than the use."""
+    """Return the definition of an operand's constant, or None unless it is a single number away from the use."""
     span = operand.definition
     if span is None or operand.literal or span.path not in analysis.sources:
         return None
@@ -52,7 +52,7 @@ def defined(analysis: Analysis, operand: Operand) -> Place | None:
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
-    """Return the ROS parameter or configuration key from which an operand's value comes, "" if there is none.
+    """Return the ROS parameter or configuration key from which an operand's value comes, or "" if there is none.
 
     The value may be the default of the parameter.
     """
@@ -76,7 +76,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
 
 
 def package_files(root: Path, node: Path) -> Mapping[str, str]:
-    """Return the configuration files of the package that contains a node: path relative to `root` → text."""
+    """Return the configuration files of the package that contains a node, as texts by path relative to `root`."""
     top = next((folder for folder in node.parents if (folder / "package.xml").is_file()), root)
     top = top if top.is_relative_to(root) else root
     found: dict[str, str] = {}
@@ -144,7 +144,7 @@ def _same(old: str, value: float) -> bool:
 
 
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
-    """Return the other places that use the constant of these operands: `path:line`, in order."""
+    """Return the other places that use the constant of these operands, as `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {operand.definition for operand in used}
     names = {parameter(analysis, operand) for operand in used} - {""}
@@ -206,7 +206,7 @@ def _kind(path: Path) -> str:
     if path.name.endswith((".launch", ".launch.xml")):
         return "launch"
     if path.name.endswith((".launch.py", "_launch.py")):
-        return "yaml"  # node parameters are a dictionary in such a file
+        return "yaml"  # in such a file, the parameters of a node are a dictionary
     return "cfg" if path.suffix == ".cfg" else ""
 
 

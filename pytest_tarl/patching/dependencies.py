@@ -1,4 +1,4 @@
-"""Find message packages that a patch imports and that the file's ROS package does not depend on yet."""
+"""Find message packages that a patch imports but the file's ROS package does not depend on yet."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for every message package that a patch imports and that package.xml does not list.
+    """Return a sentence for each message package that a patch imports but package.xml does not list.
 
     `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
     """

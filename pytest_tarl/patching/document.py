@@ -54,7 +54,7 @@ class Document:
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map (start, end) offsets to expressions; if several share the offsets, to the innermost one."""
+        """Map (start, end) offsets to expressions; if several have the same offsets, to the innermost one."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
@@ -82,7 +82,7 @@ class Document:
         return self.text[self.start(node) : self.end(node)]
 
     def line_start(self, node: ast.expr | ast.stmt) -> int:
-        """Return the offset at which the node's first line starts, decorators included."""
+        """Return the offset at which the node's first line starts, including decorators."""
         decorators: list[ast.expr] = getattr(node, "decorator_list", [])
         return self.line_starts[min([node.lineno, *(each.lineno for each in decorators)]) - 1]
 
@@ -111,7 +111,7 @@ class Document:
         return not self.text[self.line_starts[node.lineno - 1] : self.start(node)].strip(" \t\f")
 
     def at(self, span: Span) -> ast.expr | None:
-        """Return the expression at a span, None if there is none."""
+        """Return the expression at a span, or None if there is none."""
         first, last = (span.line, span.column), (span.end_line, span.end_column)
         return self.expressions.get((self._characters(*first), self._characters(*last)))
 
@@ -140,7 +140,7 @@ class Document:
         return next((each for each in self.ancestors(node) if isinstance(each, Function)), None)
 
     def method(self, node: ast.AST) -> tuple[ast.ClassDef, Function, str] | None:
-        """Return class, method and name of `self` for code inside a method; None without an instance."""
+        """Return class, method and name of `self` for code inside a method, or None if there is no instance."""
         for method, owner in pairwise([node, *self.ancestors(node)]):
             if isinstance(method, Function) and isinstance(owner, ast.ClassDef):
                 return _bound(owner, method)
@@ -211,7 +211,7 @@ def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str 
         if edit.start < position:
             line = text.count("\n", 0, edit.start) + 1
             raise RepairError(
-                f"{path}:{line}: two changes of this code exclude each other: choose one of them."
+                f"{path}:{line}: two changes to this code exclude each other: choose one of them."
             )
         written = edit.text.replace("\r\n", "\n").replace("\n", newline)
         pieces += [text[position : edit.start], written]

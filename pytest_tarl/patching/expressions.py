@@ -6,9 +6,9 @@ import ast
 
 from pytest_tarl.patching.document import Document, parse_expression
 
-DIGITS = 4  # significant digits of numbers in a repair
+DIGITS = 4  # number of significant digits of numbers in a repair
 
-# Operator precedence, loosest first, as in the language reference.
+# operator precedence, from the loosest to the tightest, as in the language reference
 (
     TEST,
     OR,

@@ -1,4 +1,4 @@
-"""Integer fields of messages: ROS rejects a message if such a field gets a float."""
+"""Integer fields of messages: ROS rejects a message with a float in such a field."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def in_integer_field(source: Document, node: ast.expr) -> bool:
 
 
 def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bool:
-    """Return whether a positional argument of a message constructor is an integer field."""
+    """Return whether a positional argument of a message constructor sets an integer field."""
     name = _type_name(source, call.func)
     at = next(at for at, each in enumerate(call.args) if each is argument)
     return _INTEGER.match([*_fields(name).values(), *[""] * (at + 1)][at]) is not None
@@ -54,7 +54,7 @@ def _takes_integer(source: Document, target: ast.expr) -> bool:
 
 @cache
 def _constructors(source: Document) -> dict[str, ast.expr]:
-    """Map targets of assigned calls to the called expression: `out` to `Int32`."""
+    """Map targets of assignments to the function that the assigned call names, such as `out` to `Int32`."""
     return {
         ast.unparse(target): node.value.func
         for node in ast.walk(source.tree)
@@ -64,7 +64,7 @@ def _constructors(source: Document) -> dict[str, ast.expr]:
 
 
 def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bool:
-    """Return whether a field of a message type, named as in this file, holds integers."""
+    """Return whether a field of a message type holds integers; `kind` is the name of the type in this file."""
     found = _type_name(source, kind)
     for field in fields:
         found = _fields(found).get(field, "")
@@ -74,14 +74,14 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of a message type, given its expression in this file; "" if it was not imported."""
+    """Return the ROS name of a message type, given its expression in this file, or "" if it was not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 
 
 @cache
 def _fields(name: str) -> dict[str, str]:
-    """Return the types of a message's fields, in order; empty for an unknown message."""
+    """Return the types of a message's fields, in order; empty if the message is unknown."""
     try:
         return dict(message_type(name).get_fields_and_field_types()) if name else {}
     except (TarlError, AttributeError):
@@ -90,7 +90,7 @@ def _fields(name: str) -> dict[str, str]:
 
 @cache
 def _packages(source: Document) -> dict[str, str]:
-    """Map imported names to ROS names: `Int32` to `std_msgs/Int32`, `std_msgs` to `std_msgs/`."""
+    """Map imported names to ROS names, such as `Int32` to `std_msgs/Int32` and `std_msgs` to `std_msgs/`."""
     found: dict[str, str] = {}
     for node in ast.walk(source.tree):
         if isinstance(node, ast.ImportFrom) and node.module:

@@ -25,7 +25,7 @@ class Reading:
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python; `readings` maps sensor names to expressions. Return "" if the guard always holds."""
+    """Return a guard as Python, or "" if it always holds; `readings` maps sensor names to expressions."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -53,8 +53,8 @@ def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:
     """Return the first expression that can be evaluated at `place`, or None.
 
-    An expression is skipped if it may be unbound at `place`. It is also skipped if its initial value makes the
-    condition true, because the original code must run until the first message arrives.
+    An expression is skipped if it may be unbound at `place`, or if its initial value makes the condition true: the
+    original code must run until the first message arrives.
     """
     for code in expressions:
         chain = prefixes(code)
@@ -65,7 +65,7 @@ def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct:
 
 
 def bound(sensor: Sensor, value: float) -> str:
-    """Format a bound, rounded to about a hundredth of a bin."""
+    """Format a bound, rounded to about one hundredth of a bin."""
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return repr(int(value) if float(value).is_integer() else rounded(value))
     width = sensor.resolution

@@ -25,7 +25,7 @@ class Import:
 
 
 def imported(source: Document, module: str, name: str) -> str:
-    """Return the expression for `module.name` in this file, "" if it is not imported."""
+    """Return the expression for `module.name` in this file, or "" if it is not imported."""
     for node in top_imports(source):
         if isinstance(node, ast.ImportFrom) and node.module == module and not node.level:
             for alias in node.names:
@@ -39,7 +39,7 @@ def imported(source: Document, module: str, name: str) -> str:
 
 
 def reference(source: Document, module: str, name: str) -> tuple[str, Import | None] | None:
-    """Return the expression for a new name of `module`, and the import that it needs (None if it needs none).
+    """Return the expression for a new name of `module`, and the import that it needs, or None if it needs no import.
 
     Return None if the file imports nothing from `module`. Modules are compared by the end of their dotted names, so
     that relative imports and files run as scripts match.
@@ -92,7 +92,7 @@ def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[E
 
 
 def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Import) -> Edit:
-    """Add a name to an import: in sorted order if the names are sorted, on its own line if each name has one."""
+    """Add a name to an import; keep names sorted if they are, and on separate lines if they are."""
     names = [alias.name for alias in node.names]
     later = [alias for alias in node.names if alias.name > wanted.name and names == sorted(names)]
     neighbour = later[0] if later else node.names[-1]

@@ -22,13 +22,13 @@ class Conflict:
     second: Patch
 
     def __str__(self) -> str:
-        """Name the line and the two patches."""
+        """Return a sentence with the line and the two patches."""
         return (
             f"{self.file}:{self.line} is changed in two ways, by {self.first.name} and by {self.second.name}"
         )
 
 
-CONSTANT = "constant"  # key of the header line with the definition of a changed constant
+CONSTANT = "constant"  # key of the header line that says where a changed constant is defined
 
 
 def constants(patch: Patch) -> list[str]:
@@ -55,7 +55,7 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
 
 
 def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
-    """Return a text with all replacements applied; insertions at the same line keep their order. Raise RepairError."""
+    """Return a text with all replacements applied; keep the order of insertions at one line. Raise RepairError."""
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:
@@ -66,7 +66,7 @@ def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
 
 
 def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
-    """Undo `combined`: return the original text, None if the content lacks one of the replacements."""
+    """Undo `combined`: return the original text, or None if a replacement is not in the content."""
     lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
     for one in _in_order(wanted):
         start = one.start + shift
@@ -107,7 +107,7 @@ def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
-    """Return the distinct replacements in file order, with replacements of the same lines merged if possible."""
+    """Return the distinct replacements in file order; replacements of the same lines are merged if possible."""
     ordered: list[Replacement] = []
     for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
         joined = agreed(ordered[-1], one) if ordered else None

@@ -48,10 +48,10 @@ class Mutation:
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
-    """Return the mutation of an operand by a factor, or None if it would change nothing.
+    """Return the mutation of an operand by a factor, or None if it changes nothing.
 
-    A zero becomes `factor - 1`, or `1 - 1/factor` for factors below 1, so that factors f and 1/f are symmetric. With
-    `integral` (see `is_integral`), an integer stays an integer and changes by at least 1.
+    A zero becomes `factor - 1`, or `1 - 1/factor` for factors below 1, so that the factors f and 1/f are symmetric.
+    With `integral` (see `is_integral`), an integer remains an integer and changes by at least 1.
     """
     value = operand.value
     if isinstance(value, bool):
@@ -72,7 +72,7 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 def stepped(
     operand: Operand, step: float, chart: Chart | None, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation for a step on a chart, or for a factor if `chart` is None. None if nothing changes."""
+    """Return the mutation for a step on a chart (for a factor if `chart` is None), or None if nothing changes."""
     if chart is None or operand.value is None:
         return mutate(operand, step)
     by = chart.factor(float(operand.value), step)
@@ -83,14 +83,14 @@ def stepped(
 def to_step(
     mutation: Mutation, step: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Mutation | None:
-    """Return the mutation of the same operand by another step; None if there is none."""
+    """Return the mutation of the same operand by another step, or None if there is none."""
     if mutation.form is not None:
         return replace(mutation, value=step)
     return stepped(mutation.operand, step, mutation.chart, mutate)
 
 
 def step_of(mutation: Mutation) -> float | None:
-    """Return the step of a mutation on its chart; None if it has no chart or no step gives its value."""
+    """Return the step of a mutation on its chart, or None if it has no chart or no step gives its value."""
     constant = mutation.operand.value
     if mutation.chart is None or constant is None:
         return None
@@ -100,7 +100,7 @@ def step_of(mutation: Mutation) -> float | None:
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Return whether an operand must stay an integer: an index, a length, a compared code, an integer field."""
+    """Return whether an operand must stay an integer: an index, a length, a compared code, or an integer field."""
     source = _document(analysis, operand.span.path)
     return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
@@ -152,7 +152,7 @@ def rewrite(
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return the parameters of a structural mutation; the searched one is scaled by the mutation's value."""
+    """Return the parameters of a structural mutation; the one that is searched is scaled by the mutation's value."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)
@@ -190,7 +190,7 @@ def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | i
 def guard_text(
     guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
 ) -> str:
-    """Return the Python code of the guard at the first mutation; "" if the guard always holds."""
+    """Return the Python code of the guard at the first mutation, or "" if the guard always holds."""
     conditions = Conditions(analysis, guard, topics)
     for source, node, _, _, site in _formed(analysis, mutations[:1]):
         return conditions.at(source, site, source.statement(node))
@@ -209,7 +209,7 @@ class Use:
 
 
 class Conditions:
-    """The Python code of one guard at every place that checks it, and the subscriptions that the guard needs."""
+    """The Python code of a guard at every place that checks it, and the subscriptions that the guard needs."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -224,7 +224,7 @@ class Conditions:
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value as Python at a place, 0 before its first message. Raise RepairError."""
+        """Return a sensor's value at a place as Python; it is 0 before the first message. Raise RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
@@ -247,7 +247,7 @@ class Conditions:
         if reading is None and not sensor.path:
             raise RepairError(
                 f"Sensor {sensor.name!r} (expr={sensor.expr!r}) cannot be read at {site.text!r}, or its initial value "
-                "makes the guard true before anything is known."
+                "makes the guard true before the first message."
             )
         return reading or self.subscriptions.reading(sensor, site, source, place)
 
@@ -284,7 +284,7 @@ def _by_file(
 
 
 def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return a function that gives the place where a use checks the condition: its statement, lambda or generator."""
+    """Return a function that gives the place where a use checks the condition: a statement, lambda or generator."""
     if doubled(source, statement, [use.change for use in uses]):
         return lambda _: statement
     return lambda use: lazy(source, use.change.node) or statement
@@ -329,7 +329,7 @@ def _check_literal(node: ast.expr, operand: Operand) -> None:
 
 
 def _literal(operand: Operand, value: float, wanted: float, integral: bool) -> Mutation | None:
-    """Return the mutation of a literal; an integer stays one where possible."""
+    """Return the mutation of a literal; an integer remains an integer if possible."""
     new: float | int = rounded(wanted)
     if isinstance(value, int) and integral:
         new = round(new) if round(new) != value else value + (1 if wanted > value else -1)
@@ -345,7 +345,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return the value that a zero gets for a factor; the negative value for its reciprocal, 0 for factor 1."""
+    """Return the value of a zero after a factor: negated for the inverse factor, 0 for factor 1."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0

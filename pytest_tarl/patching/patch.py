@@ -17,9 +17,9 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.files import advice_on, slug, write_atomically
 
 Opcode = tuple[str, int, int, int, int]
-CONTEXT = 3  # unchanged lines around a change
+CONTEXT = 3  # number of unchanged lines around a change
 BASE = "paths are relative to"  # header key of the patch's base folder
-SEAL = "digest of all other lines"  # header key of the digest that reveals edited or damaged patches
+SEAL = "digest of all other lines"  # header key of the hash that reveals edited or damaged patches
 TITLE = "Repair by tarl "
 PARTIAL = ".partial"  # suffix of files with a change that was not accepted as a repair
 QUOTE = b"| "  # prefix of each line of a PARTIAL file, so that no tool applies the change
@@ -31,9 +31,9 @@ def unified_diff(
 ) -> str:
     """Return the diff from the files' bytes to their new text, preceded by comment lines.
 
-    Paths are relative to the top of the git repository that contains the files, else to `root`, because `git apply`
-    silently skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raises
-    RepairError if the files are in several repositories or their encoding cannot represent the new text.
+    Paths are relative to the top of the git repository that contains the files, or else to `root`, because `git apply`
+    silently skips other paths. Bytes that are not UTF-8 become surrogate characters, which `readable` replaces. Raise
+    RepairError if the files are in several repositories or if their encoding cannot represent the new text.
     """
     base = _base([path.resolve() for path in changed], root.resolve())
     texts = {
@@ -52,7 +52,7 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the digest of a patch, given its content without the digest line."""
+    """Return the hash of a patch, given its content without the line of the hash."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -82,7 +82,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a change that is not a repair, each line quoted so that no tool applies it. Raise RepairError."""
+    """Write a change that is not a repair; each line is quoted so that no tool applies it. Raise RepairError."""
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
@@ -100,9 +100,9 @@ def unquoted(content: bytes) -> bytes:
 
 
 def apply_command(patch: Path, cwd: Path) -> str:
-    """Return the shell command that applies a patch of `<root>/.tarl/patches` when run in `cwd`.
+    """Return the shell command that applies a patch of `<root>/.tarl/patches`; it is run in `cwd`.
 
-    In another folder the command fails with a message that it cannot find the patch.
+    In another folder, the command fails with a message that it cannot find the patch.
     """
     here = cwd.resolve()
     text = patch.read_bytes().decode("utf-8", "surrogateescape")
@@ -150,7 +150,7 @@ def _shown(path: Path, start: Path) -> str:
 
 
 def _stated_base(text: str) -> str:
-    """Return the base folder stated in a patch's header, "." by default."""
+    """Return the base folder stated in a patch's header (default: ".")."""
     start = f"# {BASE}: "
     stated = (line.removeprefix(start) for line in text.split("\n") if line.startswith(start))
     return next(stated, ".")

@@ -1,4 +1,4 @@
-"""Locate the files of a patch; refuse files outside the project, to which a header or links may lead."""
+"""Locate the files of a patch; refuse files outside the project, to which a header or symbolic links may lead."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.patching.reading import Patch
 def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     """Return the project's folder and the patched files in order, with links resolved.
 
-    The project is `directory`, else the git repository around `.tarl`, else the folder that contains `.tarl`.
-    Raise RepairError if the files do not exist, RefusedError if one lies outside the project.
+    The project is `directory`, or else the git repository around `.tarl`, or else the folder that contains `.tarl`.
+    Raise RepairError if a file does not exist, and RefusedError if one lies outside the project.
     """
     try:
         return _located(patch, directory)
@@ -55,7 +55,7 @@ def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
 
 
 def _project(folder: Path) -> Path:
-    """Return the top of the git repository around a folder, else the folder."""
+    """Return the top of the git repository around a folder, or else the folder itself."""
     return next((each for each in (folder, *folder.parents) if (each / ".git").exists()), folder)
 
 

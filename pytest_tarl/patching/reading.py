@@ -1,4 +1,4 @@
-"""Read patches from files: the facts of the header and the changes of each file."""
+"""Read patches from files: the facts in the header and the changes to each file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HEADER = (  # lines of a file after `diff --git`; git appends a tab to names wi
 
 @dataclass(frozen=True)
 class Patch:
-    """A patch of TARL: `facts` are its header's keys and values, in order."""
+    """A patch of TARL; `facts` are the keys and values of its header, in order."""
 
     path: Path
     title: str
@@ -40,13 +40,13 @@ class Patch:
 
     @property
     def sealed(self) -> bool:
-        """Return whether the patch contains its digest, which `read` has then verified."""
+        """Return whether the patch contains its hash, which `read` has verified."""
         return bool(self.told(SEAL))
 
     @property
     def root(self) -> Path | None:
-        """Return the folder that contains `.tarl`, None if the patch is elsewhere."""
-        home = Path(os.path.normpath(self.path.absolute())).parent  # keep links: `.tarl` may be one
+        """Return the folder that contains `.tarl`, or None if the patch is elsewhere."""
+        home = Path(os.path.normpath(self.path.absolute())).parent  # keep symbolic links: `.tarl` may be one
         inside = (home.name, home.parent.name) == ("patches", ".tarl")
         return home.parent.parent if inside else None
 
@@ -92,7 +92,7 @@ def read(path: Path) -> Patch:
 
 
 def _whole(content: bytes, seals: Sequence[str]) -> bool:
-    """Return whether the digest matches; True for a patch without one."""
+    """Return whether the hash matches; True for a patch without one."""
     if not seals:
         return True
     line = f"# {SEAL}: {seals[0]}\n".encode("utf-8", "surrogateescape")

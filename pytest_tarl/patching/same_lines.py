@@ -1,4 +1,4 @@
-"""Reconcile two changes of the same lines: two added imports, or an insertion that contains the other."""
+"""Reconcile two changes to the same lines: two added imports, or an insertion that contains the other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Imports = dict[
 
 
 def agreed(one: Replacement, other: Replacement) -> Replacement | None:
-    """Return one replacement that has the effect of both, None if they conflict."""
+    """Return one replacement that has the effect of both, or None if they conflict."""
     if one.start != other.start or one.old != other.old:
         return None
     for wide, narrow in ((one, other), (other, one)):
@@ -35,7 +35,7 @@ def _within(narrow: Lines, wide: Lines) -> bool:
 
 
 def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
-    """Return the imports of each text; None if one contains anything else, such as a comment."""
+    """Return the imports of each text, or None if one contains anything else, such as a comment."""
     found = []
     for lines in texts:
         imports: Imports = {}
@@ -58,12 +58,12 @@ def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
 
 
 def _added(before: Imports, after: Imports) -> bool:
-    """Return whether all earlier imports remain."""
+    """Return whether all earlier imports are still there."""
     return all(names.keys() <= after.get(where, {}).keys() for where, names in before.items())
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Return lines with the imports of both texts; names are sorted if both texts sort them."""
+    """Return lines with the imports of both texts; names are sorted if they are sorted in both texts."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

@@ -11,8 +11,10 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expressions import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # maximum lines of a statement that is written twice, under `if` and `else`
-LONGEST_CONDITION = 48  # maximum characters of a condition inside an expression; longer ones get a name
+LONGEST_COPY = 3  # maximum number of lines of a statement that may be written twice, under `if` and `else`
+LONGEST_CONDITION = (
+    48  # maximum number of characters of a condition inside an expression; longer ones are assigned to a name
+)
 _ARITHMETIC = {
     "abs",
     "bool",
@@ -101,7 +103,7 @@ def named(source: Document, statement: ast.stmt, name: str, condition: str) -> E
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Return whether a condition keeps its value from just before a statement until the changes are evaluated."""
+    """Return whether a condition has the same value just before a statement and where its changes are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -147,7 +149,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Return whether a statement runs code that may change the value of a condition; arithmetic cannot."""
+    """Return whether a statement runs code that may change a condition's value; arithmetic cannot."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True

@@ -42,7 +42,7 @@ class Callback:
     annotation: str = ""
 
     def lines(self, instance: str = "") -> list[str]:
-        """Return the lines of the function; a method if `instance` is given."""
+        """Return the lines of the function, which is a method if `instance` is given."""
         unit = self.store.source.unit
         argument = "message" if "message" not in self.names.values() else "received"
         typed = f"{argument}: {self.annotation}" if self.annotation else argument
@@ -76,7 +76,7 @@ def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
 
 
 def _instance_edits(callback: Callback, owner: ast.ClassDef) -> list[Edit]:
-    """Initialise attributes before any code reads them; put the callback after the method that subscribes."""
+    """Initialise attributes before any code reads them, and put the callback after the method that subscribes."""
     source, method = callback.store.source, callback.anchor.source.method(callback.anchor.statement)
     if method is None:
         raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside its methods.")
@@ -116,7 +116,7 @@ def _first_reader(
 def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
     """Put variables and functions before the first definition, or before an earlier statement that needs them.
 
-    If module variables precede that place, the new variables are appended to them.
+    If there are module variables just before that place, the new variables follow them.
     """
     source = callbacks[0].store.source
     start = _before_definitions(source, callbacks)

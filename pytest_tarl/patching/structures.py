@@ -1,4 +1,4 @@
-"""Apply a structural repair's template to an expression: edits for the expression and for its state."""
+"""Apply a structural repair's template to an expression: edit the expression, and add state if the template has any."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Keeper:
     place: int
     indent: str
     behind: str = ""  # text that follows the new lines
-    declare: int | None = None  # offset at which a function declares globals
+    declare: int | None = None  # offset at which a function declares its global variables
     declare_indent: str = ""
 
 
@@ -257,7 +257,7 @@ def _short(statement: ast.stmt, node: ast.expr) -> str:
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return left side, operator and right side of a comparison; the operator is "" unless there are two sides."""
+    """Return left side, operator and right side of a comparison; the operator is "" unless there are two operands."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

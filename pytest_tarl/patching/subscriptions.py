@@ -1,4 +1,4 @@
-"""Subscriptions that a repair adds to a node, so that the guard can read a sensor unknown to the node."""
+"""Subscriptions that a repair adds to a node, so that the guard can read a sensor that the node does not know."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tarl_lint.model import SiteId
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-# Attributes of rclpy.node.Node without a leading underscore; overwriting one would break the node.
+# public attributes of rclpy.node.Node; overwriting one would break the node
 _NODE_ATTRIBUTES = {
     "client", "clients", "context", "default_callback_group", "executor", "guards", "handle", "publishers", "services",
     "subscriptions", "timers", "waitables",
@@ -50,7 +50,7 @@ class Subscriptions:
         self._taken: dict[tuple[str, bool], set[str]] = {}
 
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
-        """Return the expression for a sensor's value at a place. Raise RepairError if no subscription reaches it."""
+        """Return the expression for a sensor's value at a place. Raise RepairError if no subscription provides it."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
         wanted = sensor.path
         if wanted not in subscription.names:
@@ -62,7 +62,7 @@ class Subscriptions:
     def edits(self) -> dict[str, list[Edit]]:
         """Return the edits that add the subscriptions, by path.
 
-        The calls that subscribe come first, because a callback may be added directly after the subscribing method.
+        The calls that subscribe come first, because a callback may be added directly after the method that subscribes.
         """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return a subscription whose values a place can read; add one if necessary. Raise RepairError."""
+        """Return a subscription whose values can be read at a place; add one if necessary. Raise RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -96,7 +96,7 @@ class Subscriptions:
         return self._added[-1]
 
     def _reach(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> tuple[Anchor, Store]:
-        """Return where to subscribe and where to store values so that a place can read them. Raise RepairError."""
+        """Return where to subscribe and where to store values that can be read at a place. Raise RepairError."""
         seen: Anchor | None = None
         for anchor in anchors(self._analysis, site, source.path):
             seen = seen or anchor
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the call that subscribes and its name for the message type; append the needed imports."""
+        """Return the call that subscribes and the name of the message type in it; append the needed imports."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -166,7 +166,7 @@ class Subscriptions:
         return self._taken[key]
 
     def _attributes(self, source: Document) -> set[str]:
-        """Return every attribute that a class may have: those of all analysed classes and of rclpy nodes."""
+        """Return every attribute that a class may have: all attributes of analysed classes and of rclpy nodes."""
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
             with suppress(RepairError):  # a file that cannot be parsed contributes no names
@@ -178,7 +178,7 @@ class Subscriptions:
 
 
 def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
-    """Store values on the instance if subscription and use are in methods of one class, else in the module."""
+    """Store values on the instance if the subscription and the use are in methods of one class, else in the module."""
     there, here = source.method(anchor.statement), source.method(place)
     same = there is not None and here is not None and there[0] is here[0]
     return Store(source, here[0], here[2]) if same and here else Store(source)

@@ -18,12 +18,12 @@ from pytest_tarl.patching.reading import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 RULE = "TARL301"
-ROOT = "%SRCROOT%"  # GitHub resolves it to the top of the repository
+ROOT = "%SRCROOT%"  # GitHub resolves this to the top of the repository
 _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
 
 def sarif(patch: Patch) -> str:
-    """Return SARIF 2.1.0 with one result whose fix is the patch, with the same paths as the patch."""
+    """Return SARIF 2.1.0 with one result, whose fix is the patch; paths are those of the patch."""
     rule = {
         "id": RULE,
         "name": "RepairFound",
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return the evidence, then a `suggestion` block for each change after a line with its file and lines."""
+    """Return the evidence, then for each change a line that locates it and a `suggestion` block."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -64,7 +64,7 @@ def markdown(patch: Patch) -> str:
 
 
 def review(patch: Patch) -> str:
-    """Return a review for GitHub's REST API: a comment with a `suggestion` block for each change."""
+    """Return a review for GitHub's REST API: for each change, a comment with a `suggestion` block."""
     comments = [
         {
             "path": path,
@@ -95,7 +95,7 @@ def _escaped(text: str) -> str:
 
 
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
-    """Yield (path, first line, last line, new text), lines counted from 1; a pure insertion also replaces one line."""
+    """Yield (path, first line, last line, new text), lines counted from 1; a pure insertion also replaces a line."""
     for file in patch.files:
         encoding = _encoding(patch, file)
         around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}
@@ -137,7 +137,7 @@ def _artifact(file: FilePatch) -> dict[str, str]:
 
 
 def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
-    """Return the last change that removes lines: imports and subscriptions, before it, only add lines."""
+    """Return the last change that removes lines; imports and subscriptions come earlier and only add lines."""
     taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
     return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
 
@@ -151,7 +151,7 @@ def _version(patch: Patch) -> str:
 
 
 def _encoding(patch: Patch, file: FilePatch) -> str:
-    """Return the encoding of the file if it is available, else UTF-8."""
+    """Return the encoding of the file, or UTF-8 if the file is not available."""
     path = (patch.root or Path.cwd()) / (patch.base if patch.root else "") / file.name
     try:
         content = path.read_bytes() if path.is_file() else b""

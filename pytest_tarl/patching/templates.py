@@ -43,7 +43,7 @@ LEADING = {
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter to search, with its start value; `stronger` tells whether larger or smaller values change more.
+    """A parameter to search, with its start value; `stronger` says whether larger or smaller values have more effect.
 
     With a `grid`, only multiples of it are tried.
     """
@@ -57,7 +57,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """The replacement of an expression, the lines before it, and the state that these keep between calls."""
+    """The replacement of an expression, the lines before it, and the state that both keep between calls."""
 
     name: str
     summary: str
@@ -142,7 +142,7 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def plainly(text: str, values: Mapping[str, str]) -> str:
-    """Return a sentence with its placeholders replaced; unknown placeholders stay."""
+    """Return a sentence with its placeholders replaced; unknown placeholders are kept."""
     return _PLACEHOLDER.sub(lambda match: values.get(match[1], match[0]), text)
 
 

@@ -1,6 +1,6 @@
 """Before a patch is written, check that the file loses nothing except the lines that the repair changes.
 
-This check does not rely on the positions that the edits use: it parses both texts to concrete syntax trees, which
+This check does not rely on the positions that the edits use: it parses both texts into concrete syntax trees, which
 include comments.
 """
 
@@ -43,7 +43,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
 
 
 def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcst.CSTNode, str]]:
-    """Yield simple statements and comments in the order of the text, each with its code without indentation."""
+    """Yield simple statements and comments in the order of the text, each with its code (unindented)."""
     import libcst as cst
 
     if isinstance(node, cst.Comment):

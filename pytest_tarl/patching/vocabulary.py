@@ -19,7 +19,7 @@ def free(base: str, taken: Set[str]) -> str:
 
 @cache
 def names(source: Document) -> frozenset[str]:
-    """Return every name that a module uses in any scope, plus the builtins."""
+    """Return every name that a module uses in any scope, and the builtins."""
     found = set(dir(builtins))
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Name):
