@@ -1,4 +1,4 @@
-"""Reports of one designated test in one mode, and finished comparisons that are not reported yet."""
+"""Reports on one designated test in one mode, and finished comparisons that are not reported yet."""
 
 from __future__ import annotations
 

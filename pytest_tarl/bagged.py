@@ -19,7 +19,7 @@ from pytest_tarl.seeds import episode_seeds
 
 @dataclass(frozen=True)
 class BaggedMissions:
-    """A rollout that replays bags in place of the test's world; `bags` maps each seed to a bag."""
+    """A rollout that replays bags instead of running the test's world; `bags` maps each seed to a bag."""
 
     rollout: Rollout
     bags: Mapping[int, Path]
@@ -65,7 +65,7 @@ def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options
 
 
 def misfit(bag: Bag, fixture: Fixture) -> str:
-    """Return the reason why a bag cannot be compared, without a full stop; empty if it can be compared."""
+    """Return why a bag cannot be compared, without a full stop; empty if it can be compared."""
     held = {absolute(topic): one for topic, one in bag.channels.items()}
     for sensor in fixture.sensors:
         if sensor.topic is None:

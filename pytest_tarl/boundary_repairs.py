@@ -1,8 +1,8 @@
 """Repair a node for drifts at and beyond the failure boundary of a stress run, and show how far this boundary moved.
 
 A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
-direction of the failure takes values from this point to the end of its range; other directions stay nominal. If no
-repair is accepted there, the search tries a smaller region next to the boundary. An accepted repair is also run on
+direction of the failure takes values from this point to the end of its range, and the other directions stay nominal. If
+no repair is accepted there, the search tries a smaller region next to the boundary. An accepted repair is then run on
 fresh draws from the whole declared space. It is withheld if it loses reward or successes there, or if any boundary
 comes nearer to the nominal point.
 """
@@ -37,14 +37,14 @@ from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
 DIRECTIONS = 2  # maximum number of failures to repair that vary one direction; the nearest are chosen
-COMBINATIONS = 1  # the same for failures that vary several directions at once
-DRAWS = 60  # fresh draws from the whole space
+COMBINATIONS = 1  # maximum number of failures to repair that vary several directions at once
+DRAWS = 60  # number of fresh draws from the whole space
 CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses reward or successes
 
 
 @dataclass(frozen=True)
 class Job:
-    """The stressed test and the inputs of a repair; the rollout of `request` is instrumented."""
+    """The stressed test and the inputs of a repair; the rollout in `request` runs instrumented nodes."""
 
     request: Request
     analysis: Analysis
@@ -58,7 +58,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Placed:
-    """A rollout that runs episodes of a space at the point `place(seed)`, with the files of `overlay` replaced."""
+    """A rollout that runs episodes of a space at the point `place(seed)`, and replaces the files of `overlay`."""
 
     rollout: Rollout
     drift: str
@@ -87,7 +87,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Fixed:
-    """The effect of an accepted repair: changed margins, and outcomes over the space before and after it."""
+    """The effect of an accepted repair: the changed margins, and the outcomes over the space before and after it."""
 
     rows: tuple[Row, ...]
     before: tuple[Outcome, ...]
@@ -96,7 +96,7 @@ class Fixed:
 
     @property
     def loses(self) -> str:
-        """Return the reason to withhold the repair; empty if there is none."""
+        """Return why the repair must be withheld; empty if it need not be."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} moved nearer to the nominal point"
@@ -167,7 +167,7 @@ def _told(
     overlay: Mapping[Path, str],
     attempts: list[Attempt],
 ) -> Told:
-    """Examine an accepted repair. Delete its patch if the repair loses; keep it on Ctrl-C."""
+    """Test an accepted repair over the space. Delete its patch if the repair loses there; keep it on Ctrl-C."""
     patch = job.root / accepted.patch
     attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:
@@ -193,7 +193,7 @@ def _finished(
 
 
 def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, str], str]:
-    """Compare and repair in a region. Return the repair, its changed files, and the reason if none is accepted."""
+    """Compare and repair in a region. Return the repair, its changed files, and a reason if none was accepted."""
     request = job.request
     drift, world = request.drift, region.drift
 
@@ -236,7 +236,7 @@ def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, st
 
 
 def _examined(job: Job, found: Stress, failed: Failure, overlay: Mapping[Path, str]) -> Fixed:
-    """Stress the repaired node along each direction and towards the failure, and on fresh draws from the space."""
+    """Stress the repaired node along each direction, towards the failure, and on fresh draws from the space."""
     request = job.request
     patched = Placed(request.rollout, request.drift, overlay=overlay)
     again = replace(request, rollout=patched, source=None)
@@ -275,7 +275,7 @@ def _moved(row: Row) -> Moved:
 
 
 def _over_space(job: Job, space: Space, rollout: Rollout) -> tuple[Outcome, ...]:
-    """Return the outcomes of DRAWS points of the whole space; every call uses the same points and seeds."""
+    """Return the outcomes at DRAWS points of the whole space; every call uses the same points and seeds."""
     request = job.request
     plans = (
         EpisodePlan(seed, request.drift, point=drawn_point(space, request.drift, seed))

@@ -39,7 +39,7 @@ from pytest_tarl.settling import within
 
 Tables = tuple[
     Floats, Floats
-]  # utilities of one taint list: designed, deployed; each of shape (cells, sites)
+]  # utilities of one taint list in the designed and the deployed world, each of shape (cells, sites)
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,8 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    looks: tuple[tuple[int, float], ...] = ()  # at each look: episodes, uncorrected p-value of the loss
-    decided: bool = False  # whether the verdict is certain at the last look
+    looks: tuple[tuple[int, float], ...] = ()  # for each look: episodes, uncorrected p-value of the loss
+    decided: bool = False  # whether the verdict is final at the last look
 
 
 def run_online(
@@ -67,8 +67,8 @@ def run_online(
 ) -> Online:
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
-    `changeable` holds the ids of the sites with an operand that a repair can change, if known: they rank before other
-    sites. With a `stage`, the comparison ends after that stage, and a later call may continue the comparison.
+    `changeable` holds the IDs of the sites with an operand that a repair can change, if known: these sites rank before
+    all others. With a `stage`, the comparison ends after that stage, and a later call may continue it.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
@@ -128,7 +128,7 @@ def _formulas(designation: Designation, offline: Sample, online: Sample) -> tupl
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Return the tables; each designed value comes from recorded cells that differ only in the sensors `without`."""
+    """Return the tables with unknown designed values filled in from recorded cells that differ only in `without`."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -136,7 +136,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds their seeds."""
+    """Return each range of a drift with the numbers drawn from it, one per episode; `drawn_by` holds the seeds."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -149,7 +149,7 @@ def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int])
 
 @dataclass(frozen=True)
 class _Side:
-    """The source of the deployed episodes: their seeds, the number of interim looks, and notes for the user."""
+    """The source of the deployed episodes: their seeds, the maximum number of looks, and notes for the user."""
 
     rollout: Rollout
     seeds: Sequence[int]
@@ -165,7 +165,7 @@ def _side(
     plan: Plan,
     stage: Stage | None,
 ) -> _Side:
-    """Return the source that the options select: the test's own world, a log, or bags."""
+    """Return the source that the options select: the test's own world, a log or bags."""
     if options.log is not None:
         logged = read_log(options.log, fixture, plan, designation.judge, designation.requirements)
         return _Side(logged, range(logged.count), 1, logged.notes)
@@ -177,7 +177,7 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the recording's learning rule. Raise FixtureError if it is unknown or the options name another one."""
+    """Return the recording's learning rule. Raise FixtureError if it is unknown or not that of the options."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
             f"The recording of {fixture.test} holds a table learned by {fixture.learner!r}, which this version of "
@@ -193,7 +193,7 @@ def _learner(fixture: Fixture, options: Options) -> str:
 
 @dataclass
 class _Watch:
-    """Stopping rule: compare at each planned look, and stop the run once the verdict is certain."""
+    """Stopping rule: compare at each planned look, and stop the run once the verdict is final."""
 
     offline: Sample
     designation: Designation
@@ -222,7 +222,7 @@ class _Watch:
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
-    """Return the current number of every recorded site, by taint list; -1 for a site that no longer exists."""
+    """Return the current number of every recorded site, by taint list; -1 if the site no longer exists."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
 
@@ -236,7 +236,7 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
 
 
 def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[Tables]:
-    """Return the batch solutions of both worlds per taint list, each of shape (cells, sites).
+    """Return the batch solution for each taint list in both worlds, of shape (cells, sites).
 
     Both samples must have the same cells.
     """
@@ -250,7 +250,7 @@ def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -
 def _learned_tables(
     fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
 ) -> list[Tables]:
-    """Return the learned tables of both worlds per taint list, shape (cells, sites), with the rows of `cells`."""
+    """Return the learned tables of each taint list in both worlds, shape (cells, sites), with rows for `cells`."""
     return [
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
         for before, after in zip(fixture.sarsa, learned, strict=True)
@@ -269,7 +269,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Reorder a table, whose rows are the cells `rows`, to the cells `cells`; rows of missing cells are NaN."""
+    """Reorder a table from the row order `rows` to the row order `cells`; rows of missing cells are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
@@ -277,7 +277,7 @@ def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Float
 
 
 def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Return the paper's region: cells where a list's utilities differ by at least half of its largest difference."""
+    """Return the paper's region: cells where a list's utilities differ by at least half of the list's maximum."""
     rows: set[int] = set()
     for before, after in tables:
         rows.update(paper_region(before, after).tolist())
@@ -285,6 +285,6 @@ def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell])
 
 
 def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
-    """Return the rows that Eq. 2 sums over: the region, or the paper's region if the test found none."""
+    """Return the rows that Eq. 2 sums over: those of the region or, if the test found none, of the paper's region."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)

@@ -14,7 +14,7 @@ from pytest_tarl.model import Comparison, Region, Verdict
 
 
 def corrected(comparisons: Sequence[Comparison], alpha: float) -> list[Comparison]:
-    """Return the comparisons of one run; Holm's method corrects their p-values and verdicts."""
+    """Return the comparisons of one run with p-values corrected by Holm's method, and the resulting verdicts."""
     verdicts = drift.corrected([one.verdict for one in comparisons], alpha)
     return [
         _with_verdict(one, verdict, len(comparisons), alpha)
@@ -36,7 +36,7 @@ def _with_verdict(comparison: Comparison, verdict: Verdict, tests: int, alpha: f
 
 
 def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]:
-    """Return a warning if no difference could be significant after correction, however large it is."""
+    """Yield a warning if no difference, however large, could be significant after the correction."""
     offline, online = (len(comparison.totals[world]) for world in ("offline", "online"))
     least = least_p_value(offline, online, permutations_for(alpha, tests))
     if tests * least >= alpha:

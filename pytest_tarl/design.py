@@ -18,10 +18,12 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import slug
 from pytest_tarl.spaces import Fault, Point, Space
 
-AS_WRITTEN = "none"  # the drift name that records the world as its author wrote it
+AS_WRITTEN = "none"  # the drift name that selects the world as its author wrote it
 _HEADER = "header.npy"
-_PREFIX = 10  # bytes of a version 1 .npy file before its header
-_LARGEST = 100_000_000  # maximum bytes of a header; 10,000 statements take 3 MB, so a larger one is damaged
+_PREFIX = 10  # number of bytes before the header of a version 1 .npy file
+_LARGEST = (
+    100_000_000  # maximum number of bytes of a header (10,000 statements take 3 MB); a larger one is damaged
+)
 
 
 def fixture_path(root: Path, test: str) -> Path:
@@ -43,7 +45,7 @@ def adopted(path: Path) -> tuple[str, ...]:
 
 
 def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Drift]) -> tuple[str, ...]:
-    """Return the design's drifts after a recording with the drift `name`; with None, they stay unchanged."""
+    """Return the design's drifts after recording under the drift `name`; unchanged if `name` is None."""
     if name is None:
         return design
     if name == AS_WRITTEN and name not in drifts:
@@ -62,8 +64,8 @@ def value(
     """Return the value of `tarl_drift` in an episode: the design, changed by the scenario; None if both are empty.
 
     The design includes the nominal values of all spaces. If the scenario is a space, its values are those of `point`;
-    without `point`, the seed determines a random point. Raise SettingsError if the design has a drift that the marker
-    no longer declares.
+    without `point`, the seed determines a random point. Raise SettingsError if the design contains a drift that the
+    marker no longer declares.
     """
     gone = next((name for name in design if name not in drifts), None)
     nominal = [one.world(one.nominal) for one in spaces(drifts).values()]
@@ -95,7 +97,7 @@ def faults(
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:
-    """Return the design's drift if the scenario replaces it, else "". Two drifts that are dictionaries are combined."""
+    """Return the design's drift if the scenario replaces it, or "". Two dictionaries are merged, not replaced."""
     if scenario is None or scenario in design:
         return ""
     return next((name for name in design if not _combines(drifts.get(name), drifts[scenario])), "")

@@ -33,19 +33,19 @@ class Designation:
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = None  # record until it is decided at this level whether min_success holds
-    total_range: tuple[float, float] | None = None  # bounds on every episode's total reward
+    confidence: float | None = None  # confidence at which the recording must decide whether min_success holds
+    total_range: tuple[float, float] | None = None  # smallest and largest possible total reward of an episode
     tolerance: float | None = None
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
-        None  # computes the rewards that a log lacks
+        None  # function that computes the rewards that a log lacks
     )
     monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # computes the reward of a mission in a bag; or a class with such a method
+        None  # function that computes the reward of a mission in a bag, or a class with such a method
     )
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict
-    )  # direction of a space → limits of the range, or options, where the guarantee must hold
+    )  # direction of a space → limits of its range, or options, within which the guarantee must hold
     purpose: str = ""  # first paragraph of the test's docstring
 
 

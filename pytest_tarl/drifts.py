@@ -120,7 +120,7 @@ def drift(where: str, name: str, value: Any) -> Drift:
 
 
 def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
-    """Return the value of the scenario `name` in the seed's episode, with a drawn number in place of each range.
+    """Return the value of the scenario `name` in the episode of a seed; each range is replaced by a drawn number.
 
     A space takes the values of `point`, or of a drawn point if it is None.
     """

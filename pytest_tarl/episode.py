@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros import Bus, Ros
     from pytest_tarl.starting import Replacement
 
-LARGEST = 1e100  # largest magnitude of a reward; flow values have the same bound
+LARGEST = 1e100  # maximum magnitude of a reward; flow values have the same limit
 
 
 class Tarl:
@@ -61,14 +61,14 @@ class Tarl:
         self._replay = replay
         self._faults = (
             NO_FAULTS if replay is not None else faults
-        )  # a recorded mission must not get faults on top of its own
+        )  # a recorded mission already contains the faults of its robot
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
         self._streams: dict[str, np.random.Generator] = {}
         self._ros: Ros | None = None
         self._starter = Starter(folder, imports, lambda: self.ros)
-        self._origin = 0  # start of virtual time in ns
+        self._origin = 0  # virtual time at the start of the episode (ns)
         self._requirements = requirements
         self._alone = alone  # True for the single episode of a plain test run
         self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
@@ -103,7 +103,7 @@ class Tarl:
 
     @property
     def bus(self) -> Bus:
-        """Access of the simulated world to topics: `publish` to the nodes, and read the `latest` message of a node."""
+        """The simulated world's access to topics: `publish` to the nodes, and read the `latest` message of a node."""
         return self.ros.bus
 
     @property
@@ -245,7 +245,7 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Report a message that the test passed to the node without using the bus, so that sensors and signals read it.
+        """Report a message that the test passed to the node without the bus, so that sensors and signals can read it.
 
         Raise SettingsError if the topic is not a string.
         """
@@ -297,7 +297,7 @@ class Tarl:
         self._rewards += 1
 
     def at_end(self, call: Callable[[], object]) -> None:
-        """Register a function to call at the end of the episode, even after an error; last registered, first called."""
+        """Register a function to call at the end of the episode, even after an error; the last one is called first."""
         self._open.callback(call)
 
     def conclude(self, ended: BaseException | None) -> None:
@@ -309,7 +309,7 @@ class Tarl:
         self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
-        """Return the trace. With the marker's `reward="robustness"`, the formulas replace its rewards."""
+        """Return the trace; with `reward="robustness"` in the marker, the formulas replace its rewards."""
         rewards = self._formulas.rewards()
         if rewards is None:
             return trace
@@ -322,7 +322,7 @@ class Tarl:
         self._open.close()
 
     def notes(self) -> tuple[str, ...]:
-        """Return notes for the user on a usable episode; they are complete only after `close`."""
+        """Return notes for the user on a usable episode; complete only after `close`."""
         late = self._ros.shutdown_errors if self._ros is not None else ()
         ended = [f"{error} The node was being shut down, so the episode still counts." for error in late]
         missing = [
@@ -361,7 +361,7 @@ class Tarl:
         return None
 
     def _unmet(self) -> SettingsError | None:
-        """Return the error of a declared fault whose topic or node never occurred; None if there is none."""
+        """Return the error of a declared fault whose topic or node did not occur, or None if there is none."""
         if self._ros is None:
             return None
         try:

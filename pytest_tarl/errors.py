@@ -12,7 +12,7 @@ class SettingsError(TarlError):
 
 
 class FixtureError(TarlError):
-    """A recording is missing, damaged, or of another test or format. `what` is the message without its advice."""
+    """A recording is missing, damaged, of another test or of another format. `what` is the message without advice."""
 
     def __init__(self, what: str, advice: str = "") -> None:
         super().__init__(f"{what} {advice}".rstrip())
@@ -56,7 +56,7 @@ class NodeError(TarlError):
 
 
 class StuckNodeError(NodeError):
-    """A node ran without ever waiting. Such an episode takes seconds, so the run stops at the first one."""
+    """A node ran without ever waiting. Since such an episode takes seconds, the run stops at the first one."""
 
 
 class UnsupportedApiError(TarlError):
@@ -84,6 +84,6 @@ class RefusedError(TarlError):
 
 
 def first_line(error: BaseException | None) -> str:
-    """Return the first line of an error's message; the name of its class if the message is empty."""
+    """Return the first line of an error's message, or the name of its class if the message is empty."""
     text = str(error).strip()
     return text.splitlines()[0] if text else type(error).__name__

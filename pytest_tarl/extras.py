@@ -49,7 +49,7 @@ def missing_sobol(what: str) -> str | None:
 
 
 def install_command(extra: str) -> str:
-    """Return the command that installs an extra: from the local source tree if tarl was installed from one."""
+    """Return the command that installs an extra; if tarl was installed from a local source tree, from there."""
     origin = _source_tree()
     if origin is None:
         return f'pip install "tarl[{extra}]"'
@@ -78,7 +78,7 @@ def _sentence(what: str, missing: list[str], extra: str) -> str | None:
 def no_lock(what: str) -> str | None:
     """Return a sentence if Python runs without its global interpreter lock (3.13t, 3.14t), else None.
 
-    Recording needs the lock, since one thread appends events while another removes them.
+    Recording needs the lock, because one thread appends events while another removes them.
     """
     enabled = getattr(sys, "_is_gil_enabled", None)  # exists from Python 3.13 on
     if enabled is None or enabled():

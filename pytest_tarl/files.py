@@ -46,7 +46,7 @@ def check_writable(path: Path) -> None:
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():
         raise OSError(errno.EINVAL, "it is not a regular file", str(path))
-    made = [folder for folder in path.parents if not folder.exists()]  # the innermost first
+    made = [folder for folder in path.parents if not folder.exists()]  # innermost first
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
@@ -66,7 +66,7 @@ def slug(text: str) -> str:
 def read_regular(path: Path) -> bytes:
     """Return the content of a regular file. Raise OSError for anything else, such as a named pipe or a device.
 
-    Reading these could block or never end.
+    Reading anything else could block or never end.
     """
     # without O_NONBLOCK, open() waits for a writer of a pipe; Windows has neither
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

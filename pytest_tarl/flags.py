@@ -10,7 +10,7 @@ PREFIX = "--tarl-"
 
 
 class Flag(NamedTuple):
-    """A command line flag; without a `metavar` it takes no value."""
+    """A command line flag; it takes no value unless it has a `metavar`."""
 
     name: str
     help: str
@@ -165,7 +165,7 @@ FLAGS = (
 
 
 def misspelt(unknown: Iterable[str]) -> str | None:
-    """Return a hint on the first unknown argument that resembles a flag of TARL; None if none does."""
+    """Return a hint on the first unknown argument that resembles a flag of TARL, or None if none does."""
     for word in unknown:
         name = word.partition("=")[0]
         if name.startswith(PREFIX):

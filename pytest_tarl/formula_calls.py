@@ -13,7 +13,7 @@ CALLS = (b".observe(", b".require(")
 
 
 def said(test: str, root: Path) -> Said:
-    """Return the signals and formulas in a test's modules; `test` is a node id. Skip other tests of its file."""
+    """Return the signals and formulas in a test's modules; `test` is a node ID. Skip other tests of the same file."""
     name, *parts = test.partition("[")[0].split("::")
     first = (root / name).resolve()
     try:
@@ -38,7 +38,7 @@ def said(test: str, root: Path) -> Said:
 
 
 def _calls(tree: ast.AST, test: set[str] | None) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the method calls in a tree. If `test` is given, skip tests whose function or class is not named in it."""
+    """Yield the method calls in a tree; given `test`, skip tests whose function or class it does not name."""
     for node in ast.iter_child_nodes(tree):
         named = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)) else ""
         if test is not None and named.lower().startswith("test") and named not in test:

@@ -10,7 +10,7 @@ import zlib
 from typing import BinaryIO
 
 _HEAD = struct.Struct("<II")
-HEAD = _HEAD.size  # bytes before a record's payload
+HEAD = _HEAD.size  # number of bytes before the payload of a record
 unpack_head = _HEAD.unpack_from  # (buffer, offset) → length and checksum of the payload
 
 
@@ -20,7 +20,7 @@ def framed(payload: bytes) -> bytes:
 
 
 def next_payload(file: BinaryIO, largest: int) -> bytes | None:
-    """Read a record and return its payload; None if it is incomplete, damaged or longer than `largest` bytes."""
+    """Read a record and return its payload, or None if it is incomplete, damaged or longer than `largest` bytes."""
     head = file.read(HEAD)
     if len(head) < HEAD:
         return None

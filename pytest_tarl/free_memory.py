@@ -1,4 +1,4 @@
-"""Query the memory that this process may still use; only some systems report it."""
+"""Query how much memory this process may still use; not all systems report it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pathlib import Path
 _MEMINFO = Path("/proc/meminfo")  # Linux
 _OWN_GROUPS = Path("/proc/self/cgroup")
 _GROUPS = Path("/sys/fs/cgroup")
-_FILES = {  # by cgroup version: limit, usage, and the statistic of droppable file cache
+_FILES = {  # for each cgroup version: the limit, the usage, and the statistic of file cache that can be dropped
     1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
     2: ("memory.max", "memory.current", "inactive_file"),
 }
 
 
 def available() -> int | None:
-    """Return the bytes available without swapping; None if the system does not report it.
+    """Return the number of bytes available without swapping, or None if the system does not report it.
 
-    In a container, the result does not exceed the unused part of the container's limit.
+    In a container, this is at most the unused part of the container's limit.
     """
     found = [one for one in (_of_machine(), *_of_groups()) if one is not None]
     return max(0, min(found)) if found else None

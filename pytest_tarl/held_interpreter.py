@@ -1,6 +1,6 @@
 """End the process if a node holds the interpreter lock in a C loop, so that no Python thread can run.
 
-A timer measures the CPU time of the process. Python code re-arms it regularly. If it expires, faulthandler writes the
+A timer measures the CPU time of the process. Python code restarts it regularly. If it expires, faulthandler writes the
 stack of every thread to pytest's original standard error, and SIGVTALRM ends the process.
 """
 
@@ -19,7 +19,7 @@ def prepare() -> None:
     """Duplicate the descriptor of standard error before pytest captures it."""
     global _stderr
     if _stderr is None:
-        with suppress(OSError):  # no standard error, as under pythonw
+        with suppress(OSError):  # there is no standard error, for example under pythonw
             _stderr = os.dup(2)
 
 
@@ -30,7 +30,7 @@ def allow(seconds: float) -> None:
 
 
 def _register() -> bool:
-    """Make the signal dump all stacks and end the process; return False if another handler uses it."""
+    """Make the signal dump all stacks and end the process; return False if the signal has another handler."""
     global _registered
     if SIGNAL is None or signal.getsignal(SIGNAL) != signal.SIG_DFL:
         return False

@@ -1,4 +1,4 @@
-"""Advice for a test module that imports ROS although no ROS is installed."""
+"""Advice for a test module that imports ROS when no ROS is installed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pytest_tarl.ros.standins import STANDINS
 
 
 def package_hint(error: BaseException | None) -> str | None:
-    """Return advice if a test was not collected because its package's `__init__.py` imports ROS; else None."""
+    """Return advice if a test was not collected because its package's `__init__.py` imports ROS, else None."""
     if import_hint(error) is None:
         return None
     return (

@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair", "stress")
-# Options that only some modes use: runs in other modes ignore their ini values
+# options that only some modes use; runs in other modes ignore their ini values
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online", "stress"),
     "resume": ("record", "online", "stress"),

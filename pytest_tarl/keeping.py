@@ -17,7 +17,7 @@ from pytest_tarl.report import json_result
 
 @dataclass(frozen=True)
 class Kept:
-    """The path of the page if it was written, and lines that name missing packages and unwritten files."""
+    """The path of the page if it was written, and lines about missing packages and files that were not written."""
 
     page: Path | None
     missing: tuple[str, ...]
@@ -66,7 +66,7 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
 
 
 def by_hand(repair: Repair | None) -> list[str]:
-    """Return an accepted patch as lines to print if it could not be written to a file; else nothing."""
+    """Return the lines of an accepted patch if it could not be written to a file, to be printed; else nothing."""
     if repair is None or not repair.accepted or repair.patch:
         return []
     told = (

@@ -132,7 +132,7 @@ def trace(
     judge: Judge | None,
     by_formulas: Sequence[float] | None = None,
 ) -> Trace:
-    """Join the chunks of a mission into a trace; leave out events of sites that the node no longer has."""
+    """Join the chunks of a mission into a trace; leave out events of sites that the node no longer contains."""
     here = np.array([number.get(site, -1) for site in mission.sites] or [-1], np.int32)
     cells = tuple(tuple(cell) for cell in mission.chunks[-1]["cells"])
     parts: list[dict[str, Any]] = []

@@ -76,7 +76,7 @@ class Mission:
     node: str = ""  # pytest's node id, with the scenario
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
-        """Run the mode and return its report. A comparison returns Compared instead: call its `told` to report it.
+        """Run the mode and return its report; for a comparison, return a Compared, whose `told` reports it.
 
         Raise TarlError if the test cannot be recorded or compared.
         """
@@ -110,11 +110,11 @@ class Mission:
 
     @property
     def tarl(self) -> Path:
-        """Return the folder that everything is written to."""
+        """Return the folder below which everything is written."""
         return self.root / ".tarl"
 
     def interrupted(self, done: int, total: int, kept: str) -> str:
-        """Return a line on an interrupted run and its recording; `kept` is a sentence on the kept episodes."""
+        """Return a line about an interrupted run and its recording; `kept` is a sentence about the episodes kept."""
         if self.options.mode != "record":
             return f"Interrupted in episode {done + 1} of {total}. {kept}".rstrip()
         path = self.fixture_path
@@ -179,11 +179,11 @@ class Mission:
         return Account((*lines, *(f"  {note}" for note in notes)))
 
     def _test_side(self) -> Digests:
-        """Return the digests of the definitions in the test's modules."""
+        """Return the hashes of the definitions in the test's modules."""
         return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
 
     def _adopted(self, sites: Plan) -> Iterator[str]:
-        """Yield lines that name the new design, and other tests of the node that still have the old design."""
+        """Yield lines that name the new design, and other tests of the node that still use the old design."""
         design = fixtures.load(self.fixture_path).design
         if not design:
             return
@@ -310,7 +310,7 @@ class Mission:
         return found
 
     def _not_run(self, found: Repair | None) -> Iterator[str]:
-        """Yield a note for each recorded test of a repaired file for which this run did not check the repair."""
+        """Yield a note for each recorded test of a repaired file against which this run did not check the repair."""
         if found is None or not found.accepted:
             return
         run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}

@@ -1,4 +1,4 @@
-"""The values passed between the stages of the plugin, as frozen dataclasses. This module imports no pytest or numpy."""
+"""The values passed between the stages of the plugin, as frozen dataclasses; this module needs no pytest or numpy."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class TaintList:
 
     @property
     def name(self) -> str:
-        """Return the displayed name of the list: `/odom → /cmd_vel`."""
+        """Return the displayed name of the list, such as `/odom → /cmd_vel`."""
         return f"{self.source} → {self.sink}"
 
 
@@ -77,7 +77,7 @@ class Conjunct:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """The condition under which a mutation applies: at most two conjuncts joined by `and`; always true if empty."""
+    """The condition under which a mutation applies: at most two conditions joined by `and`; always true if empty."""
 
     conjuncts: tuple[Conjunct, ...] = ()
 
@@ -87,7 +87,7 @@ class Region:
     """Where the worlds differ, as cells that deployed episodes visited; `novel` holds those that the recording lacks.
 
     `left` holds recorded cells that deployed episodes avoid. If all deployed cells are new, the comparison ignores some
-    sensors so that cells match; `without` holds the indices of these sensors.
+    sensors, so that cells match; `without` holds the indices of these sensors.
     """
 
     cells: tuple[Cell, ...] = ()
@@ -98,7 +98,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """A lower and an upper bound, each for itself at the stated confidence; infinite if there are too few episodes.
+    """A lower and an upper bound, each at the stated confidence; infinite if there are too few episodes.
 
     `exact` is true if the bounds have this coverage for every distribution (learning/bounds.py).
     """
@@ -113,11 +113,11 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Guarantee:
-    """Bounds on future episodes of a world, given `passed` successes in `episodes` episodes. Each holds separately.
+    """Bounds for future episodes of a world, given `passed` successes in `episodes` episodes. Each holds on its own.
 
     At least 1 - `share` of the future episodes earn `quantile` or more. `quantile` is None if there are fewer than
     `needed` episodes, or if their number depended on their results; `needed` is 0 in that case. `varied` is false if
-    all episodes are equal, because equal episodes sample only one world.
+    all episodes are equal, because equal episodes show only one of the worlds.
     """
 
     episodes: int
@@ -182,7 +182,7 @@ class OperandEffect:
 
 @dataclass(frozen=True, slots=True)
 class Culprit:
-    """A ranked site. `method` is `slices` if none of its operands was changed in a simulation."""
+    """A ranked site. `method` is `slices` if no simulation changed any of its operands."""
 
     site: SitePlace
     score: float
@@ -192,7 +192,7 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand. Where the guard holds, `value` replaces it, or multiplies it if `factor` is true."""
+    """One repaired operand. Where the guard holds, `value` replaces the operand, or is a factor if `factor` is true."""
 
     path: str
     line: int
@@ -218,9 +218,9 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps but was not accepted. `gain` is the reward per episode that it gains, on fresh seeds.
+    """A change that helps but was not accepted. `gain` is the reward per episode that it gains on fresh seeds.
 
-    `low` and `designed_low` are lower bounds; `patch` is a path below the root.
+    `low` and `designed_low` are lower bounds of the gain in the two worlds; `patch` is a path below the root.
     """
 
     what: str
@@ -236,7 +236,7 @@ class Partial:
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """The result of the search. `guard` is the Python condition of the patch; `diff` is empty if none was accepted.
+    """The result of the search. `guard` is the Python condition in the patch; `diff` is empty if none was accepted.
 
     `mean` is the mean reward of the rejected candidate in `episodes` episodes; `history` lists the attempts in order.
     """
@@ -255,14 +255,14 @@ class Repair:
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """An interval of a drift's range. `part` is the key of the range in a dictionary of drifts, else ""."""
+    """An interval of a drift's range. `part` is the key of the range in a dictionary of drifts, or ""."""
 
     part: str
     low: float
     high: float
 
     def __str__(self) -> str:
-        """Return the displayed text: `mud 0.1 to 0.27`."""
+        """Return the text to display, such as `mud 0.1 to 0.27`."""
         return f"{self.part or 'sizes'} {self.low:.3g} to {self.high:.3g}"
 
 
@@ -286,7 +286,7 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class SearchTrace:
-    """Learning curve of one search: `totals[i]` is the total reward of its i-th episode, `labels[i]` its candidate."""
+    """Learning curve of a search: `totals[i]` is the total reward of its i-th episode, `labels[i]` its candidate."""
 
     method: str
     totals: tuple[float, ...]
@@ -305,7 +305,7 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: its mean and least robustness, and the numbers of episodes that judged and violated it.
+    """A formula in one world: its mean and least robustness, and how many episodes judged and violated it.
 
     `first` is the time of the earliest violation in s, from the start of its episode.
     """
@@ -338,18 +338,18 @@ class Comparison:
     verdict: Verdict
     region: Region
     paper_region: tuple[Cell, ...]
-    totals: Mapping[str, tuple[float, ...]]  # reward per episode: offline, online, repaired, nominal_repaired
+    totals: Mapping[str, tuple[float, ...]]  # rewards by episode: offline, online, repaired, nominal_repaired
     culprits: tuple[Culprit, ...] = ()
     searches: tuple[SearchTrace, ...] = ()
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
-    ranking: str = ""  # sentence on how certain the ranking of the culprits is
+    ranking: str = ""  # sentence about how certain the ranking of the culprits is
     parts: Mapping[str, tuple[float, float]] = field(
         default_factory=dict
-    )  # part of the reward → means: designed, deployed
+    )  # part of the reward → its means in the designed and in the deployed world
     lost: Mapping[str, tuple[Cell, ...]] = field(
         default_factory=dict
-    )  # part of the reward → cells where the deployed world earns less
+    )  # part of the reward → cells where it is lower in the deployed world
     target: str = ""  # the pytest argument that records this test
     node: str = ""  # the pytest argument that compares it, if the test has parameters besides the drift
     flags: tuple[str, ...] = ()  # non-default options of the run
@@ -358,6 +358,6 @@ class Comparison:
     formulas: tuple[FormulaRow, ...] = ()
     sizes: Mapping[str, Sizes] = field(
         default_factory=dict
-    )  # sizes drawn from a drift's ranges, by dictionary key
+    )  # for each key in a dictionary of drifts: the sizes drawn from the range
     purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
     permanent: bool = False  # whether the world has changed for good

@@ -37,28 +37,28 @@ class Options:
     mode: Mode = "plain"
     seed: int = 0
     drift: str | None = None
-    episodes: int | None = None  # default: the marker's when recording, 40 when comparing
+    episodes: int | None = None  # default: that of the marker when recording, 40 when comparing
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
-    localize: str = "repair"  # end of the search: an accepted repair, or a ranking of all sites
+    localize: str = "repair"  # when the search ends: with an accepted repair, or with a ranking of all sites
     budget: int = 300  # limit of a search, in episodes
     seconds: float | None = None  # limit of a search in seconds, instead of episodes
     edit: str = "auto"  # where to write an unconditional repair of a named constant
-    structure: bool = True  # whether to edit other code if changed constants do not suffice
+    structure: bool = True  # whether a search may also change the structure of the code
     strict: bool = False
     utility: str = "batch"
-    workers: int = 1  # parallel episodes; each has its own process if there are several
+    workers: int = 1  # number of parallel episodes; if there are several, each runs in its own process
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
     looks: int | None = None  # maximum number of interim looks at the verdict
     log: Path | None = None  # log of a robot's missions to compare
     holm: bool = False  # whether to correct verdicts over all tests of the run
-    comparisons: int = 1  # number of comparisons to correct for
+    comparisons: int = 1  # number of comparisons for which to correct
     bags: tuple[Path, ...] = ()  # recorded missions to compare
     stress_budget: int = 1000  # limit of a stress run, in episodes
     stress_seconds: float | None = None  # limit of a stress run in seconds, instead of episodes
     stress_repair: bool = False  # whether a stress run repairs at the boundary
-    total: int | None = None  # episodes that all comparisons of the run share
+    total: int | None = None  # number of episodes that all comparisons of the run share
     resume: bool = False  # whether to reuse the finished episodes of an interrupted run
 
     ONLINE_EPISODES = 40
@@ -68,13 +68,13 @@ class Options:
     def most_looks(self) -> int:
         """Return the maximum number of looks at the verdict.
 
-        It is 1 if a repair follows, which needs all episodes to find the region. It is also 1 with --tarl-holm, because
-        the correction needs smaller p-values than those at which a run may stop early.
+        It is 1 if a repair follows, because finding the region needs all episodes. It is also 1 with --tarl-holm,
+        because the correction needs smaller p-values than those at which a run may stop early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     def alone(self, episodes: int) -> Options:
-        """Return the options for a separate run of one comparison, with the number of episodes that it got."""
+        """Return the options for a separate run of one comparison, with the number of episodes that it was given."""
         return replace(self, total=None, looks=None, episodes=episodes)
 
     @property
@@ -108,7 +108,7 @@ def options(given: Mapping[str, Any]) -> Options:
     _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
-        if not re.fullmatch(r"[\w.]+:\w+", name):  # a user's search, imported later
+        if not re.fullmatch(r"[\w.]+:\w+", name):  # a user's own search, which is imported later
             _known("--tarl-search", name, (*SEARCHES, "module:factory"))
     localize = given["localize"] or "repair"
     _known("--tarl-localize", localize, RANKINGS)
@@ -224,7 +224,7 @@ def _check_stress(given: Mapping[str, Any]) -> None:
 
 
 def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int, float | None]:
-    """Parse the limit of a search into (episodes, seconds); texts are `300`, `90s`, `5min`, `1h`."""
+    """Parse the limit of a search, such as `300`, `90s`, `5min` or `1h`, into (episodes, seconds)."""
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
     unit = found[2] if found else None
     if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
@@ -237,7 +237,7 @@ def _budget(text: str, flag: str = "--tarl-budget", least: int = 1) -> tuple[int
 
 
 def _workers(text: str) -> int:
-    """Return the number of parallel episodes; `auto` shares the cores with the workers of pytest-xdist."""
+    """Return the number of parallel episodes; for `auto`, the cores are shared with the workers of pytest-xdist."""
     if text != "auto":
         return int(
             number_within("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024)

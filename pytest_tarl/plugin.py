@@ -73,7 +73,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The drift value of this episode: the scenario's, else that of the design's permanent drift, else None."""
+    """The drift value of this episode: that of the scenario, or else of the design's permanent drift, or else None."""
     _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.repeating import drift_value
 

@@ -9,13 +9,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
 
-INTERVAL = 0.1  # seconds between two updates
-SETTLED = 0.5  # seconds before the rate is stable enough to show
+INTERVAL = 0.1  # time between two updates (s)
+SETTLED = 0.5  # time until the rate is stable enough to be shown (s)
 
 
 @dataclass
 class ProgressLine:
-    """Episodes done and planned in each phase; `write` replaces the previous line."""
+    """The finished and planned episodes of each phase; `write` replaces the previous line."""
 
     name: str
     write: Callable[[str], None]
@@ -23,7 +23,7 @@ class ProgressLine:
     done: int = 0
     total: int = 0
     _phase: str = ""
-    _begun: tuple[float, int] = field(default=(0.0, 0))  # start of the phase, and episodes done at that time
+    _begun: tuple[float, int] = field(default=(0.0, 0))  # start of the phase, and episodes finished by then
     _shown: float = 0.0
 
     def __call__(self, done: int, total: int, phase: str) -> None:
@@ -46,7 +46,7 @@ class ProgressLine:
 
 
 def duration(seconds: float) -> str:
-    """Format a duration in its two largest units: `8 s`, `3 min 20 s`, `2 h 5 min`."""
+    """Format a duration in its two largest units, such as `8 s`, `3 min 20 s` or `2 h 5 min`."""
     whole = max(0, round(seconds))
     if whole < 60:
         return f"{whole} s"

@@ -41,9 +41,9 @@ Progress = Callable[[int, int, str], None]
 Tell = Callable[[str], None]
 Members = Sequence[Sequence[int]]
 
-PILOTS = 20  # episodes for learning bins
+PILOTS = 20  # number of episodes from which bins are learned
 
-FEW = 30  # below this many episodes, a note states the detectable loss
+FEW = 30  # if fewer episodes are recorded, a note states the detectable loss
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or comparisons will report spurious differences."
@@ -52,7 +52,7 @@ NOT_REPRODUCIBLE = (
 
 @dataclass(frozen=True)
 class Recorded:
-    """The episodes of one world: the trace of the first, the statistics of all, and message types by sensor topic.
+    """The episodes of one world: the first one's trace, the statistics of all, and message types by sensor topic.
 
     `sarsa` holds one learner per taint list, updated in the order of the seeds; `learner` names their rule.
     """
@@ -96,8 +96,8 @@ def record(
 ) -> RecordResult:
     """Run the episodes and write the recording. Write nothing if too many episodes fail.
 
-    `world` holds the digests of the test's modules. A `drift`, which must be permanent, becomes part of the design.
-    If the previous recording cannot be read, report this first. Raise FixtureError before any episode if the file
+    `world` holds the hashes of the test's modules. A `drift`, which must be permanent, becomes part of the design. If
+    the previous recording cannot be read, report this first. Raise FixtureError before the first episode if the file
     cannot be written.
     """
     old, broken = _previous(path)
@@ -155,7 +155,7 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
 
 
 def detectable(totals: Floats) -> list[str]:
-    """If there are fewer than FEW episodes, return a note on the loss that a comparison can detect.
+    """Return a note about the loss that a comparison can detect, if there are fewer than FEW episodes.
 
     `totals` holds the reward of each episode, shape (episodes,).
     """
@@ -174,7 +174,7 @@ def detectable(totals: Floats) -> list[str]:
 
 
 def _refused(settling: Settling, recorded: Recorded) -> str:
-    """Return the reason not to write the recording; empty if there is none."""
+    """Return why the recording must not be written; empty if it may be."""
     if settling.failing:
         return _unfinished(settling.failing, recorded.failures)
     unjudged = never_judged(recorded.sample.judgements)
@@ -184,7 +184,7 @@ def _refused(settling: Settling, recorded: Recorded) -> str:
 def read_values(
     rollout: Rollout, seed: int, progress: Progress, drift: str | None = None
 ) -> dict[str, list[float]]:
-    """Run PILOTS separate episodes; return the values of the sensors whose bins must be learned, by sensor name."""
+    """Run PILOTS separate episodes; return the values of the sensors whose bins are to be learned, by sensor name."""
     read: dict[str, list[float]] = {}
     plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
     for done, episode in enumerate(in_order(rollout, plans)):
@@ -242,7 +242,7 @@ def run_episodes(
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
-    """Return the run. Raise RecordingError if its node never waited, or if an error arose outside the mission."""
+    """Return the run. Raise RecordingError if its node never waited, or if an error occurred outside the mission."""
     if run.stuck:
         raise RecordingError(f"Stopped at an episode (seed {run.plan.seed}) that did not end: {run.failure}")
     if run.broken:
@@ -291,7 +291,7 @@ def _unjudged(formula: str, recorded: Sample) -> str:
 
 
 def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
-    """Return a note for every taint list without a reached site."""
+    """Return a note for every taint list of which no site was reached."""
     silent = [
         t.name
         for t, one in zip(plan.lists, recorded.lists, strict=True)
@@ -301,7 +301,7 @@ def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return the previous recording (None without one) and, if it exists but cannot be read, the reason."""
+    """Return the previous recording (or None), and the reason if it exists but cannot be read."""
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:

@@ -99,15 +99,15 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
 def unheard_of(
     offline: Sample, online: Sample, difference: Difference, sensors: Sequence[Sensor]
 ) -> Iterator[str]:
-    """Yield a remark if nearly all deployed situations are new; it says what was compared instead."""
+    """Yield a remark if nearly all deployed situations are new; it says what was compared instead of them."""
     if difference.verdict.result == "no difference" or not apart(offline, online):
         return
     names = [sensors[d].name for d in difference.region.without]
     if names:
         left = " and ".join(names)
         yield (
-            f"no deployed situation occurs in the recording, because of {left}. Statements are compared and ranked "
-            f"in situations defined without {left}."
+            f"no deployed situation occurs in the recording, because of {left}. To compare and rank statements, {left} "
+            f"is left out of the definition of a situation."
         )
     else:
         yield (
@@ -117,7 +117,7 @@ def unheard_of(
 
 
 def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
-    """Return remarks on formulas missing in the recording, and on formulas for which every mission was too short."""
+    """Return remarks on formulas that the recording lacks, and on formulas for which every mission was too short."""
     if online.judgements is None:
         return ()
     recorded = offline.judgements.formulas if offline.judgements is not None else ()

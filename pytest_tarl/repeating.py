@@ -1,7 +1,7 @@
 """Run the body of a test repeatedly; each run is an episode with fresh function-scoped fixtures.
 
-An episode is pytest's own run of an item (setup, call, teardown, each with its report), except that the reports are
-not logged and only function-scoped fixtures are torn down: fixtures of wider scope live until the item is done.
+An episode is pytest's own run of an item (setup, call and teardown, each with its report), except that the reports are
+not logged and only function-scoped fixtures are torn down: fixtures of wider scope live until the item is finished.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """The sites (statements to record) of the nodes: their positions by file, and the numbers of those that publish."""
+    """The sites (statements to record) in the nodes: their positions by file, and the numbers of those that publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()
@@ -72,13 +72,13 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the text before the edit
+    older: tuple[Path, ...] = ()  # files of the overlay for which the episode ran the old text
     simulator: bool = False  # whether an external simulator was the episode's world
 
 
 EPISODE = pytest.StashKey[Episode]()
 LIMIT = pytest.StashKey[Any]()  # pytest-timeout's settings for an item
-SIMULATORS = 3  # runs of an episode whose simulator is lost, including the first
+SIMULATORS = 3  # maximum number of runs of an episode whose simulator is lost
 INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # exceptions that end the whole run
 
 
@@ -257,7 +257,7 @@ class ItemRollout:
         self.item._report_sections.clear()  # else the output of all episodes would accumulate
         _forget_instance(self.item)
         try:
-            # Passing the item's own parent as next item keeps all fixtures of wider scope.
+            # pass the item's own parent as next item: this keeps all fixtures of wider scope
             with _heeding_interrupts(), _limited(self.item):
                 reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
@@ -274,7 +274,7 @@ def _forget_instance(item: pytest.Function) -> None:
 
 @dataclass(frozen=True)
 class BesideRollout(ItemRollout):
-    """Run episodes of another item during an item's run. Fixtures that the items do not share are set up again."""
+    """Run episodes of another item while an item runs. Fixtures that the items do not share are set up again."""
 
     at_work: pytest.Function
 
@@ -315,7 +315,7 @@ def _limited(item: pytest.Function) -> Iterator[None]:
 
 @contextmanager
 def _heeding_interrupts() -> Iterator[None]:
-    """End the run on Ctrl-C even if a node catches KeyboardInterrupt, which many main functions do."""
+    """End the run on Ctrl-C even if a node catches KeyboardInterrupt, as many main functions do."""
     before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
         yield  # SIGINT is ignored, as in a background job: keep that
@@ -338,8 +338,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """After the last episode, tear down the fixtures that the next item does not need."""
-    # Do not call pytest's hooks: the last episode already tore the item down, perhaps in another process, and
-    # plugins expect one teardown per item.
+    # do not call pytest's hooks: the last episode tore the item down, perhaps in another process, and plugins expect
+    # one teardown per item
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
@@ -386,12 +386,12 @@ def _timed_out(error: BaseException | None) -> bool:
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Return whether a mission failed under an xfail mark; such a mission counts as failed."""
+    """Return whether a mission failed that has an xfail mark; such a mission counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 
 def _surprise(report: pytest.TestReport) -> bool:
-    """Return whether a strict xfail mark made a successful mission fail; in this case the test raised no exception."""
+    """Return whether a mission failed only because of a strict xfail mark; the test itself raised no exception."""
     return report.when == "call" and isinstance(report.longrepr, str) and report.longrepr.startswith("[XPASS")
 
 

@@ -11,16 +11,16 @@ from typing import Protocol
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
-AHEAD = 2  # episodes per worker that start before their results are requested
+AHEAD = 2  # number of episodes per worker that are started before their results are requested
 KEPT = 6  # number of started episodes that a worker keeps while other episodes are requested
 
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One planned run of a test. `overlay` maps files to replacement texts; if `record`, nodes are instrumented.
+    """One planned run of a test. `overlay` maps files to replacement texts; with `record`, nodes are instrumented.
 
-    With a `bag`, its recorded mission replaces the test's world. If `drift` is a space, `point` is a point
-    of it; without `point`, the seed determines a random one.
+    With a `bag`, the mission in the bag replaces the test's world. If `drift` is a space, `point` is a point of it;
+    without `point`, the seed determines a random one.
     """
 
     seed: int
@@ -33,13 +33,13 @@ class EpisodePlan:
 
 @dataclass(frozen=True)
 class EpisodeRun:
-    """The result of an episode. `failure` is one line on why the test failed; `topics` maps topics to types.
+    """The result of an episode. `failure` says in one line why the test failed; `topics` maps topics to types.
 
     `crashed` is true if the node ended the episode early, `stuck` if the reason is that it never waited. `notes`
     are for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
 
-    `older` lists files of the overlay for which the text before the edit ran. If there are any, the result is no
-    evidence about the overlay.
+    `older` lists files of the overlay for which the episode ran the old text. If there are any, the result says nothing
+    about the overlay.
 
     `simulator` is true if an external simulator was the world; then the same plan may give another result.
 
@@ -135,8 +135,8 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
 class Ahead:
     """Start the episodes that a search will probably request, so that workers stay busy while it evaluates a result.
 
-    This is a pure prefetch: a requested episode has the same result whether or not it was started early, and an
-    episode that is never requested costs only time. Keys identify episodes.
+    This only prefetches: a requested episode has the same result whether or not it was started early, and an episode
+    that is never requested only costs time. Keys identify episodes.
     """
 
     def __init__(self, rollout: Rollout) -> None:

@@ -16,12 +16,12 @@ from time import monotonic, sleep
 from pytest_tarl.errors import RecordingError
 
 _ATTEMPTS = 3
-_PATIENCE = 60.0  # s of wall time until a master must answer, for a busy machine
+_PATIENCE = 60.0  # maximum wall time until a master answers, on a busy machine (s)
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 class Master:
-    """A process `rosmaster --core` and the environment by which nodes find it. It ends with `close` or this process."""
+    """A process `rosmaster --core`, and the environment in which nodes find it. It ends with `close` or this one."""
 
     def __init__(self) -> None:
         self._open = ExitStack()

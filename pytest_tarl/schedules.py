@@ -13,7 +13,7 @@ Shape = Literal["step", "ramp", "burst"]
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """The course of a drift, which begins at the time `at`, in s. `lasts` is the duration of a ramp or burst, in s."""
+    """The course of a drift that begins at the time `at` (s). `lasts` is the duration of a ramp or burst (s)."""
 
     shape: Shape
     at: float

@@ -20,7 +20,7 @@ def episode_seeds(seed: int, stream: str, count: int) -> tuple[int, ...]:
 
 
 def generator(seed: int, name: str) -> np.random.Generator:
-    """Return the Philox stream keyed by (seed, name): independent of other names and of earlier draws."""
+    """Return the Philox stream with the key (seed, name); it does not depend on other names or earlier draws."""
     import numpy as np
 
     return np.random.Generator(np.random.Philox(key=_hashed(f"{seed}/{name}", 16)))

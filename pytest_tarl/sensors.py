@@ -1,4 +1,4 @@
-"""Sensors: inputs of the node. Their bins form a cell, the index of all learned values."""
+"""Sensors: inputs of the node. The bins of all sensors form a cell, the index of all learned values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
-CALLED = "()"  # suffix of `field` in files, if `field` was a function: its name is stored in its place
+CALLED = "()"  # suffix of `field` in files if `field` is a function, which is stored by name
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class Sensor:
     sensor that has a dotted field, or whose `expr` names a variable of the node with its value, such as `self.heading`.
     Other sensors only serve for diagnosis.
 
-    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at
-    either end for values outside. `edges` gives bins of unequal width. `bins` alone learns the edges from recorded
-    episodes, so that all bins hold about equally many values. An `angle` wraps around; its range is -π to π unless
-    `low` and `high` say otherwise. `categories` lists the values of a text sensor. Without any of these, the values are
-    booleans or small integers, and each has its own bin. `tilings` stores the utility in that many overlapping grids
-    of tiles instead of bins, so that near values share what they learn.
+    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside.
+    `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so that all
+    bins hold about equally many values. An `angle` wraps around; its range is -π to π unless `low` and `high` say
+    otherwise. `categories` lists the values of a text sensor. Without any of these, the values are booleans or small
+    integers, and each has its own bin. `tilings` stores the utility in that many overlapping grids of tiles instead of
+    bins, so that values close to each other share what they learn.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Sensor:
     edges: tuple[float, ...] = ()
     angle: bool = False
     tilings: int = 0
-    learned: int = 0  # number of requested bins if the edges were learned; else 0
+    learned: int = 0  # number of bins requested if the edges were learned; else 0
     expr: str = ""
 
     def __post_init__(self) -> None:
@@ -110,7 +110,7 @@ class Sensor:
             raise SettingsError(
                 f"Sensor {self.name!r} needs low, high and bins together; or bins alone, to learn the edges."
             )
-        least = 0 if len(self.edges) == 1 else 1  # a single edge makes only the two outer bins
+        least = 0 if len(self.edges) == 1 else 1  # a single edge only separates the two outer bins
         whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= least
         low, high = (as_number(end) for end in ends)
         finite = ends == (None, None) or (
@@ -174,12 +174,12 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of the narrowest bin; for a single edge, one unit of its last decimal place."""
+        """Return the width of the narrowest bin; with a single edge, one unit of its last decimal place."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
-        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN.
+        """Return the bin of `value`: 0 to bins-1, or -1 and `bins` outside the range, or None for NaN.
 
         Raise SettingsError for a value that the sensor cannot have.
         """
@@ -282,7 +282,7 @@ def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:
 
 
 def stored(sensor: Sensor) -> Sensor:
-    """Return the sensor in serialisable form: its function, if any, becomes a name that ends with CALLED."""
+    """Return the sensor in serialisable form: a function is replaced by its name, which then ends with CALLED."""
     if not callable(sensor.field):
         return sensor
     return replace(
@@ -291,7 +291,7 @@ def stored(sensor: Sensor) -> Sensor:
 
 
 def binning_digest(sensors: Iterable[Sensor]) -> str:
-    """Return a short digest of the sensors' inputs and bins. Equal digests mean that cells are comparable."""
+    """Return a short hash of the sensors' inputs and bins. If hashes are equal, cells are comparable."""
     text = json.dumps([asdict(stored(sensor)) for sensor in sensors], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 

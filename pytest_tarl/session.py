@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from pytest_tarl.rollout import Rollout
     from pytest_tarl.sharing import SharedEpisodes
 
-PLAIN_WIDTH = 80  # columns without a terminal reporter (`-p no:terminal`)
+PLAIN_WIDTH = 80  # number of columns if there is no terminal reporter (`-p no:terminal`)
 
 UNMARKED = (
     "NOTHING WAS RUN: no collected test has the marker. With TARL's flags, pytest runs only tests with "
@@ -414,7 +414,7 @@ class _Ended:
 
 
 def _of_all_tests(options: Options) -> bool:
-    """Return whether the reports must wait until all tests have run."""
+    """Return whether reports must wait until all tests have run."""
     return options.holm or options.total is not None
 
 
@@ -435,7 +435,7 @@ def _is_space(drift: object) -> bool:
 
 
 def _has_space(item: pytest.Item) -> bool:
-    """Return whether an item's scenario is a space, or its marker declares one but it lacks the fixture."""
+    """Return whether an item's scenario is a space, or its marker declares one and the item lacks the fixture."""
     marker = item.get_closest_marker("tarl")
     drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
     if not isinstance(drifts, Mapping):

@@ -14,13 +14,13 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 from pytest_tarl.report.guarantees import percent
 
-ENOUGH_FAILURES = 5  # fewest failures after which a recording stops early
+ENOUGH_FAILURES = 5  # minimum number of failures for a recording to stop early
 MOST = 20_000  # maximum number of episodes if a confidence is required
 
 
 @dataclass
 class Settling:
-    """Stopping rule, called after every episode. Unless too many episodes fail, at least `asked` episodes run."""
+    """Stopping rule, called after every episode. At least `asked` episodes run, unless too many fail."""
 
     designation: Designation
     asked: int
@@ -45,7 +45,7 @@ class Settling:
 
     @property
     def failing(self) -> str:
-        """Return a sentence with the number of failed episodes if too many failed; else ""."""
+        """Return a sentence with the number of failed episodes if too many failed, or ""."""
         least, failed = self.designation.min_success, self.episodes - self.passed
         if self.designation.confidence is None:
             stopped = (
@@ -101,7 +101,7 @@ def within(sample: Sample, declared: tuple[float, float] | None) -> None:
 
 
 def guarantee(sample: Sample, designation: Designation) -> Guarantee:
-    """Return the bounds on future episodes of the recorded world."""
+    """Return the bounds for future episodes of the recorded world."""
     return stated(
         sample.passed.tolist(),
         sample.total.tolist(),

@@ -1,4 +1,4 @@
-"""`--tarl-total`: all comparisons of a run share its episodes. Undecided comparisons continue with the rest."""
+"""`--tarl-total`: all comparisons of a run share a number of episodes; undecided comparisons get what is left."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.report.shares import Share, sentence
 
 
 def shortage(total: int, comparisons: int) -> str:
-    """Return a sentence if `total` episodes are too few for this number of comparisons; else ""."""
+    """Return a sentence if `total` episodes are too few for this number of comparisons, or ""."""
     if total >= FEWEST * comparisons:
         return ""
     return (
@@ -26,7 +26,7 @@ def shortage(total: int, comparisons: int) -> str:
 class SharedEpisodes:
     """The plan by which the comparisons of a run share its episodes.
 
-    A look is one test of the verdict. A comparison has at most `most_looks`.
+    A look is one test for a verdict. A comparison has at most `most_looks`.
     """
 
     total: int
@@ -44,14 +44,14 @@ class SharedEpisodes:
         return Stage(self.looks, self.looks[0].episodes)
 
     def following(self, outcomes: Sequence[object]) -> tuple[int, Stage] | None:
-        """Return the index of the outcome whose comparison continues, and its next stage; None if none continues."""
+        """Return the index of the outcome whose comparison continues, and its next stage, or None if none continues."""
         standings = [_standing(one) for one in outcomes]
         number = chosen(standings, self.looks, self._left(outcomes))
         look = next_look(standings[number], self.looks) if number is not None else None
         return None if number is None or look is None else (number, Stage(self.looks, look.episodes))
 
     def notes(self, outcomes: Sequence[object]) -> list[str]:
-        """Return a note for each comparison on how many episodes it got and why; "" for other outcomes."""
+        """Return, for each comparison, a note that says how many episodes it got and why; "" for other outcomes."""
         return [
             self._note(one, self._left(outcomes)) if isinstance(one, Compared) else "" for one in outcomes
         ]

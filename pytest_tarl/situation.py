@@ -77,7 +77,7 @@ class Situation:
             self._latch()
 
     def problem(self) -> RecordingError | None:
-        """Return the error of an episode without a usable cell; None if it has one."""
+        """Return the error of an episode without a usable cell, or None if it has one."""
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             return RecordingError(_silence(silent[0]))
@@ -89,10 +89,10 @@ class Situation:
         return None
 
     def _check_unused(self, name: str, known: Sequence[str]) -> None:
-        """Raise SettingsError for a name that seems to be misspelled.
+        """Raise SettingsError for a name that is probably misspelt.
 
-        A test with formulas may observe additional names. A name counts as misspelled if it resembles a declared name
-        and the test never observes that declared name.
+        A test with formulas may observe additional names. A name counts as misspelt if it resembles a declared name
+        that the test never observes.
         """
         said = self._requirements.said
         close = difflib.get_close_matches(name, known, 1)

@@ -25,7 +25,7 @@ DIRECTIONS = "Drift.range(…, nominal=…), Drift.choice(…), or a fault such 
 class Span:
     """A closed range of numbers, from which each episode draws uniformly. In a space, it has a nominal number.
 
-    With a profile, the drawn number is the size of a drift over time.
+    With a profile, the number drawn is the size of a drift over time.
     """
 
     low: float
@@ -141,7 +141,7 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
 
 
 def _equal(option: Any, usual: Any) -> bool:
-    """Return whether two options are equal; False if the comparison fails or gives no truth value, as for arrays."""
+    """Return whether two options are equal; False if comparing them fails or yields no truth value, as for arrays."""
     try:
         return bool(option == usual)
     except (ValueError, TypeError):

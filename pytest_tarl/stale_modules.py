@@ -19,7 +19,7 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
 
 def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
-    """Return the modules in `among` that refer to a module in `gone` or its contents, directly or through others.
+    """Return the modules in `among` that refer to a module in `gone` or to its contents, directly or indirectly.
 
     The result holds only modules that can be imported again: Python source files that are not tests.
     """
@@ -39,7 +39,7 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
 
 
 def outlived(files: Collection[Path]) -> list[Path]:
-    """Return the files with functions that still exist in memory, and hence still run the text before the edit."""
+    """Return the files whose functions still exist in memory and hence still run the text before the edit."""
     wanted = {str(file): file for file in files}
     gc.collect()
     codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
@@ -52,7 +52,7 @@ def of_tests(file: Path) -> bool:
 
 
 class _Imports:
-    """The dotted names imported anywhere in a module, since an imported constant has no reference to its module.
+    """The dotted names that a module imports anywhere, since an imported constant has no reference to its module.
 
     Imports inside functions count, because a function called at module level may return such a constant.
     """
@@ -63,7 +63,7 @@ class _Imports:
     def any_of(self, names: Collection[str]) -> bool:
         """Return whether the module imports one of the names.
 
-        For speed, decode only code that uses a name's last part.
+        For speed, decode only code that uses the last part of a name.
         """
         last = {name.rpartition(".")[2] for name in names}
         return any(
@@ -74,7 +74,7 @@ class _Imports:
 
     @cached_property
     def _importing(self) -> list[CodeType]:
-        """The module's code objects that may contain an import: inline caches in the bytecode can look like one."""
+        """The module's code objects that may contain an import; inline caches in the bytecode can look like one."""
         code = cast(SourceFileLoader, self._spec.loader).get_code(self._spec.name)
         return [one for one in _nested(code) if _IMPORT in one.co_code[::2]] if code is not None else []
 

@@ -1,4 +1,4 @@
-"""Pass the reports of tests to the terminal summary, also from other processes."""
+"""Pass the reports of tests to the terminal summary, including those from other processes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from pytest_tarl.accounts import Account
 
-ACCOUNT = "tarl_account"  # attribute of a report; plain values, which xdist can send
+ACCOUNT = "tarl_account"  # attribute of a report; holds plain values, which xdist can send
 
 
 def attach(report: pytest.TestReport, account: Account) -> None:
@@ -45,7 +45,7 @@ class Summary:
             self.patches += [told["patch"]] if told["patch"] else []
 
     def warning(self) -> str:
-        """Return a warning if tests without a recording were not compared; else empty."""
+        """Return a warning if tests without a recording were not compared, or ""."""
         missing = sum(bool(one["unrecorded"]) for one in self._told)
         if not missing:
             return ""

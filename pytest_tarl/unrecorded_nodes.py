@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def silent_files(files: Sequence[Path], analysis: Analysis, root: Path) -> Iterator[str]:
-    """Yield a sentence for every named file without a site (a recorded statement), with advice."""
+    """Yield a sentence, with advice, for every named file without a site (a recorded statement)."""
     passed = {(root / step.span.path).resolve() for step in analysis.sites}
     for file in files:
         if file.suffix == ".py" and file.resolve() not in passed:
@@ -33,7 +33,7 @@ def _why(file: Path, files: Sequence[Path]) -> str:
 
 
 def _imports(file: Path) -> set[str]:
-    """Return the dotted names that a file imports, and the last two parts of each name."""
+    """Return the dotted names that a file imports, and also the last two parts of each name."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.ImportFrom) and node.module:

@@ -1,4 +1,4 @@
-"""Expressions that read a node's variables: names, attributes, subscripts with a constant."""
+"""Expressions that read a node's variables: names, attributes, and subscripts with a constant."""
 
 from __future__ import annotations
 

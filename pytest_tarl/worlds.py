@@ -12,7 +12,7 @@ from pytest_tarl.extras import install_command
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
 
-LARGEST_SEED = 2**31  # exclusive; environments of every version take such seeds
+LARGEST_SEED = 2**31  # exclusive upper limit of seeds; environments of every version take such seeds
 
 
 class GymnasiumWorld:
@@ -84,7 +84,7 @@ class GymnasiumWorld:
         return self.reward
 
     def _action(self, asked: Any, topic: str) -> Any:
-        """Convert an action to the form of the environment's action space. Raise SettingsError if it does not fit."""
+        """Convert an action to the environment's action space. Raise SettingsError if it does not fit."""
         import numpy as np
 
         space = self._environment.action_space
