@@ -102,6 +102,6 @@ def hover(figures: tuple[Figures, ...]) -> str:
 
 
 def hint(figures: tuple[Figures, ...]) -> str:
-    """Return the inlay hint for a statement, "" if no comparison ranks it."""
+    """Return the inlay hint for a statement, or "" if no comparison ranks it."""
     ranked = [one for one in figures if one.rank is not None]
     return ", ".join(f"#{one.rank} {one.drift} {one.difference:+.3g}" for one in ranked)

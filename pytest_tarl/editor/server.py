@@ -106,13 +106,13 @@ class Server(LanguageServer):
         return found
 
     def path(self, uri: str) -> Path | None:
-        """Return the path of a URI, None if it is not a file below the root."""
+        """Return the path of a URI, or None if it is not a file below the root."""
         place = to_fs_path(uri)
         path = Path(place) if place else None
         return path if path is not None and path.is_relative_to(self.root) else None
 
     def shown_path(self, uri: str) -> str | None:
-        """Return the path of a URI as the linter names it, None if it is not below the root."""
+        """Return the path of a URI as the linter names it, or None if it is not below the root."""
         path = self.path(uri)
         return path.relative_to(self.root).as_posix() if path is not None else None
 

@@ -116,7 +116,7 @@ class PinholeCameraModel:
         return self.K
 
     def distortionCoeffs(self) -> Any:
-        """Return D as a column, None without distortion."""
+        """Return D as a column, or None if there is no distortion."""
         return self.D
 
     def rotationMatrix(self) -> Any:

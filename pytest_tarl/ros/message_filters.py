@@ -93,21 +93,21 @@ class Cache(SimpleFilter):
         return [message for stamp, message in self._kept if low <= stamp <= high]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """Return the oldest message at or after an instant, None if there is none."""
+        """Return the oldest message at or after an instant, or None if there is none."""
         return next((message for time, message in self._kept if time >= _ns(stamp)), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """Return the newest message at or before an instant, None if there is none."""
+        """Return the newest message at or before an instant, or None if there is none."""
         return next((message for time, message in reversed(self._kept) if time <= _ns(stamp)), None)
 
     def getLastestTime(self) -> Any:
-        """Return the newest message's stamp, None if there is none (the name is message_filters')."""
+        """Return the newest message's stamp, or None if there is none (the name is message_filters')."""
         return self._kept[-1][1].header.stamp if self._kept else None
 
     getLatestTime = getLastestTime  # noqa: N815
 
     def getOldestTime(self) -> Any:
-        """Return the oldest message's stamp, None if there is none."""
+        """Return the oldest message's stamp, or None if there is none."""
         return self._kept[0][1].header.stamp if self._kept else None
 
     def getLast(self) -> Any:

@@ -84,7 +84,7 @@ class Definition:
 
 
 def find_message(kind: Kind, package: str, name: str) -> Definition | None:
-    """Return the definition of a message type, None if it is unknown."""
+    """Return the definition of a message type, or None if it is unknown."""
     own = _text(kind, "msg", f"{package}/{name}")
     if own is not None:
         return parse(kind, package, name, own)
@@ -95,7 +95,7 @@ def find_message(kind: Kind, package: str, name: str) -> Definition | None:
 
 
 def find_service(kind: Kind, package: str, name: str) -> tuple[Definition, Definition] | None:
-    """Return request and response of a service type, None if it is unknown."""
+    """Return request and response of a service type, or None if it is unknown."""
     own = _text(kind, "srv", f"{package}/{name}")
     if own is None:
         return None
@@ -107,7 +107,7 @@ def find_service(kind: Kind, package: str, name: str) -> tuple[Definition, Defin
 
 
 def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Definition, Definition] | None:
-    """Return goal, result and feedback of an action type, None if it is unknown."""
+    """Return goal, result and feedback of an action type, or None if it is unknown."""
     own = _text(kind, "action", f"{package}/{name}")
     if own is None:
         return None
