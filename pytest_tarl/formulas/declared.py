@@ -16,20 +16,20 @@ from pytest_tarl.sensors import Sensor
 
 ARGUMENTS = ("requires", "signals", "reward", "robustness_cap", "lasts")
 CAP = 100.0
-LONGEST = 1e9  # upper limit of an episode's length in s
+LONGEST = 1e9  # upper limit of an episode's length (s)
 
 
 @dataclass(frozen=True)
 class Requirements:
     """The formulas of a test.
 
-    `cap` limits the reward if robustness is the reward; otherwise `cap` is None. `lasts` is the longest episode in
-    virtual seconds.
+    `cap` limits robustness if that is the reward; otherwise `cap` is None. `lasts` is the maximum length of an episode
+    in virtual seconds.
     """
 
     signals: tuple[Signal, ...] = ()
     formulas: tuple[Formula, ...] = ()
-    names: tuple[str, ...] = ()  # numeric sensors and signals, which formulas may use
+    names: tuple[str, ...] = ()  # names of the numeric sensors and the signals, which formulas may use
     rewarding: bool = False
     cap: float = CAP
     followed: bool = False  # whether an episode records signals from its beginning

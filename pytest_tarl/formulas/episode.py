@@ -44,7 +44,7 @@ class EpisodeFormulas:
         self._judge.require(formula)
 
     def stepped(self) -> bool:
-        """Close a step; return whether formulas give its reward, which is known only when the episode ends."""
+        """Close a step; return whether formulas give its reward, which is then known only at the end of the episode."""
         if self._judge is None:
             return False
         self._judge.steps.append(self._now())
@@ -74,7 +74,7 @@ class EpisodeFormulas:
             raise RequirementError(violation)
 
     def rewards(self) -> list[float] | None:
-        """Return the reward that formulas give to each step, shape (steps,), or None if the test gives rewards."""
+        """Return the reward that formulas give to each step, shape (steps,), or None if the test sets the rewards."""
         if not self._requirements.rewarding or self._judge is None:
             return None
         return self._judge.rewards(self._now(), self._requirements.cap)

@@ -42,7 +42,7 @@ HINTS = (
     (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
     (r"=[^=]", "two values are compared with =="),
     (r"[&|]", "write and, or"),
-)  # hints by the first token that does not parse
+)  # hints, by the first token that cannot be parsed
 MINUS = "write (0 - gap) for -gap"
 _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, ")
 
@@ -97,7 +97,7 @@ def nodes(node: Any) -> Iterator[Any]:
 
 
 def atoms(node: Any) -> Iterator[Any]:
-    """Yield the atoms of a formula: its comparisons, and any other node that is not a connective."""
+    """Yield the atoms of a formula: its comparisons, and all other nodes that are not connectives."""
     if not isinstance(node, CONNECTIVES):
         yield node
         return
@@ -124,7 +124,7 @@ def _reason(text: str, problem: str) -> str:
 
 
 def _connected(node: AbstractNode) -> Any:
-    """Check a tree, and express iff and xor by other connectives. Raise ReadingError."""
+    """Check a tree, and replace iff and xor by other connectives. Raise ReadingError."""
     if isinstance(node, COUNTING):
         raise ReadingError(
             "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "

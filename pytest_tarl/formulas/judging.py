@@ -14,12 +14,12 @@ from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
 if TYPE_CHECKING:
     from pytest_tarl.formulas.robustness import Course
 
-LARGEST = 1e9  # robustness is clipped to ± this, so that an infinite laser range stays finite
-NEGLIGIBLE = 1e-12  # margins smaller than this are shown as 0
+LARGEST = 1e9  # robustness is clipped to ± this value, so that an infinite laser range stays finite
+NEGLIGIBLE = 1e-12  # smaller margins are shown as 0
 
 
 class Judged(NamedTuple):
-    """The result of one formula in an episode: its robustness, and the time in s from which it could no longer hold.
+    """The result of one formula in an episode: its robustness, and the time (s) from which it could no longer hold.
 
     The robustness is above 0 if the formula holds, and NaN if the episode ended before the formula could be judged.
     `lost` is NaN if the formula was not violated.
@@ -43,7 +43,7 @@ class Judge:
         self.said = said
         self.timeline = Timeline(names)
         self.formulas = list(formulas)
-        self.steps: list[int] = []  # end time of each step, ns since the episode began
+        self.steps: list[int] = []  # end of each step (ns since the episode began)
         self._courses: dict[str, Course] = {}
 
     def give(self, name: str, value: Any, time: int) -> None:
@@ -75,7 +75,7 @@ class Judge:
         return ""
 
     def rewards(self, end: int, cap: float) -> list[float]:
-        """Return the reward of each step, shape (steps,): the change of the smallest robustness so far.
+        """Return the reward of each step, shape (steps,): the change of the lowest robustness so far.
 
         The robustness is clipped to ±cap. The rewards sum to its value at the end of the episode. An episode that ends
         before its signals are known earns -cap in total.

@@ -18,8 +18,8 @@ class Followed:
     """The signals of one mission, collected from its log records; times are in seconds since it began."""
 
     changes: list[tuple[float, str, float]] = field(default_factory=list)  # (time, name, new value)
-    times: list[float] = field(default_factory=list)  # end time of each step
-    lasted: float | None = None  # length of the mission, s; None in a log without signals
+    times: list[float] = field(default_factory=list)  # end of each step
+    lasted: float | None = None  # length of the mission, or None if the log has no signals
 
     def add(self, record: Mapping[str, Any]) -> None:
         """Add the signals that a record holds."""
@@ -55,7 +55,7 @@ def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple
 
 
 def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
-    """Evaluate the formulas of a mission as those of an episode are evaluated."""
+    """Evaluate the formulas of a mission as if it were an episode."""
     if not known or not mission.lasted:
         return LookedBack()
     judge = Judge(requirements.names, known)

@@ -31,7 +31,7 @@ class Formula:
 def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SAID) -> Formula:
     """Parse a formula over the given signals. Raise SettingsError, whose message begins with `where`.
 
-    `said` holds the names that the test's source observes, for suggestions in the message about an unknown name.
+    `said` holds the names that the test's source observes; the message about an unknown name suggests one of them.
     """
     if not isinstance(text, str) or not text.strip():
         raise SettingsError(f"{where}: a formula is a string {EXAMPLE}, got {text!r}.")

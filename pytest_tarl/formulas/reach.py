@@ -14,8 +14,8 @@ Span = tuple[float, float]  # first and last instant in ns, both included
 def unjudged(tree: Any, end: float = math.inf) -> str:
     """Return why a formula can never be judged in an episode that ends at `end` (ns), or an empty text.
 
-    A formula is evaluated at the beginning of the episode, and its operands at the instants that its operators reach
-    from there. The reason has no full stop.
+    A formula is evaluated at the beginning of the episode, and its operands are evaluated at the instants that its
+    operators reach from there. The reason has no full stop.
     """
     if not _temporal(tree):
         return "it is evaluated at the beginning of the episode only: put always or eventually before it"
@@ -34,7 +34,7 @@ def _unjudged(node: Any, span: Span, end: float) -> str:
 
 
 def _spans(node: Any, first: float, last: float) -> list[Span]:
-    """Return the spans of instants at which a node's operands are evaluated; a comparison has no spans."""
+    """Return the spans of instants at which a node's operands are evaluated; none for a comparison."""
     if isinstance(node, FUTURE):
         begin, end = bounds(node) if isinstance(node, TIMED) else (0, math.inf)
         return [(first, last + end), (first + begin, last + end)][-len(operands(node)) :]

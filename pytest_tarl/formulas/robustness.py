@@ -33,7 +33,7 @@ from pytest_tarl.formulas.semantics import (
 from pytest_tarl.formulas.signals import Samples, cut
 
 Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
-FARTHEST = 1e308  # bound on the unknown future value of an atom
+FARTHEST = 1e308  # limit of the unknown future value of an atom
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
 
 
 def robustness(course: Course, end: int) -> float:
-    """Return the robustness of a formula on the course up to an instant; above 0 the formula is satisfied."""
+    """Return a formula's robustness on the course up to an instant; it is positive if the formula is satisfied."""
     samples = Skeleton(course.until(end).values, end).visit(course.formula.tree)
     return float(samples[0][1])
 
@@ -72,10 +72,10 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first instant after which no future can satisfy the formula; None if it can still be satisfied.
+    """Return the first instant after which no future can satisfy the formula, or None if it can still be satisfied.
 
-    The returned instant is never too early. It can be too late if atoms depend on each other, because the future of
-    each atom is bounded separately.
+    The instant is never too early. It can be too late if atoms depend on each other, because the future of each atom is
+    bounded separately.
     """
     low, high = 0, len(instants)
     while low < high:
@@ -120,8 +120,8 @@ def _copied(node: Any) -> Any:
 def _running(course: Course, node: Any, ends: Sequence[int]) -> list[float]:
     """Return the robustness of a node at each instant.
 
-    `always` and `eventually` over operands that do not look ahead are computed incrementally, all other nodes from
-    scratch.
+    `always` and `eventually` are computed incrementally if their operands do not look ahead; all other nodes are
+    computed from scratch.
     """
     if isinstance(node, BOOLEAN):
         parts = [_running(course, child, ends) for child in operands(node)]
@@ -143,7 +143,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return for each instant the largest (or smallest) value so far within a window after the beginning."""
+    """Return, for each instant, the largest (or smallest) value so far in a window that starts at the beginning."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class Said:
     """The literal names in calls of `tarl.observe`, and the literal texts in calls of `tarl.require`.
 
-    `computed` says whether some observed name is computed, `requires` whether the test calls tarl.require.
+    `computed` says whether the test computes some observed name, `requires` whether it calls tarl.require.
     """
 
     observed: tuple[str, ...] = ()

@@ -1,12 +1,12 @@
 """Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
 Time is counted in whole nanoseconds. Signals are constant between their changes, and so is every subformula. If a
-window extends past the known part of an episode, a subformula keeps its last value there. Before the beginning, it has
-its first value. Values are therefore finite wherever signals are.
+window extends past the known part of an episode, a subformula keeps its last value there. Before the episode, it has
+its first value. Robustness is therefore finite whenever the signals are finite.
 
-The corrections of rtamt 0.4 in dense time are the following. As in discrete time, `until` and `since` do not require
-the left side to hold at the instant at which the right side holds. A comparison at equality is slightly positive if it
-holds and slightly negative otherwise (`TRUTH`). An empty window is not infinite. Units of bounds are converted in the
+rtamt 0.4 is corrected in dense time as follows. As in discrete time, `until` and `since` do not require the left side
+to hold at the instant at which the right side holds. A comparison of equal values is slightly positive if it holds and
+slightly negative otherwise (`TRUTH`). An empty window does not give infinity. Units of bounds are converted in the
 right direction.
 """
 
@@ -46,7 +46,7 @@ __all__ = [
     "Eventually", "Implies", "Neg", "Skeleton", "TimedAlways", "TimedEventually", "bounds", "operands",
 ]  # fmt: skip
 
-TRUTH = 1e-300  # |robustness| of a comparison at equality, so that above 0 always means satisfied
+TRUTH = 1e-300  # |robustness| of a comparison of equal values, so that a positive robustness always means satisfied
 UNITS = {"": 10**9, "s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 BOOLEAN = (Neg, Conjunction, Disjunction, Implies)
@@ -54,7 +54,7 @@ FUTURE = (Always, Eventually, Until, TimedAlways, TimedEventually, TimedUntil)
 PAST = (Historically, Once, Since, TimedHistorically, TimedOnce, TimedSince)
 TIMED = (TimedAlways, TimedEventually, TimedUntil, TimedHistorically, TimedOnce, TimedSince)
 CONNECTIVES = BOOLEAN + FUTURE + PAST
-STRICT = ("<", ">", "!=")  # comparisons that do not hold at equality
+STRICT = ("<", ">", "!=")  # comparisons that do not hold for equal values
 
 
 def operands(node: Any) -> tuple[Any, ...]:
@@ -83,7 +83,7 @@ class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return [[0, node.val]]
 
     def visitPredicate(self, node: Any, *args: Any, **kwargs: Any) -> Samples:  # noqa: N802
-        """Return the margin of a comparison, ±TRUTH instead of 0. Raise ArithmeticError for NaN."""
+        """Return the margin of a comparison, with ±TRUTH instead of 0. Raise ArithmeticError for NaN."""
         equal = -TRUTH if str(node.operator) in STRICT else TRUTH
         found: Samples = super().visitPredicate(node, *args, **kwargs)
         if any(math.isnan(value) for _, value in found):
@@ -102,7 +102,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         self._end = end
 
     def visit(self, node: Any, *args: Any, **kwargs: Any) -> Samples:
-        """Return the value of a node over time, cut off at the end."""
+        """Return the value of a node over time, cut off at `end`."""
         known = self._atoms.get(id(node))
         return known if known is not None else self._clipped(super().visit(node, *args, **kwargs))
 
@@ -111,7 +111,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return bounds(node)
 
     def visitUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return the maximum over instants of min(right at the instant, left before it)."""
+        """Return the maximum over all instants t of min(right at t, minimum of left before t)."""
         return _until(*self._both(node))
 
     def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
@@ -186,5 +186,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Use the operand's first value where a window lies wholly before the beginning; rtamt uses infinity there."""
+    """Use the operand's first value in windows that lie wholly before the beginning, where rtamt uses infinity."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

@@ -12,7 +12,7 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.sensors import CALLED, as_number
 
 NANOSECONDS = 1_000_000_000
-Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rtamt takes them; the first is at 0
+Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rtamt expects; the first time is 0
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Signal:
     """A number that formulas can use and that is not the value of a sensor.
 
     If `topic` and `field` are given, the number is read from every message on the topic, including messages that the
-    node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number:
+    node publishes. `field` is a dotted path, or a function of the message. Otherwise the test sets the number by
     `tarl.observe(gap=…)`.
     """
 
@@ -47,7 +47,7 @@ class Signal:
 
 
 def stored_signal(signal: Signal) -> Signal:
-    """Return the signal in a form that can be stored: a function is replaced by its name."""
+    """Return the signal in a form that can be stored, with a function replaced by its name."""
     if not callable(signal.field):
         return signal
     return replace(
@@ -63,7 +63,7 @@ class Timeline:
         self._values: dict[str, list[float]] = {name: [] for name in self._times}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Set a signal from an instant on; the last of several values at one instant counts, and NaN is ignored.
+        """Set a signal from an instant on. If an instant has several values, the last one counts; NaN is ignored.
 
         Raise SettingsError if the value is not a number.
         """
@@ -78,11 +78,11 @@ class Timeline:
             values.append(number)
 
     def missing(self, names: Iterable[str]) -> str | None:
-        """Return the first of the names that never had a value."""
+        """Return the first of the names for which no value was ever set, or None."""
         return next((name for name in names if not self._times[name]), None)
 
     def samples(self, names: Iterable[str]) -> dict[str, Samples]:
-        """Return the signals in rtamt's form; a signal's first value is extended back to the beginning."""
+        """Return the signals as rtamt expects them; a signal's first value also holds before it was set."""
         return {
             name: [[time if i else 0, value] for i, (time, value) in enumerate(self._columns(name))]
             for name in names
