@@ -15,7 +15,7 @@ CONFIDENCE = 0.95  # confidence of the interval around an average
 
 
 def amount(value: float | None) -> str:
-    """Format a reward or utility with about three digits; `n/a` for none."""
+    """Format a reward or utility with about three digits; None gives `n/a`."""
     if value is None or not math.isfinite(value):
         return "n/a"
     if value == 0 or 0.1 <= abs(value) < 1000:
@@ -24,7 +24,7 @@ def amount(value: float | None) -> str:
 
 
 def expected(value: float) -> float:
-    """Remove floating-point noise by rounding: 11.999999999999998 becomes 12.0."""
+    """Remove floating-point noise by rounding, such as 11.999999999999998 to 12.0."""
     return float(f"{value:.10g}")
 
 
@@ -62,6 +62,6 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def deviations(effect: float) -> str:
-    """Format an effect size; beyond 100 standard deviations, `over 100`, since digits are meaningless."""
+    """Format an effect size; above 100 standard deviations, return `over 100`: more digits would be meaningless."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"

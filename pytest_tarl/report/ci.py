@@ -30,7 +30,7 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
 
 
 def annotation(comparison: Comparison, root: Path) -> str:
-    """Return the GitHub workflow command that marks the line of the first culprit; empty if there is no culprit.
+    """Return the GitHub workflow command that marks the line of the first culprit; empty if there is none.
 
     The path in it is relative to the checkout; `root` may be a subfolder of the checkout.
     """

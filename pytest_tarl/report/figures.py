@@ -19,14 +19,14 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # maximum number of rows, one per value of the sensor that splits the figure
-QUIET = 0.25  # the difference scale spans at least this share of the utility range
-DIGITS = 5  # significant digits of numbers on the page
+MOST_ROWS = 6  # maximum number of rows; there is one for each value of the sensor that splits the figure
+QUIET = 0.25  # minimum range of the difference scale, as a share of the utility range
+DIGITS = 5  # number of significant digits of numbers on the page
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The sensors that a figure shows, one along the axis and one as rows. The figure averages over all others."""
+    """The sensors that a figure shows: one along the axis, one as rows. The figure averages over all others."""
 
     position: int
     split: int | None
@@ -37,7 +37,7 @@ class Plane:
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as axis; for the rows, choose the category that best separates the region."""
+    """Choose the first numeric sensor as axis and, for the rows, the category that best separates the region."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -52,7 +52,7 @@ def _covered(comparison: Comparison, dimension: int) -> float:
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return both worlds' utilities and their difference, by site and axis position; None without a visited cell."""
+    """Return both worlds' utilities and their difference, by site and axis position; None if no cell was visited."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
@@ -73,7 +73,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values that get a row; if there are too many, those with the most cells. [None] means a single row."""
+    """Return the values that get a row; if there are too many, those with most cells. [None] means a single row."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}
@@ -110,7 +110,7 @@ def _row(
 
 
 def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
-    """Average over the cells at each position. Return shape (sites, positions), with None where no cell was visited."""
+    """Average over the cells at each position; return shape (sites, positions), with None where no cell was visited."""
     column = np.asarray(places, dtype=np.intp) - bins[0]
     known = ~np.isnan(values)
     total = np.zeros((len(bins), values.shape[1]))
@@ -191,5 +191,5 @@ def _curve(name: str, kind: str, totals: Sequence[float], labels: Sequence[str] 
 
 
 def number(value: float) -> float | None:
-    """Return a number rounded to DIGITS significant digits; null if it is not finite."""
+    """Return a number rounded to DIGITS significant digits, or None if it is not finite."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

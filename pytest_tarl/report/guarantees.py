@@ -1,4 +1,4 @@
-"""Bounds on future episodes, in sentences."""
+"""Bounds for future episodes, in sentences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WORLDS = {"offline": "designed", "repaired": "repaired", "nominal_repaired": "de
 
 
 def sentences(stated: Guarantee) -> Iterator[str]:
-    """Yield one sentence per bound; if all episodes are equal, a single sentence, since they sample only one world."""
+    """Yield one sentence per bound; if all episodes are equal, yield one sentence, since they show only one world."""
     sure = f"with {100 * stated.success.confidence:.5g} % confidence"
     every = "every one" if stated.passed == stated.episodes else f"{stated.passed}"
     if not stated.varied:

@@ -100,7 +100,7 @@ def asset(name: str) -> str:
 
 @lru_cache(maxsize=1)
 def _library() -> str:
-    """Return plotly.js, compressed to about 40 % and base64-encoded; the browser decompresses it."""
+    """Return plotly.js as base64, compressed to about 40 %; the browser decompresses it."""
     script = resources.files("plotly").joinpath("package_data").joinpath("plotly.min.js").read_bytes()
     return base64.b64encode(zlib.compress(script, 9)).decode("ascii")
 
@@ -181,7 +181,7 @@ def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def _share(comparison: Comparison) -> float | None:
-    """Return how much of the lost reward the repair restored, in per cent."""
+    """Return the percentage of the lost reward that the repair restored."""
     worlds = [amounts.atr(comparison, world) for world in ("offline", "online", "repaired")]
     offline, online, repaired = worlds
     if offline is None or online is None or repaired is None or offline <= online:
@@ -231,7 +231,7 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
 
 
 def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
-    """Describe the last value of each curve in the reward figure, as alternative text."""
+    """Describe the last value of each curve in the reward figure (alternative text)."""
     ends = []
     for curve in curves:
         end = typeset(amounts.amount(curve["mean"][-1]))

@@ -34,7 +34,7 @@ WORLDS = ("offline", "online", "repaired", "nominal_repaired")
 
 
 def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
-    """Write the result of a run; `episodes` holds the numbers of episodes: offline, online, search and acceptance.
+    """Write the result of a run; `episodes` holds numbers of episodes by kind: offline, online, search, acceptance.
 
     Raises:
         TarlError: the file cannot be written.
@@ -106,9 +106,8 @@ def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
 def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:
     """Cover cells with rectangles.
 
-    Each maps sensor names to closed intervals in the sensor's units; null is an open end.
-
-    For a sensor with text categories, both ends are the same category.
+    Each rectangle maps sensor names to closed intervals in the sensor's units; null is an open end. For a sensor with
+    text categories, both ends are the same category.
     """
     texts = [d for d, sensor in enumerate(sensors) if sensor.categories]
     return [
@@ -126,7 +125,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Return each site once, in order of first appearance; the slice comes from the list in which it differs most."""
+    """Return each site once, in order of first appearance, with the slice of the list in which it differs most."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)
@@ -242,7 +241,7 @@ def _bound(bound: Bound) -> dict[str, Any]:
 
 
 def finite(value: float | None) -> float | None:
-    """Return a number that JSON can hold: numpy scalars become Python numbers, NaN and infinities become null."""
+    """Return a number that JSON can represent: numpy scalars become Python numbers, NaN and infinities None."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

@@ -47,5 +47,5 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
 
 
 def _happened(comparison: Comparison) -> bool:
-    """Return whether the missions come from a log or bags, so they cannot be repeated."""
+    """Return whether the missions come from a log or bags and can therefore not be repeated."""
     return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})

@@ -1,4 +1,4 @@
-"""Describe sets of cells by boxes (a range of bins per sensor), and in words: `x 4.0-7.0 m, terrain true`."""
+"""Describe sets of cells by boxes (a range of bins per sensor) and in words, such as `x 4.0-7.0 m, terrain true`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-ORDERS = 24  # number of sensor orders to try when merging bins; covers all orders of four sensors
-NAMED = 3  # places named before "and 2 more"
+ORDERS = (
+    24  # number of orders of sensors that are tried when merging bins; all orders if there are four sensors
+)
+NAMED = 3  # maximum number of places named before "and 2 more"
 
 
 def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]:
@@ -31,7 +33,7 @@ def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]
 
 
 def _merged(cover: Sequence[Box], dimension: int) -> list[Box]:
-    """Join boxes that touch along `dimension` and are equal in all others."""
+    """Join boxes that touch along `dimension` and are equal in all other dimensions."""
     by_rest: dict[Box, list[tuple[int, int]]] = defaultdict(list)
     for box in cover:
         by_rest[box[:dimension] + box[dimension + 1 :]].append(box[dimension])
@@ -53,7 +55,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes if only unvisited cells lie between them: their hull must contain no cell of `others`."""
+    """Join boxes with only unvisited cells between them: their hull must not contain a cell of `others`."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -71,7 +73,7 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
     """Join boxes of an angle that touch across the ends of its range.
 
-    The last bin of a joined box exceeds the range.
+    The last bin of such a box exceeds the range.
     """
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
@@ -100,7 +102,7 @@ class Vocabulary:
         self.seen = tuple(sorted(set(bins)) for bins in by_sensor)
 
     def words(self, cells: Iterable[Cell], most: int = NAMED) -> str:
-        """Describe a set of cells by at most `most` boxes; these may include unvisited cells."""
+        """Describe a set of cells by at most `most` boxes, which may include unvisited cells."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
         for dimension, sensor in enumerate(self.sensors):
@@ -116,7 +118,7 @@ class Vocabulary:
         return "; ".join(named[:most]) + more
 
     def bin(self, dimension: int, index: int) -> str:
-        """Name one bin with its sensor: `x 4.2-4.6 m`, `terrain true`."""
+        """Name one bin with its sensor, such as `x 4.2-4.6 m` or `terrain true`."""
         sensor = self.sensors[dimension]
         return f"{sensor.name} {self._range(dimension, index, index)}".rstrip()
 
@@ -129,7 +131,7 @@ class Vocabulary:
         return ", ".join(phrase for phrase in phrases if phrase) or "everywhere"
 
     def _several(self, ranges: Sequence[tuple[int, int]]) -> str:
-        """Describe several ranges of the first sensor and state the unit once: `x 1.0-2.0 or 4.0-7.0 m`."""
+        """Describe several ranges of the first sensor, with the unit once, such as `x 1.0-2.0 or 4.0-7.0 m`."""
         if len(ranges) == 1:
             return self._phrase(0, *ranges[0])
         joined = runs(ranges)

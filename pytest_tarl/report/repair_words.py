@@ -1,4 +1,4 @@
-"""Sentences on repairs: edits, reasons why candidates were rejected, and advice."""
+"""Sentences on repairs: edits, reasons for rejecting candidates, and advice."""
 
 from __future__ import annotations
 
@@ -46,17 +46,17 @@ ENDS: dict[Reason, str] = {
 
 
 def edit_words(edit: Edit) -> str:
-    """Describe an edit: `→` replaces a number, `×` multiplies a named constant."""
+    """Describe an edit; `→` means that a number is replaced, `×` that a named constant is multiplied."""
     return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
 
 
 def operand_words(operand: OperandEffect) -> str:
-    """Describe the best change of an operand: a new value, or a factor if the operand's present value is unknown."""
+    """Describe the best change of an operand: a new value, or a factor if the current value is unknown."""
     return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 
 def repair_words(repair: Repair) -> str:
-    """Describe the repair and its condition: `5 → 12 at traveller.py:30 where terrain`."""
+    """Describe the repair and its condition, such as `5 → 12 at traveller.py:30 where terrain`."""
     edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
     return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
 
@@ -72,7 +72,7 @@ def partial_words(partial: Partial, comparison: Comparison) -> str:
 
 
 def refusal(repair: Repair) -> str:
-    """Return the reason why no repair was accepted."""
+    """Return why no repair was accepted."""
     return REASONS.get(repair.reason, repair.reason)
 
 
@@ -94,7 +94,7 @@ def attempt_words(attempt: Attempt) -> str:
 
 
 def ways_out(comparison: Comparison) -> str:
-    """Return advice if a candidate failed only in the designed world; else empty."""
+    """Return advice if a candidate failed only in the designed world, or ""."""
     repair = comparison.repair
     if repair is None or repair.accepted or comparison.permanent:
         return ""

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Share:
-    """The share of a comparison in `total` episodes, and the reason why it ended.
+    """A comparison's share of `total` episodes, and why it ended.
 
     `looks` holds the number of episodes and the uncorrected p-value of the loss at each look (test of the verdict).
-    `missing` is the number of further episodes that the next look needs, None after the last look. `left` is the number
-    of episodes of the total that were not run.
+    `missing` is the number of further episodes that the next look needs, or None after the last look. `left` is the
+    number of episodes of the total that were not run.
     """
 
     total: int
@@ -24,7 +24,7 @@ class Share:
 
 
 def sentence(share: Share) -> str:
-    """Return the note on a comparison's share."""
+    """Return the note about a comparison's share."""
     got, even = share.looks[-1][0], share.total // share.comparisons
     seen = ", ".join(f"{p_value:.2g} after {episodes}" for episodes, p_value in share.looks)
     among = f"{share.comparisons} comparisons" if share.comparisons > 1 else "1 comparison"

@@ -1,4 +1,4 @@
-"""Reward by the size of a drift that has a range, as text and as a drawing for the page."""
+"""The reward by drift size, for drifts with a range, as text and as a drawing for the page."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pytest_tarl.model import Band, Comparison, Sizes
 from pytest_tarl.report import amounts
 
 WORLDS = ("online", "repaired")  # before and after the repair
-WIDTH, HEIGHT = 640, 240  # pixels of the drawing, without its margins
+WIDTH, HEIGHT = 640, 240  # size of the drawing without its margins (pixels)
 
 
 @dataclass(frozen=True)
 class Row:
-    """The mean reward in an interval of a range, before and after the repair; None if no episode falls into it."""
+    """The mean reward in an interval of a range, before and after the repair; None if the interval has no episode."""
 
     band: Band
     before: float | None
@@ -25,13 +25,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Plot:
-    """The drawing of one range: points in pixels by world, and labelled ticks."""
+    """The drawing of one range: points in pixels for each world, and labelled ticks."""
 
     part: str
     points: Mapping[str, tuple[tuple[float, float], ...]]
     across: tuple[tuple[float, str], ...]
     up: tuple[tuple[float, str], ...]
-    offline: float  # y of the mean reward in the designed world, in pixels
+    offline: float  # y coordinate of the mean reward in the designed world, in pixels
     rows: tuple[Row, ...]
 
 
@@ -45,7 +45,7 @@ def rows(comparison: Comparison) -> Iterator[Row]:
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """Yield the mean reward in each interval of the range, `before → after`."""
+    """Yield the mean reward in each interval of the range, as `before → after`."""
     repaired = bool(comparison.totals.get("repaired"))
     for row in rows(comparison):
         after = f" → {amounts.amount(row.after)} repaired" if repaired else ""

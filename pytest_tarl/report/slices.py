@@ -1,4 +1,4 @@
-"""Lay out slices (the utility of a site) beside code lines, in per cent of the width, so the page needs no script."""
+"""Lay out slices (utilities of sites) beside code lines, in per cent of the width, so that the page needs no script."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pytest_tarl.model import SitePlace, Slice
 
-MARGIN = 0.05  # share of the width left free on either side
+MARGIN = 0.05  # share of the width that is left free at either end
 TICKS = 4  # approximate number of ticks per scale
 
 
@@ -25,7 +25,7 @@ class Scale:
 
     @property
     def ticks(self) -> tuple[float, ...]:
-        """Return round values to label, including zero."""
+        """Return round values, including zero, to label."""
         step = _round_step((self.high - self.low) / TICKS)
         first, last = math.ceil(self.low / step), math.floor(self.high / step)
         return tuple(step * i for i in range(first, last + 1))
@@ -33,7 +33,7 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One site: its slices, and whether its difference is the largest."""
+    """A site: its slices, and whether its difference is the largest."""
 
     site: SitePlace
     offline: float
@@ -49,7 +49,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """The slices of one taint list: both worlds on the scale `values`, their difference on `change`."""
+    """The slices of one taint list: both worlds on the scale `values`, the difference on the scale `change`."""
 
     rows: tuple[Row, ...]
     values: Scale
@@ -80,12 +80,12 @@ def scale(values: Iterable[float]) -> Scale:
 
 
 def _round_step(step: float) -> float:
-    """Return the next larger number of the form 1, 2 or 5 times a power of ten."""
+    """Return the next larger number that is 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:
-    """Return the slice with the largest difference between the worlds; None if no slice differs."""
+    """Return the slice with the largest difference between the worlds, or None if no slice differs."""
     known = [one for one in slices if one.difference and not math.isnan(one.difference)]
     return max(known, key=lambda one: abs(one.difference), default=None)

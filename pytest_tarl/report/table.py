@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pytest_tarl.model import Comparison
 from pytest_tarl.report import amounts, words
 
-Row = tuple[str, ...]  # test, drift, designed reward, deployed reward, loss, verdict, where
+Row = tuple[str, ...]  # test, drift, designed reward, deployed reward, loss, verdict, region
 HEAD = ("", "designed", "deployed", "loss", "verdict", "where")
-NUMBERS = (1, 2, 3)  # right-aligned columns
+NUMBERS = (1, 2, 3)  # indices of right-aligned columns
 
 
 def row(comparison: Comparison) -> Row:
@@ -27,7 +27,7 @@ def row(comparison: Comparison) -> Row:
 
 
 def side_by_side(rows: Sequence[Row], width: int) -> list[str]:
-    """Return one table per test that was compared under several drifts; tables are `width` columns wide."""
+    """Return one table for each test that was compared under several drifts; tables are `width` columns wide."""
     told: list[str] = []
     for test in dict.fromkeys(one[0] for one in rows):
         lines = [one[1:] for one in rows if one[0] == test]

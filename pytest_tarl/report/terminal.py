@@ -18,14 +18,16 @@ from pytest_tarl.report import (
     words,
 )
 
-SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
+SHOWN = 3  # maximum number of culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-LEGIBLE = 24  # fewest columns for code beside its file and line; with fewer, code gets its own line
+LEGIBLE = (
+    24  # minimum number of columns for code beside its file and line; with fewer, code gets a line of its own
+)
 NARROWEST = 40  # minimum width of the report, in columns
 
 
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
-    """Return the report of one comparison, `width` columns wide; `page` is the report page's path, if written.
+    """Return the report of one comparison, `width` columns wide; `page` is the path of the report page, if written.
 
     Paths and commands are not wrapped, so that they can be copied; they may be wider.
     """

@@ -11,9 +11,9 @@ from pytest_tarl.report.amounts import amount, deviations, p_value
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.regions import Vocabulary
 
-SIGNIFICANT = 0.05  # losses with a larger p-value are not reported
-NEGLIGIBLE = 0.01  # parts of the reward with a smaller share of the total loss are not reported
-SHORTEST = 16  # minimum number of characters shown of a code line
+SIGNIFICANT = 0.05  # maximum p-value of a loss that is reported
+NEGLIGIBLE = 0.01  # minimum share of the total loss for a part of the reward to be reported
+SHORTEST = 16  # minimum number of characters of a code line that are shown
 
 
 def world_name(comparison: Comparison) -> str:
@@ -63,7 +63,7 @@ def _sure(interval: LossInterval) -> str:
 
 
 def loss_interval(comparison: Comparison) -> str:
-    """Format the confidence interval of the loss, `15.1 to 18.3`; empty if it is unbounded."""
+    """Format the confidence interval of the loss, such as `15.1 to 18.3`; empty if it is unbounded."""
     interval = comparison.verdict.interval
     low, high = (interval.low, interval.high) if interval else (-math.inf, math.inf)
     if math.isinf(low) or math.isinf(high):
@@ -82,7 +82,7 @@ def _capital(text: str) -> str:
 
 
 def region_words(comparison: Comparison) -> str:
-    """Describe the region where the deployed world differs; list new situations separately. Empty without a region."""
+    """Describe the region where the deployed world differs, with new situations listed separately; empty if none."""
     vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
     novel = set(region.novel)
     known = [cell for cell in region.cells if cell not in novel]
@@ -109,13 +109,13 @@ def _words_without(comparison: Comparison) -> str:
 
 
 def lost_words(comparison: Comparison, part: str) -> str:
-    """Describe where a part of the reward is lost; empty if it is not lost, or if no situation stands out."""
+    """Describe where a part of the reward is lost; empty if it is not lost or if no situation stands out."""
     cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
     return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
 
 
 def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
-    """Return the parts of the reward that decreased, with the difference per episode; the largest loss comes first."""
+    """Return the parts of the reward that decreased, and by how much per episode; the largest loss comes first."""
     changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
     least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
     return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])
@@ -129,7 +129,7 @@ def paper_region_words(comparison: Comparison) -> str:
 
 
 def place(path: str, line: int, root: Path) -> str:
-    """Return `path:line`; a path below `root` is relative to it."""
+    """Return `path:line`, with the path relative to `root` if it is below it."""
     inside = Path(path)
     if inside.is_absolute() and inside.is_relative_to(root):
         inside = inside.relative_to(root)
