@@ -15,7 +15,7 @@ def first_evaluated_in(body: list[ast.stmt]) -> ast.expr | ast.stmt:
 
 
 def entry_of(node: Function) -> Where:
-    """Return the first node that runs in a function's body; the function itself if nothing runs in it."""
+    """Return the first node that runs in a function's body, or the function itself if nothing in it runs."""
     at = _entry(node)
     return start_of(_first_part(node.body[at]) if at < len(node.body) else node)
 
@@ -55,6 +55,6 @@ def _first_part(node: ast.stmt) -> ast.expr | ast.stmt:
 
 
 def _is_declaration(node: ast.stmt) -> bool:
-    """Return whether a statement runs no code: global, nonlocal, bare annotation."""
+    """Return whether a statement runs no code: global, nonlocal or a bare annotation."""
     bare = isinstance(node, ast.AnnAssign) and node.value is None
     return bare or isinstance(node, (ast.Global, ast.Nonlocal))

@@ -18,8 +18,8 @@ from pathlib import Path
 from types import CodeType
 
 FORMAT = b"tarl-code-1\n"
-KEPT = 8  # entries per source file; each choice of sites needs one
-REMEMBERED = 256  # entries in memory, since a repair tries many edited texts
+KEPT = 8  # maximum number of entries per source file; each choice of sites needs one
+REMEMBERED = 256  # maximum number of entries in memory; a repair tries many edited texts
 _HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
 
 
@@ -31,7 +31,7 @@ class CodeCache:
         self._codes: dict[str, CodeType] = {}
 
     def load(self, name: str) -> CodeType | None:
-        """Return the code stored under this name; None if there is no valid entry."""
+        """Return the code stored under this name, or None if there is no valid entry."""
         code = self._codes.get(name)
         if code is None and self._directory is not None:
             code = _read(self._directory / name)
@@ -53,7 +53,7 @@ class CodeCache:
 
 
 def entry_name(path: Path, depends_on: Iterable[object]) -> str:
-    """Return the entry name of a file's code: a digest of `parts`, each of which needs an unambiguous `repr`."""
+    """Return the entry name of a file's code: a digest of `depends_on`, whose items need an unambiguous `repr`."""
     digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
     return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
 

@@ -20,13 +20,13 @@ def _mark(name: str) -> Mark:
 
 HOOK = _mark("hook")  # hook(number, value) returns value
 BUFFER = _mark("buffer")  # the list of events
-TYPE = _mark("type")  # the builtin, since the program may shadow its name
+TYPE = _mark("type")  # the builtin `type`, since the program may shadow its name
 FLOAT = _mark("float")
 _BUILTINS: Mapping[Mark, Any] = {TYPE: type, FLOAT: float}
 
 
 def bound(code: CodeType, hook: Callable[[int, Any], Any], buffer: list[Any] | None = None) -> CodeType:
-    """Return code that records by calling `hook`. Code instrumented with `inline` also appends to `buffer`.
+    """Return code that calls `hook` to record. Code instrumented with `inline` also appends to `buffer`.
 
     Both must be hashable, since code objects are used as keys.
     """

@@ -23,7 +23,7 @@ def is_data(path: Path) -> bool:
 
 @contextmanager
 def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
-    """Within the context, reading one of these files returns its replacement text. Files on disk stay unchanged."""
+    """Within the context, reading one of these files returns its replacement text; the files on disk do not change."""
     if not overlay:
         yield
         return

@@ -9,8 +9,8 @@ from typing import Any
 class Entries(list[Any]):
     """Events of a single-threaded program. It inherits the methods of `list`, which CPython calls without a frame.
 
-    Comparing, hashing, printing or pickling a code object includes its constants. Therefore this list is equal only to
-    itself, has a short `repr`, and its unpickled copy in another process records nothing.
+    Code objects are compared, hashed, printed and pickled together with their constants. Therefore this list is equal
+    only to itself, has a short `repr`, and its unpickled copy in another process records nothing.
     """
 
     __slots__ = ("own",)
@@ -38,9 +38,9 @@ class Entries(list[Any]):
 
 
 class SharedEntries(Entries):
-    """Events of a multi-threaded program: appends to the entries of the running thread.
+    """Events of a multi-threaded program: events are appended to the list of the thread that runs.
 
-    Assigning `__class__` converts an `Entries` list to this class, so code that already refers to the list can stay.
+    Assigning `__class__` converts an `Entries` list to this class, so code that refers to the list remains valid.
     """
 
     __slots__ = ()

@@ -38,7 +38,7 @@ def joined(parts: Sequence[Pairs]) -> Pairs:
 
 
 def sizes(flow: Floats) -> Floats:
-    """Return what `magnitude` returns for each float in `flow`; both have shape (events,)."""
+    """Return the flow value (see `magnitude`) of each float in `flow`; both have shape (events,)."""
     flow = np.minimum(np.abs(flow), np.where(np.isinf(flow), np.inf, LIMIT))
     flow[~np.isfinite(flow)] = 0.0
     return flow

@@ -1,7 +1,7 @@
 """Build the ast nodes that record values, and set their source positions.
 
-A new node gets the position of the original code that runs at the same moment. So line events, tracebacks and their
-carets are the same as in the original program.
+A new node gets the position of the original code that runs at the same moment. Line events, tracebacks and their carets
+are therefore the same as in the original program.
 """
 
 from __future__ import annotations
@@ -71,15 +71,15 @@ def collapsed(at: Where) -> Where:
 def end_of(node: ast.expr, then: Where) -> Where:
     """Return a position for new code that runs after an expression and before the code at `then`.
 
-    An expression with branches over several lines has no single last line; in that case, return `then`. (Code without a
-    line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both copies.)
+    An expression whose branches are on several lines has no single last line; in that case, return `then`. (Code
+    without a line number is no alternative, because CPython 3.13.0 copies such blocks and then runs both copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
-    """Return the part of an expression that runs first; a debugger stops there."""
+    """Return the part of an expression that runs first, where a debugger stops."""
     while True:
         if INLINED_COMPREHENSIONS and isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp)):
             node = node.generators[0].iter
@@ -115,7 +115,7 @@ def note(name: str, number: int, at: Where, *, inline: bool) -> ast.stmt:
 
 
 def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list[ast.stmt]:
-    """Build the statements that record a known value: a boolean, or 0."""
+    """Build the statements that record a value known beforehand: a boolean, or 0."""
     constant = ast.Constant(value, **at)
     if inline:
         return _appended(constant, number, at)
@@ -138,7 +138,7 @@ def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
 
 
 def truth(test: ast.expr) -> ast.expr:
-    """Build an expression for the truth value of a condition. It evaluates each operand once, as a jump does."""
+    """Build an expression for the truth value of a condition; as in a jump, each operand is evaluated once."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
     at = where(test)

@@ -1,9 +1,9 @@
 """Record sequences ("runs") of plain arithmetic on local floats with a single call.
 
 If all names that a run reads hold floats when it begins, its statements cannot fail, call no code of the program and
-produce only floats. Then one call at the end of the run can record all its events, with the same result at lower cost.
-The types are known only at run time. Therefore the program contains each run twice: the copy for other types records
-after each statement.
+produce only floats. One call at the end of the run can then record all its events, with the same result at lower cost.
+Types are known only at run time. Therefore the program contains each run twice; the copy for other types records after
+each statement.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pytest_tarl.instrumentation.blocks import Function, parameters
 
 Offset = tuple[int, int]
 
-FEWEST = 3  # with fewer events, the type checks cost more than they save
+FEWEST = 3  # minimum number of events in a run; with fewer, the type checks cost more than they save
 _EXACT = 2**53  # smaller integers convert to float exactly
 _SAFE = (ast.Add, ast.Sub, ast.Mult)
 _DIVIDING = (ast.Div, ast.FloorDiv, ast.Mod)
@@ -27,7 +27,7 @@ _NOTHING: frozenset[str] = frozenset()
 class Run(ast.Interactive):
     """A placeholder for the statements of a run, used while a function is transformed."""
 
-    inputs: tuple[str, ...] = ()  # names that must hold floats
+    inputs: tuple[str, ...] = ()  # names whose values must be floats
 
 
 @dataclass
@@ -52,14 +52,14 @@ def target_of(statement: ast.stmt) -> ast.Name:
 
 
 class _Gathering:
-    """One walk over a function; it tracks which names are certainly bound."""
+    """One pass over a function that tracks which names are certainly bound."""
 
     def __init__(self, function: Function, sites: Collection[Offset]) -> None:
         self._sites = sites
         self._unsure = frozenset(_unsure(function))
 
     def block(self, statements: list[ast.stmt], bound: set[str]) -> None:
-        """Replace the runs in a list of statements and nested ones; add newly bound names to `bound`."""
+        """Replace the runs in a list of statements and in nested lists; add newly bound names to `bound`."""
         result: list[ast.AST] = []
         run = _Open()
         for statement in statements:
@@ -104,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads; None if it could assign another type although they hold floats."""
+    """Return the names that a statement reads, or None if it may assign a non-float even though they hold floats."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -114,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression; None if the result could have another type although they hold floats."""
+    """Return the names in an expression, or None if it may yield a non-float even though they hold floats."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):

@@ -1,6 +1,6 @@
 """Import node files: instrument them, apply candidate repairs, and re-execute them in each episode.
 
-The only file that touches `sys.meta_path`.
+This is the only file that touches `sys.meta_path`.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ class NodeImports:
 
     `plan` holds the sites of each file; `overlay` maps files to replacement texts, in which sites keep their lines
     where possible. As a context manager, it handles imports of those files; on exit, it removes the project modules
-    that a node imported. `bind` (see `Recorder.bind`) gives code its hook and buffer; without it, code only gets
-    `hook`.
+    that a node imported. `bind` (see `Recorder.bind`) gives code its hook and its buffer; without `bind`, code only
+    gets `hook`.
     """
 
     def __init__(
@@ -69,11 +69,11 @@ class NodeImports:
         self._bind = bind or partial(bound, hook=hook)
         self._tails = {_tail(path) for path in self._code.files}
         self._executed: set[Path] = set()
-        self._imported: set[str] = set()  # names of this episode's modules
+        self._imported: set[str] = set()  # names of the modules of this episode
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
-        self._before: set[str] = set()  # names of modules that were imported before the episode
-        self.older: tuple[Path, ...] = ()  # edited files whose old text ran; set on exit
+        self._before: set[str] = set()  # names of the modules that were imported before the episode
+        self.older: tuple[Path, ...] = ()  # edited files of which the old text ran; set on exit
 
     def __enter__(self) -> NodeImports:
         """Start to handle imports."""
@@ -95,7 +95,7 @@ class NodeImports:
 
     @property
     def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
-        """Return the positions of sites at which no statement could be recorded, by file."""
+        """Return, by file, the positions of sites at which no statement could be recorded."""
         return self._code.unrecorded
 
     def separate(self) -> SeparateModules:
@@ -173,7 +173,7 @@ class NodeImports:
         self._namespaces.append(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Find a file of the plan or overlay; for other imports, only remember whether a node requested them."""
+        """Find a file of the plan or the overlay; for other imports, only note whether a node requested them."""
         if fullname.rpartition(".")[2] not in self._tails:
             if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
                 self._imported.add(fullname)
@@ -190,7 +190,7 @@ class NodeImports:
         return spec
 
     def edited(self, path: Path) -> bytes | None:
-        """Return the replacement text of a file; None if it is unchanged."""
+        """Return the replacement text of a file, or None if it is unchanged."""
         return self._code.edited(path.resolve())
 
     def _found_by_others(self, fullname: str, path: Any, target: Any) -> ModuleSpec | None:
@@ -216,7 +216,7 @@ class NodeImports:
         endings = tuple(self._tails)
         names = "\n".join(sys.modules) + "\n"
         if not any(f"{ending}\n" in names for ending in endings):
-            return early  # ten times as fast as the check of every name below
+            return early  # ten times faster than checking every name as below
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
@@ -237,7 +237,7 @@ class NodeImports:
             )
 
     def _look_for_older(self, early: Mapping[Path, str]) -> None:
-        """Collect edited files that were in use but not executed again, so that their old text ran."""
+        """Collect edited files that were in use but were not executed again, so that their old text ran."""
         missed = {path.resolve() for path in self._overlay} - self._executed
         if missed:
             self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))
@@ -247,7 +247,7 @@ class NodeImports:
         own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
         new = sys.modules.keys() - self._before - set(own) if own else set()
         others = holders((sys.modules[name] for name in own), sorted(new))
-        for name in sorted((*own, *others), reverse=True):  # submodules first, then their packages
+        for name in sorted((*own, *others), reverse=True):  # submodules before their packages
             module = sys.modules.pop(name)
             package, _, tail = name.rpartition(".")
             outer = sys.modules.get(package)

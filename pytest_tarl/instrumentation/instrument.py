@@ -30,10 +30,10 @@ from pytest_tarl.instrumentation.forms import (
 from pytest_tarl.instrumentation.fusing import Run, gather, target_of
 from pytest_tarl.instrumentation.magnitude import magnitude
 
-Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
+Offset = tuple[int, int]  # line (from 1) and column in UTF-8 bytes (from 0), as in `ast`
 Scope = Literal["module", "class", "function"]
 
-# These statements only declare names or do nothing, so there is no value to record.
+# these statements only declare names or do nothing, so there is no value to record
 _SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
 Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
 Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
@@ -51,8 +51,8 @@ def instrument(
     """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
 
     Compile the result with `compiled`, and insert a hook and a buffer with `constants.bound`. Sites record the value of
-    their statement. Exceptions are sites in `publishes` and calls of methods named publish (0), conditions (1 or 0),
-    the head of a function (its message parameter) and loops (the target, in each iteration). With `inline`, code
+    their statement, with these exceptions: sites in `publishes` and calls of methods named publish record 0, conditions
+    1 or 0, the head of a function its message parameter, and loops the target in each iteration. With `inline`, code
     appends plain floats to the buffer without a call. This function modifies `tree` and adds recorded positions to
     `placed`.
     """
@@ -114,7 +114,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
-        """Transform a function; a site at one of its parameters is recorded at its entry."""
+        """Transform a function; a site at one of its parameters is recorded at the function's entry."""
         return self._function(node)
 
     def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AsyncFunctionDef:
@@ -133,7 +133,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_Run(self, node: Run) -> ast.If:
-        """Record a run of arithmetic with one call if its inputs are floats; else record each statement."""
+        """Record a run of arithmetic with one call if its inputs are floats, or else each statement separately."""
         begins = start_of(first_evaluated_in(node.body))
         numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
         events = [(name, number) for name, number in numbers if number is not None]
@@ -142,7 +142,7 @@ class _Recording(ast.NodeTransformer):
         return ast.If(all_floats(node.inputs, begins), fused, node.body, **begins)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
-        """Record the body, and the message if the site is the lambda itself."""
+        """Record the body, and also the message if the site is the lambda itself."""
         body, receives = self._number(node.body), self._number(node)
         same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
         publish = self._publishing(node.body, body)
@@ -227,12 +227,12 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # No event if the assertion fails: a changed condition would move the carets in the traceback of its exception.
+        # no event if the assertion fails: a changed condition would move the carets in the exception's traceback
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
-            return [node]  # nothing is evaluated: `while True` has no line events of its own
+            return [node]  # nothing is evaluated, and `while True` has no line events of its own
         true = start_of(first_evaluated_in(node.body))
         false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
         node.body[:0] = self._note_constant(1.0, number, true)

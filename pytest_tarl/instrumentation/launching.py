@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
-_BUILT = ("build", "install", "devel")  # build output beside a workspace's src
+_BUILT = ("build", "install", "devel")  # folders with build output, beside the `src` of a workspace
 _PACKAGE = ("package.xml", "pyproject.toml", "setup.py")
 
 
@@ -26,7 +26,8 @@ def workspace(path: Path) -> Path:
     """Return the root folder of a node's project.
 
     It is the first of these that exists: the git repository; the folder above `src` in a colcon or catkin workspace, or
-    the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder from which it is imported.
+    the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; the folder from which the node is
+    imported.
     """
     file = path.resolve()
     for folder in file.parents:
@@ -58,7 +59,7 @@ def restored_interpreter() -> Iterator[None]:
 
 @contextlib.contextmanager
 def shown(path: Path, text: str) -> Iterator[None]:
-    """Make tracebacks and `inspect` show the text that runs, not the file on disk."""
+    """Make tracebacks and `inspect` show the text that runs, instead of the file on disk."""
     before = linecache.cache.pop(str(path), None)
     linecache.cache[str(path)] = (len(text), None, text.splitlines(keepends=True), str(path))
     try:

@@ -40,7 +40,7 @@ Parts = Callable[[Any], Iterable[Any]]
 
 
 def magnitude(value: object) -> float:
-    """Return the flow value of any object: finite, at least 0. Never raise, never modify `value`."""
+    """Return the flow value of any object: finite and at least 0. Never raise, and never modify `value`."""
     if value is None or value is True or value is False or type(value) is str:
         return 1.0 if value is True else 0.0
     try:
@@ -48,7 +48,7 @@ def magnitude(value: object) -> float:
         if number is not None:
             return _size(number, value)
         return 0.0 if parts is None else _bounded(_norm(value))
-    except Exception:  # an object can raise any exception; it must not reach the program
+    except Exception:  # an object may raise any exception, which must not reach the program
         return 0.0
 
 
@@ -95,7 +95,7 @@ def _size(number: Number, value: object) -> float:
 
 
 def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
-    """Return the norm of a sequence of finite plain numbers; None if it holds anything else."""
+    """Return the norm of a sequence of finite plain numbers, or None if it holds anything else."""
     length = sequence.__len__()  # the program may have replaced `len`
     step = length // SAMPLE or 1
     sample = sequence[::step] if step > 1 else sequence
@@ -109,7 +109,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
 
 
 def _kind(kind: type) -> tuple[Number | None, Parts | None]:
-    """Return (function that reads a number, function that lists parts) for a class; None for what does not apply."""
+    """Return (function that reads a number, function that lists parts) for a class; None where neither applies."""
     known = _KINDS.get(id(kind))
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
@@ -120,7 +120,7 @@ def _kind(kind: type) -> tuple[Number | None, Parts | None]:
     return known[1], known[2]
 
 
-# Keyed by id, since hashing a class can run code of the program. A weak reference removes the entry with its class.
+# keyed by id, since hashing a class can run code of the program; a weak reference removes the entry with its class
 _KINDS: dict[int, tuple[ref[type], Number | None, Parts | None]] = {}
 _KINDS_KEPT = 1024
 
@@ -172,10 +172,10 @@ def _numpy(value: Any) -> float:
 
 
 def _parts(kind: type) -> Parts | None:
-    """Return a function that lists the contents of a container or message; None for other objects."""
+    """Return a function that lists the contents of a container or message, or None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # the builtin method: that of a subclass can run any code
+            return container.__iter__  # the builtin method, because the method of a subclass can run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
@@ -204,7 +204,7 @@ def _fields(kind: type) -> tuple[str, ...]:
 
 
 def _slot(kind: type, name: str) -> MemberDescriptorType | None:
-    """Return the descriptor that stores a field; `_name` if a property checks assignments."""
+    """Return the descriptor that stores a field; it is `_name` if a property checks assignments."""
     found = (_attribute(kind, stored) for stored in (name, f"_{name}"))
     return next((slot for slot in found if isinstance(slot, MemberDescriptorType)), None)
 
@@ -212,7 +212,7 @@ def _slot(kind: type, name: str) -> MemberDescriptorType | None:
 def _stored(message: object, name: str) -> object:
     """Read a field without running a property."""
     kind = type(message)
-    slot = _slot(kind, name)  # looked up each time, since a stored slot would keep the class alive
+    slot = _slot(kind, name)  # looked up each time, since storing the slot would keep the class alive
     if slot is not None:
         return slot.__get__(message, kind)
     state = _attribute(kind, "__dict__")
@@ -220,7 +220,7 @@ def _stored(message: object, name: str) -> object:
     return stored.get(name, stored.get(f"_{name}"))
 
 
-# Read class attributes without the metaclass, which can run code of the program even for these.
+# reads class attributes without the metaclass, which can run code of the program even for these
 _bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
 _attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
 

@@ -39,7 +39,7 @@ class NodeCode:
         self.files = frozenset({*self._plan, *self._overlay})
 
     def edited(self, file: Path) -> bytes | None:
-        """Return the replacement text of a file (a resolved path); None if it is unchanged."""
+        """Return the replacement text of a file (a resolved path), or None if it is unchanged."""
         text = self._overlay.get(file)
         return None if text is None else text.encode()
 
@@ -61,7 +61,7 @@ class NodeCode:
         return code
 
     def _text(self, file: Path) -> tuple[bytes, str | None, Positions]:
-        """Return the bytes to compile, the replacement text (None without one), and the sites."""
+        """Return the bytes to compile, the replacement text (or None), and the sites."""
         positions = self._plan.get(file, {})
         text = self._overlay.get(file)
         if text is None:
@@ -73,7 +73,7 @@ class NodeCode:
     def _compiled(self, path: Path, source: bytes | str, positions: Positions) -> CodeType:
         placed: set[Offset] = set()
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # developers see the warnings when they run the node
+            warnings.simplefilter("ignore")  # developers see these warnings when they run the node themselves
             tree = ast.parse(source, str(path))
             offsets = _offsets(source if isinstance(source, str) else decode_source(source), positions)
             tree = instrument(

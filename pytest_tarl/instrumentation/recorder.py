@@ -1,8 +1,8 @@
-"""Record the events of one episode. Most of the work is done at the end, so that the node is slowed down little.
+"""Record the events of one episode. Most of the work is done at the end, to slow the node down as little as possible.
 
-A buffer is one flat list per thread, `[site, value, site, value, …]`. Each event of the simulation (a new current
-cell, the reward of a step) is a mark in a separate list, with the length of every buffer at that moment. So only one
-thread writes to a buffer. Greenlets of one thread share its buffer.
+A buffer is one flat list per thread, `[site, value, site, value, …]`. Each event of the simulation (a new current cell,
+the reward of a step) is a mark in a separate list, with the length of every buffer at that moment. Marks are kept apart
+so that each buffer has a single writer. Greenlets of one thread share its buffer.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
-EXACT = 2**53  # smaller integers convert to float exactly, as the fast path needs
-MANY = 200_000  # entries; a longer buffer is packed to columns after a step
+EXACT = 2**53  # integers below this convert to float exactly; the fast path relies on it
+MANY = 200_000  # number of entries; a longer buffer is packed into columns after a step
 _TOOLS = frozenset(
     {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
 )
@@ -55,8 +55,8 @@ class Recorder:
 
     `hook` can be called from any thread. `bind` gives instrumented code a faster hook and the buffer of the thread that
     created the recorder. That buffer assumes a single thread until a second thread starts; from then on, each thread
-    has its own entries. Threads are separate from the start with `threads=True`, which real ROS needs, or if another
-    thread already exists that may run the program.
+    has its own entries. Each thread has its own entries from the start if `threads` is true (needed for real ROS), or
+    if another thread that may run the program already exists.
     """
 
     _packing = True  # whether `reward` may pack the buffer of the thread that created the recorder
@@ -66,7 +66,7 @@ class Recorder:
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[int] = []  # the cell that is current from each mark to the next one
+        self._latched: list[int] = []  # the current cell after each mark
         self._rewards: list[int] = []  # indices of the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []
@@ -81,7 +81,7 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
-        """Pickle as `_Elsewhere`: functions of the program may hold a recorder, but other processes record nothing."""
+        """Pickle as `_Elsewhere`: functions of the program may refer to a recorder, but other processes record nothing."""
         return _Elsewhere, ()
 
     def bind(self, code: CodeType) -> CodeType:
@@ -92,7 +92,7 @@ class Recorder:
         return bound(code, self._bound_hook, self._own.entries)
 
     def latch(self, cell: Cell | None) -> None:
-        """Set the current cell; None if it is unknown again."""
+        """Set the current cell, or None when it becomes unknown."""
         with self._lock:
             self._mark(-1 if cell is None else self._cells.setdefault(cell, len(self._cells)))
 
@@ -145,7 +145,7 @@ class Recorder:
         return entries
 
     def _share(self) -> None:
-        """Make the buffer distinguish threads from now on."""
+        """Make the buffer keep threads apart from now on."""
         self._single = False
         self._own.entries.__class__ = SharedEntries
 
@@ -169,7 +169,7 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Return whether all other threads belong to test tools and thus never run code of the program."""
+    """Return whether all other threads belong to test tools and therefore never run code of the program."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )

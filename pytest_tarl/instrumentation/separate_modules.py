@@ -1,7 +1,7 @@
 """Give each program its own copies of the project's modules, as if it were a separate process.
 
-Otherwise, two nodes in one interpreter would share one module `utils`, that of the node that started first. Two nodes
-of one program would share the globals of its modules.
+Otherwise, two nodes in one interpreter would share a module such as `utils`, namely that of the node that started
+first, and two nodes of the same program would share the globals of its modules.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from types import ModuleType
 
 
 class SeparateModules:
-    """Replace the modules in `sys.modules` and the search path whenever another program runs.
+    """Switch the modules in `sys.modules` and the search path whenever another program runs.
 
-    `own` returns the names of loaded modules that belong to a program.
+    `own` returns the names of the loaded modules that belong to programs.
     """
 
     def __init__(self, own: Callable[[], Iterable[str]]) -> None:
@@ -25,7 +25,7 @@ class SeparateModules:
         self._path = list(sys.path)
 
     def enter(self, program: object) -> None:
-        """Install the modules and search path of a program, and remove those of the program that ran before."""
+        """Install the modules and search path of a program, and put away those of the program that ran before."""
         if program is self._running:
             return
         self._modules[self._running] = {name: sys.modules.pop(name) for name in tuple(self._own())}

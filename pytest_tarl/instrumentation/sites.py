@@ -33,7 +33,7 @@ class Plan:
     """The sites to record.
 
     A global site number is an index into `places`; `members[i]` holds the numbers of the sites in `lists[i]`.
-    `positions` holds the sites by path, as the analysis names it; columns count characters.
+    `positions` holds the sites of each path, named as in the analysis; columns count characters.
     """
 
     lists: tuple[TaintList, ...]
@@ -43,7 +43,7 @@ class Plan:
 
     @property
     def publishes(self) -> frozenset[int]:
-        """Return the sites without a value. For these, only the fact that they are reached is recorded."""
+        """Return the sites without a value, for which only the fact that they are reached is recorded."""
         return frozenset(number for number, place in enumerate(self.places) if place.role == "publish")
 
 
@@ -68,7 +68,7 @@ def plan(analysis: HasFlows) -> Plan:
 def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:
     """Find the positions of the sites of `before` in an edited text.
 
-    A block of changed lines keeps its sites if it still has as many lines. Sites on removed lines are dropped.
+    A block of changed lines keeps its sites if its number of lines is unchanged. Sites on removed lines are dropped.
     """
     lines: dict[int, int] = {}
     matcher = difflib.SequenceMatcher(None, before.split("\n"), after.split("\n"), autojunk=False)
@@ -91,7 +91,7 @@ def _scored(flow: Flow) -> list[Step]:
 
 
 def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
-    """Merge taint lists. Keep the order of each list as far as the lists agree; break ties by position."""
+    """Merge taint lists. Keep the order of each list as far as lists agree; break ties by position."""
     best: dict[SiteId, Step] = {}
     followers: dict[SiteId, set[SiteId]] = defaultdict(set)
     waiting: dict[SiteId, int] = defaultdict(int)

@@ -18,10 +18,10 @@ Floats = NDArray[np.float64]
 class Trace:
     """Events and simulation steps of one episode.
 
-    `cells` holds the distinct cells in order of first use. `event_cell` and `step_cell` are indices into it, -1
+    `cells` holds the distinct cells in order of first use. `event_cell` and `step_cell` are indices into it, or -1
     before the first message. Event columns have shape (events,), step columns (steps,). Events are sorted by step and
-    then by thread, so the order of events of different threads is lost. Events after the last reward belong to the
-    last step. `thread` is None if one thread recorded everything.
+    then by thread, so the order of events in different threads is lost. Events after the last reward belong to the last
+    step. `thread` is None if one thread recorded everything.
     """
 
     cells: tuple[Cell, ...]
@@ -29,7 +29,7 @@ class Trace:
     flow: Floats  # finite, at least 0
     event_cell: Ints
     event_step: Ints
-    step_cell: Ints  # the cell when the step was rewarded
+    step_cell: Ints  # the cell at the time when the step was rewarded
     reward: Floats
     parts: Mapping[str, Floats]
     thread: Ints | None = None
