@@ -1,4 +1,4 @@
-"""The conditions of a run: kept episodes are used again only if all conditions are unchanged."""
+"""The conditions of a run: kept episodes are reused only if all conditions are unchanged."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.modules_of_tests import modules
 from pytest_tarl.options import Options
 from pytest_tarl.sensors import declared
 
-NAMED = 3  # maximum number of changes named in a message
+NAMED = 3  # maximum number of changes that a message names
 FOLDERS = (".venv", "__pycache__", ".git", ".tarl")
 
 
@@ -26,7 +26,7 @@ def conditions(
 ) -> dict[str, Any]:
     """Return the conditions of a run by name, as JSON: digests of files, and values of settings.
 
-    `files` are the files of the recorded statements. Settings that only select or judge episodes are omitted: the
+    `files` are the files of the recorded statements. Settings that only select or judge episodes are left out: the
     number of episodes, the level of significance, the search.
     """
     nodes = [(folder / node).resolve() for node in designation.nodes]

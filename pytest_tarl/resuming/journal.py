@@ -23,9 +23,9 @@ except ImportError:  # pragma: no cover - Windows: two runs of one test at a tim
     fcntl = None  # type: ignore[assignment]
 
 MAGIC = b"tarl episodes 1\n"
-KEY = 32  # length in bytes of an episode's key
-LARGEST = 1 << 30  # maximum size in bytes of a record
-SYNC = 1.0  # seconds between two syncs; a power cut loses at most the episodes that ended in this time
+KEY = 32  # length of an episode's key (bytes)
+LARGEST = 1 << 30  # maximum size of a record (bytes)
+SYNC = 1.0  # time between two syncs (s); a power cut loses at most the episodes that ended within this time
 
 
 class TakenError(OSError):
@@ -132,7 +132,7 @@ class Journal:
 
 
 def conditions_of(path: Path) -> tuple[dict[str, Any], int] | None:
-    """Return the conditions of a file's episodes and the number of episodes; None if it has no episode."""
+    """Return the conditions of a file's episodes, and the number of episodes; None if it has no episode."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC or (first := next_payload(file, LARGEST)) is None:

@@ -1,4 +1,4 @@
-"""A rollout that keeps the episodes it has run, and reuses those that an interrupted run has kept.
+"""A rollout that keeps the episodes it has run, and reuses those that an interrupted run kept.
 
 An episode is a function of its plan, so a kept episode can replace a run of the plan. Equal plans are numbered, because
 a recording runs its first episode twice.
@@ -23,7 +23,7 @@ from pytest_tarl.workers import protocol
 
 
 class KeptRollout:
-    """Run the episodes of another rollout that are not in the journal; `shown` is the journal's path for messages."""
+    """Run those episodes of another rollout that are not in the journal; `shown` is the journal's path for messages."""
 
     def __init__(
         self, rollout: Rollout, journal: Journal, scope: bytes, shown: str, *, checked: bool = False
@@ -33,7 +33,7 @@ class KeptRollout:
         self._scope = scope
         self._shown = shown
         self._begun: Counter[bytes] = Counter()
-        self._checked = checked  # whether a repetition of a kept episode already had the same result
+        self._checked = checked  # whether an episode was repeated and the result was the same as the kept one
 
     @property
     def workers(self) -> int:

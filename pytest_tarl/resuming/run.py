@@ -48,7 +48,7 @@ class ResumableTest:
         return KeptRollout(rollout, self.journal, scope, self._shown, checked=checked)
 
     def interrupted(self) -> str:
-        """Return a sentence about the episodes that an interrupted run has kept, or an empty text."""
+        """Return a sentence about the episodes that an interrupted run kept, or an empty text."""
         if self.journal is None:
             return ""
         if self.journal.problem is not None:
@@ -124,7 +124,7 @@ class ResumableRun:
         options: Options,
         tell: Callable[[str], None],
     ) -> ResumableTest:
-        """Return a new test, or the known one if a total number of episodes is shared among all calls for it."""
+        """Return a new test, or the existing one if all calls for it share a total number of episodes."""
         known = next((one for one in self.tests if one.item is item), None)
         if known is not None and options.total is not None:
             return known

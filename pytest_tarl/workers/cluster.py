@@ -10,8 +10,8 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
-REACHED = 10  # s to wait for a connection to the scheduler
-RETRIES = 2  # retries on another machine after an episode's machine is lost
+REACHED = 10  # maximum time to wait for a connection to the scheduler (s)
+RETRIES = 2  # maximum number of retries on another machine if an episode's machine is lost
 
 _pools: list[Pool] = []  # at most one pool per worker process of the cluster
 

@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# Plugins that a worker must not load: reports, result caches, debuggers, nested workers.
+# plugins that a worker must not load: reports, result caches, debuggers, nested workers
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -139,7 +139,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Describe the job of a worker, with everything that it needs to prepare the item."""
+    """Describe a worker's job, with everything that the worker needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}

@@ -18,11 +18,9 @@ from pytest_tarl.held_interpreter import SIGNAL
 from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.workers import protocol
 
-TRIES = 3  # runs of an episode whose worker dies, including the first run
-PATIENCE = 5.0  # seconds to tear down fixtures before a worker is killed
-SILENCE = (
-    180  # checks without a heartbeat, one per second; a count, so that suspending the machine adds nothing
-)
+TRIES = 3  # maximum number of runs of an episode whose worker dies
+PATIENCE = 5.0  # time to tear down fixtures before a worker is killed (s)
+SILENCE = 180  # number of checks without a heartbeat, one per second; a count, so that suspending the machine adds none
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 
@@ -32,7 +30,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held a worker's interpreter lock, so the worker was ended. A retry of the episode would hang again."""
+    """A node held a worker's interpreter lock, so the worker was ended. A retry would hang again."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,7 @@ class Worker:
     """One process that runs episodes of one test."""
 
     def __init__(self, post: Post) -> None:
-        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process
+        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process runs
         self._process = subprocess.Popen(
             [sys.executable, str(WORKER_MAIN), post.start],
             cwd=post.folder,
@@ -149,7 +147,7 @@ class Worker:
 
 
 def place_held(log: str) -> str:
-    """Return the place of the innermost user code in faulthandler's output; empty if there is none."""
+    """Return the place of the innermost user code in faulthandler's output, or ""."""
     ours = str(WORKER_MAIN.parent.parent)
     frames = [
         (file, int(line), function)
@@ -214,7 +212,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Mark a worker as not busy. With a post (a job), make it available for that job."""
+        """Mark a worker as idle; given a post (a job), make it available for that job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

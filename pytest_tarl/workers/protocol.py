@@ -20,7 +20,7 @@ COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values", "simulator")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
-ALIVE = b""  # heartbeat: Python threads of the worker can run
+ALIVE = b""  # heartbeat: shows that the worker's Python threads can run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:
@@ -31,7 +31,7 @@ def write(pipe: BinaryIO, message: bytes) -> None:
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message; None if the pipe is closed, even in the middle of a message."""
+    """Receive one message, or None if the pipe is closed, even in the middle of a message."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None

@@ -36,14 +36,14 @@ class Replays:
     """The worker that replays bags; the first bag starts it."""
 
     fixture: Fixture
-    root: Path  # of the project; the recording's test id is relative to it
+    root: Path  # folder of the project; the recording's test ID is relative to it
     _pool: Pool = field(default_factory=Pool)
     _post: Post | None = None
 
     def __call__(self, bag: Path, seed: int) -> EpisodeRun:
         """Return the mission of a bag.
 
-        Raise LogError if this bag cannot be replayed, another TarlError if no bag can be replayed.
+        Raise LogError if this bag cannot be replayed, and another TarlError if no bag can be replayed.
         """
         plan = EpisodePlan(seed, record=True, bag=bag.resolve())
         self._post = self._post or self._posted(bag)
@@ -61,7 +61,7 @@ class Replays:
         self._pool.close()
 
     def _posted(self, bag: Path) -> Post:
-        """Describe the job of the worker. One bag in its arguments suffices for pytest to collect the test for bags."""
+        """Describe the worker's job. A single bag in its arguments suffices for pytest to collect the test for bags."""
         test = self.fixture.test.partition("[")[0]
         if not (self.root / test.partition("::")[0]).is_file():
             raise SettingsError(

@@ -25,7 +25,7 @@ from pytest_tarl.workers import protocol
 from pytest_tarl.workers.replaying import replaying
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
-BEAT = 1.0  # s between two heartbeats
+BEAT = 1.0  # time between two heartbeats (s)
 ENDED = 70  # exit status if the parent run has ended
 
 
@@ -71,7 +71,7 @@ class Server:
         self.problems.append(str(excrepr))
 
     def pytest_sessionstart(self, session: pytest.Session) -> None:
-        """Disable the cache of failed tests: only the parent run writes it."""
+        """Disable the cache of failed tests, which only the parent run writes."""
         for name in MEMORIES:
             session.config.pluginmanager.unregister(name=name)
 
@@ -134,7 +134,7 @@ def _nodeid(item: pytest.Item) -> str:
 
 
 def answer(rollout: Rollout, request: bytes) -> bytes:
-    """Run the requested episode; return an error as an answer."""
+    """Run the requested episode; if it fails, return the error as an answer."""
     try:
         return protocol.run_message(rollout(protocol.planned(request)))
     except TarlError as problem:
@@ -161,7 +161,7 @@ def instruments(given: dict[str, Any]) -> Instruments:
 def _forwarded(requests: int, told: int) -> None:
     """Forward requests. If the parent run has ended, end this process immediately, even while a node runs.
 
-    It runs in a thread that `threading` does not list, because the recorder takes all listed threads for nodes.
+    This runs in a thread that `threading` does not list, because the recorder takes all listed threads for nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:

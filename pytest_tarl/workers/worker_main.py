@@ -1,4 +1,4 @@
-"""Entry script of a worker process; it imports pytest before any of our modules."""
+"""Entry script of a worker process; it imports pytest before any module of TARL."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def main() -> None:
 
 
 def _pipes() -> tuple[int, int]:
-    """Move stdin and stdout to new descriptors for messages, so that no node can read or write them."""
+    """Move stdin and stdout to new descriptors for messages, where no node can read or write them."""
     requests, answers = os.dup(0), os.dup(1)
     nowhere = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nowhere, 0)
