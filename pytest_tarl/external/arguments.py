@@ -15,7 +15,7 @@ from pytest_tarl.errors import SettingsError
 
 @dataclass(frozen=True)
 class Call:
-    """A service of the simulator and the fields of its request. The simulator determines the type."""
+    """A service of the simulator and the fields of its request; the simulator determines the type."""
 
     service: str
     request: Mapping[str, Any] = field(default_factory=dict)

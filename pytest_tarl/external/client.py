@@ -14,8 +14,8 @@ from tempfile import TemporaryFile
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
-PATIENCE = 30.0  # s until the guardian must have ended; longer than the guardian's own limits
-TAIL = 3  # number of output lines of the simulator in a message
+PATIENCE = 30.0  # maximum time until the guardian has ended (s); longer than the guardian's own limits
+TAIL = 3  # maximum number of lines of the simulator's output in a message
 
 Event = dict[str, Any]
 
@@ -24,7 +24,7 @@ class Client:
     """One guardian process, which serves one simulator after another."""
 
     def __init__(self) -> None:
-        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process
+        self._log = TemporaryFile()  # noqa: SIM115 - open as long as the process runs
         self._process = subprocess.Popen(
             [sys.executable, "-c", "from pytest_tarl.external.guardian import main; main()"],
             cwd=PACKAGES,
@@ -33,7 +33,7 @@ class Client:
             stderr=self._log,
             text=True,
             encoding="utf-8",
-            start_new_session=True,  # must outlive the test's process group, to end the simulator
+            start_new_session=True,  # the guardian must outlive the test's process group, to end the simulator
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0
@@ -45,14 +45,14 @@ class Client:
         return self._process.poll() is None
 
     def do(self, what: str, **arguments: Any) -> None:
-        """Send a command. Do nothing if the guardian has ended; an event reports that."""
+        """Send a command; do nothing if the guardian has ended, since an event reports that."""
         assert self._process.stdin is not None  # noqa: S101 - for the type checker
         with suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
             self._process.stdin.flush()
 
     def close(self) -> None:
-        """End simulator and guardian."""
+        """End the simulator and the guardian."""
         assert self._process.stdin is not None  # noqa: S101
         with suppress(OSError, ValueError):
             self._process.stdin.close()
@@ -72,12 +72,14 @@ class Client:
         return new.decode(errors="replace")
 
     def last_words(self) -> str:
-        """Return the last lines of the simulator's output; `output` still returns them later."""
+        """Return the last lines of the simulator's output without consuming them: `output` still returns them."""
         lines = self._unread().decode(errors="replace").strip().splitlines()
         return " | ".join(line.strip() for line in lines[-TAIL:])
 
     def _unread(self) -> bytes:
-        with suppress(OSError, ValueError):  # pread does not move the offset at which the simulator writes
+        with suppress(
+            OSError, ValueError
+        ):  # pread does not move the file offset at which the simulator writes
             size = os.fstat(self._log.fileno()).st_size
             return os.pread(self._log.fileno(), size - self._shown, self._shown)
         return b""

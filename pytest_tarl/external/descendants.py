@@ -1,4 +1,4 @@
-"""Manage children, orphans and the parent of this process. Uses prctl(2) and /proc, so only Linux adopts orphans."""
+"""Manage children, orphans and the parent of this process by prctl(2) and /proc; only Linux can adopt orphans."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _IGNORED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def outlive_the_test() -> None:
-    """Ignore the signals that end the test, because this process must end after its simulator."""
+    """Ignore the signals that end the test, because this process must end after the simulator."""
     for number in _IGNORED:
         signal.signal(number, signal.SIG_IGN)
 
@@ -50,11 +50,9 @@ def reap(which: int) -> None:
 
 
 def die_with_parent() -> Callable[[], None]:
-    """Return a function for a new child to call before exec.
+    """Return a function that a new child calls before exec.
 
     It restores default signals, and makes the kernel send SIGKILL to the child when this process ends.
-
-
 
     The C library is loaded before the fork: if another thread held the loader's lock during the fork, the child would
     wait for it forever.

@@ -18,7 +18,7 @@ class Domain:
         self.number = 0
         candidates = random.SystemRandom().sample(DOMAINS, len(DOMAINS))
         if not sys.platform.startswith("linux"):
-            self.number = candidates[0]  # not claimed: this system has no abstract sockets
+            self.number = candidates[0]  # not claimed, because this system has no abstract sockets
             return
         for number in candidates:
             with suppress(OSError):

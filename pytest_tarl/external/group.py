@@ -11,21 +11,19 @@ from time import monotonic, sleep
 
 from pytest_tarl.external.descendants import adopt, adopted, die_with_parent, reap
 
-PERIOD = 0.01  # s between two checks of the group
+PERIOD = 0.01  # time between two checks of the group (s)
 STEPS = (
     (signal.SIGINT, 2.0),
     (signal.SIGTERM, 1.0),
     (signal.SIGKILL, 5.0),
-)  # each signal, with the time in s that the processes then get to end
+)  # each signal, and the time that the processes then have to end (s)
 
 
 class Group:
     """A command in its own process group, so that all processes that it starts can be killed.
 
-    Its output goes to stderr.
-
-    On Linux, this process adopts the orphans of the group. It reaps them itself, because the init process of a
-    container may not do so. It also kills processes that left the group.
+    Its output goes to stderr. On Linux, this process adopts the group's orphans. It reaps them itself, because the init
+    process of a container may not do so. It also kills processes that left the group.
     """
 
     def __init__(self, command: Sequence[str], folder: str, environment: Mapping[str, str]) -> None:
@@ -43,13 +41,13 @@ class Group:
 
     @property
     def status(self) -> int | None:
-        """Return the exit status of the command; None while it runs."""
+        """Return the exit status of the command, or None while it runs."""
         return self._process.poll()
 
     def end(self) -> None:
         """End the group's processes with SIGINT, then SIGTERM, then SIGKILL.
 
-        Send SIGKILL to processes that left the group.
+        Processes that left the group get SIGKILL.
         """
         for number, limit in STEPS:
             self._send(number)

@@ -1,6 +1,6 @@
 """The guardian: a process that runs a simulator. It reads commands and writes events, each a JSON line.
 
-It ends the simulator's processes on a command of the test, or when the test's process has ended.
+The simulator's processes are ended on a command of the test, or when the test's process has ended.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from pytest_tarl.external.link import Link
 from pytest_tarl.external.link_ros1 import LinkROS1
 from pytest_tarl.rosmaster import Master
 
-LOOK = 0.05  # s between two checks of the ROS graph in the first CALM seconds; later, 1 s
-CALM = 5.0  # s
-LAST = 20.0  # s after the end of the test until the simulator is killed, if the main thread hangs in the middleware
+LOOK = 0.05  # time between two checks of the ROS graph in the first CALM seconds (s); afterwards it is 1 s
+CALM = 5.0  # duration of the more frequent checks (s)
+LAST = 20.0  # time from the end of the test until the simulator is killed if the middleware hangs (s)
 
 
 class Guardian:
@@ -57,7 +57,7 @@ class Guardian:
     def watch(self) -> None:
         """Wait for the end of the test's process; runs in a thread.
 
-        Forked children of the test may keep stdin open, so its end does not suffice.
+        Forked children of the test may keep stdin open, so the end of stdin is not sufficient.
         """
         try:
             wait_for_end_of_parent()

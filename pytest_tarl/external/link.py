@@ -13,7 +13,7 @@ NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
 IDLE = (
-    3  # no message is left after this many attempts without one; an attempt may handle another event instead
+    3  # after this many attempts without a message, none is left; an attempt may handle another event instead
 )
 
 Say = Callable[[dict[str, Any]], None]
@@ -49,9 +49,9 @@ class Link:
         self._handled = 0  # number of messages handled so far
 
     def spin(self, seconds: float) -> None:
-        """Wait up to `seconds` for an event and handle it. Before an answer, also handle the messages sent before it.
+        """Wait up to `seconds` for an event and handle it. Messages sent before an answer are handled before it.
 
-        In each cycle, rclpy's executor takes one message of each subscription and then the answers. An answer can
+        In each cycle, rclpy's executor takes one message from each subscription and then the answers. An answer can
         therefore overtake the second message on a topic, which may be the state after a step.
         """
         self._executor.spin_once(seconds)
@@ -76,7 +76,7 @@ class Link:
         self._context.try_shutdown()
 
     def subscribe(self, topics: list[str]) -> None:
-        """Also pass on messages of these topics once the simulator publishes them; report the ROS graph again."""
+        """Also pass on messages of these topics, once the simulator publishes them; report the ROS graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -91,8 +91,8 @@ class Link:
         """Call a service now, or as soon as it exists.
 
         Messages that were sent before the call also arrive before it, because both go by UDP to one port of the
-        simulator's participant. Waiting for acknowledgements would be safer but cost 0.8 s per call, the period of
-        the middleware's heartbeats.
+        simulator's participant. Waiting for acknowledgements would be safer but would cost 0.8 s per call, which is the
+        period of the middleware's heartbeats.
         """
         self._calls.append(asked)
         self._start_calls()
@@ -134,7 +134,9 @@ class Link:
     def _on_message(self, topic: str, kind: str) -> Callable[[Any, Any], None]:
         def heard(message: Any, info: Any) -> None:
             self._handled += 1
-            sent = info["source_timestamp"]  # ns, by the clock of this machine; 0 if the middleware has none
+            sent = info[
+                "source_timestamp"
+            ]  # in ns, by the clock of this machine; 0 if the middleware has none
             self._say(
                 {"kind": "message", "topic": topic, "type": kind, "data": to_plain(message), "sent": sent}
             )

@@ -19,14 +19,14 @@ NAME = "/tarl_link"
 OWN = ("/rosout", "/rosout_agg")
 DEPTH = 1000
 LOST = "transport error"  # the start of rospy's error message for a broken connection
-PATIENCE = 5.0  # s to wait until a service tells its type
-PAUSE = 0.005  # s between a command and a call: they use separate connections, so a call could arrive first
+PATIENCE = 5.0  # maximum time until a service reports its type (s)
+PAUSE = 0.005  # pause between a command and a call (s); they use separate connections, so the call could arrive first
 
 Say = Callable[[dict[str, Any]], None]
 
 
 class LinkROS1:
-    """The only rospy node of the process; it passes events to `say`. Use it in one thread; threads of rospy wake it."""
+    """The only rospy node of the process; it passes events to `say`. Use it in one thread; rospy's threads wake it."""
 
     def __init__(self, clock: str, say: Say) -> None:
         import rosgraph
@@ -47,7 +47,7 @@ class LinkROS1:
         self._sent = False  # whether a command was sent since the last service call
 
     def spin(self, seconds: float) -> None:
-        """Pass on messages that have arrived or arrive within `seconds`."""
+        """Pass on messages that have arrived or that arrive within `seconds`."""
         self._arrival.wait(seconds)
         self._arrival.clear()
         while self._events:
@@ -65,7 +65,7 @@ class LinkROS1:
             rospy.signal_shutdown("the episode is over")
 
     def subscribe(self, topics: list[str]) -> None:
-        """Pass on messages of further topics once the simulator publishes them; report the graph again."""
+        """Pass on messages of further topics, once the simulator publishes them; report the graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}
@@ -78,7 +78,7 @@ class LinkROS1:
             self._sent = True
 
     def call(self, asked: dict[str, Any]) -> None:
-        """Call a service now, or as soon as it exists. Wait PAUSE first, so that earlier commands arrive earlier."""
+        """Call a service now, or as soon as it exists. First wait PAUSE, so that earlier commands arrive first."""
         if self._sent:
             sleep(PAUSE)
             self._sent = False
@@ -86,7 +86,7 @@ class LinkROS1:
         self._start_calls()
 
     def look(self) -> None:
-        """Connect to what the simulator publishes, subscribes to and serves; report changes."""
+        """Connect to the topics and services of the simulator, and report changes."""
         try:
             publishing, subscribing, _ = self._master.getSystemState()
             kinds = dict(self._master.getTopicTypes())
@@ -121,7 +121,7 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)  # no queue: a message is sent before a later call
+            warnings.simplefilter("ignore", SyntaxWarning)  # no queue: messages precede later calls
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
     def _on_clock(self, message: Any) -> None:
@@ -153,7 +153,7 @@ class LinkROS1:
             told: dict[str, Any] = {"response": to_plain(proxy(request))}
         except Exception as problem:
             if str(problem).startswith(LOST):
-                return  # if the simulator ended, the guardian reports it; if not, the test reports a missing answer
+                return  # if the simulator ended, the guardian reports it; otherwise, the test reports a missing answer
             told = {"error": str(problem)}
         self._put({"kind": "answer", "id": asked["id"], "asked": when, **told})
 
@@ -170,7 +170,7 @@ class LinkROS1:
 
 
 def _service_type(service: str, uri: str) -> str:
-    """Return the type of a service; its server tells it only on a connection with a probe header."""
+    """Return the type of a service, which its server reports only on a connection with a probe header."""
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
     place = urlparse(uri)

@@ -1,4 +1,4 @@
-"""Convert messages of ROS 1 and ROS 2 to and from plain data, which test and guardian exchange."""
+"""Convert messages of ROS 1 and ROS 2 to and from plain data, which the test and the guardian exchange."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def filled(message: Any, data: dict[str, Any], find: Find) -> Any:
 
 
 def _fields(value: Any) -> Mapping[str, str] | None:
-    """Return the names and types of a message's fields; None for other values.
+    """Return the names and types of a message's fields, or None for other values.
 
     In ROS 1, times and durations count as messages.
     """

@@ -20,7 +20,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot, type_name
 if TYPE_CHECKING:
     from pytest_tarl.ros import Ros
 
-SETTLED = 0.3  # s of real time without a change of the ROS graph until a simulator counts as started
+SETTLED = 0.3  # time without a change of the ROS graph until a simulator counts as started (s of real time)
 
 
 class Kept:
@@ -31,14 +31,14 @@ class Kept:
         self.running: Setup | None = None
 
     def opened(self) -> Client:
-        """Return the guardian; start it at first use."""
+        """Return the guardian; start it on first use."""
         if self.client is None or not self.client.alive:
             self.close()
             self.client = Client()
         return self.client
 
     def close(self) -> None:
-        """End guardian and simulator."""
+        """End the guardian and the simulator."""
         if self.client is not None:
             self.client.close()
         self.client = self.running = None
@@ -58,7 +58,7 @@ class Simulator:
         self._topics = dict.fromkeys((*setup.ready, *setup.every_step, *watched))
         self._heard: dict[
             str, int
-        ] = {}  # topic → send time of its newest message, in ns of this machine's clock
+        ] = {}  # topic → time when its newest message was sent, in ns of this machine's clock
         self._latest: dict[str, Any] = {}
         self._graph: dict[str, set[str]] = {"published": set(), "subscribed": set(), "connected": set()}
         self._forwarded: set[str] = set()
@@ -67,9 +67,11 @@ class Simulator:
         self._clock: int | None = None
         self._target = 0
         self._tick = 0
-        self._waiting: list[Event] | None = []  # messages to deliver later; None: deliver immediately
-        self._usable = False  # whether the last step ended well
-        self._current = False  # whether events concern this episode's simulator
+        self._waiting: (
+            list[Event] | None
+        ) = []  # messages to deliver later; if None, messages are delivered immediately
+        self._usable = False  # whether the last step ended without an error
+        self._current = False  # whether events come from the simulator of this episode
 
     @property
     def clock(self) -> float:
@@ -77,9 +79,9 @@ class Simulator:
         return seconds(self._clock or 0)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the simulator's newest message on a topic; None before the first one.
+        """Return the simulator's newest message on a topic, or None before the first one.
 
-        A topic that no node, sensor or argument names is received only from the first call on.
+        A topic that no node, sensor or argument names is only received after the first call for it.
         """
         if topic not in self._topics:
             self._want([topic])
@@ -96,7 +98,7 @@ class Simulator:
         KEPT.running = self.setup
 
     def advance(self, dt: float) -> None:
-        """Run simulator and nodes for `dt` seconds of the simulator's time. Raise SimulatorLostError if it stops."""
+        """Run simulator and nodes for `dt` seconds of simulator time. Raise SimulatorLostError if it stops."""
         self._usable = False
         self._connect()
         self._target += nanoseconds(dt)
@@ -110,7 +112,7 @@ class Simulator:
         self._usable = True
 
     def end(self) -> None:
-        """End the simulator, unless a reset makes it usable for further episodes; print its output."""
+        """End the simulator, unless a reset makes it usable for further episodes, and print its output."""
         if self.setup.reset is None or not self._usable:
             self._client.do("stop")
             KEPT.running = None
@@ -173,7 +175,7 @@ class Simulator:
         self._want(sorted(self._ros.bus.subscribed - {*self._topics, self.setup.clock}))
 
     def _want(self, topics: Sequence[str]) -> None:
-        """Receive further topics; wait until those that the simulator publishes are connected."""
+        """Receive further topics; wait for the connections to those that the simulator publishes."""
         if not topics:
             return
         self._topics.update(dict.fromkeys(topics))
@@ -185,7 +187,7 @@ class Simulator:
         return lambda message: self._client.do("send", topic=topic, data=to_plain(self._theirs(message)))
 
     def _class(self, package: str, name: str) -> Any:
-        """Return a message class of the simulator's ROS. Raise UnsupportedApiError for an unknown one."""
+        """Return a message class of the simulator's ROS. Raise UnsupportedApiError if it is unknown."""
         found = find_class("ros1" if self.setup.ros == "ros1" else "ros2", package, name)
         if found is None:
             raise unknown_type(package, name)
@@ -214,7 +216,7 @@ class Simulator:
     def _over(self, before: int, asked: int) -> bool:
         """Return whether a step has ended: the clock moved, and each topic of `every_step` had a message.
 
-        Messages sent before the request of the step may still arrive; they do not count.
+        Messages that were sent before the step was requested may still arrive; they do not count.
         """
         return self._time > before and all(
             self._heard.get(topic, 0) >= asked for topic in self.setup.every_step
@@ -234,7 +236,7 @@ class Simulator:
             self._ros.step(seconds(until - self._ros.scheduler.time))
 
     def _call(self, call: Call) -> int:
-        """Call a service and wait for the answer; return the time of the request, in ns of this machine's clock."""
+        """Call a service and wait for the answer; return when it was requested, in ns of this machine's clock."""
         self._calls += 1
         number = self._calls
         self._client.do("call", id=number, service=call.service, request=dict(call.request))

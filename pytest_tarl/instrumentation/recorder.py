@@ -81,7 +81,7 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def __reduce__(self) -> tuple[type[_Elsewhere], tuple[()]]:
-        """Pickle as `_Elsewhere`: functions of the program may refer to a recorder, but other processes record nothing."""
+        """Pickle as `_Elsewhere`: the program's functions may refer to a recorder; other processes record nothing."""
         return _Elsewhere, ()
 
     def bind(self, code: CodeType) -> CodeType:

@@ -38,7 +38,7 @@ class Order:
     mission: str = ""
     idle: float | None = None
     step: float | None = None
-    log_size: int = 0  # size in bytes at which the log is rotated; 0 for never
+    log_size: int = 0  # size at which the log is rotated (bytes); 0 if never
     log_keep: int = 0  # number of rotated logs to keep; 0 for all
 
 
@@ -107,7 +107,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """Exclude existing objects from garbage collection during the block; long collections would delay the node."""
+    """During the block, exclude existing objects from garbage collection: long collections would delay the node."""
     gc.collect()
     gc.freeze()
     try:

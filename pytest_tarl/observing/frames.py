@@ -1,4 +1,4 @@
-"""The log: a line that names the format, then records, each with its length and a checksum, appended one by one.
+"""The log: a line that names the format, then records, each with a length and a checksum, appended one by one.
 
 A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. All
 complete records can be read even if the writer was killed; the next writer removes an incomplete one.
@@ -24,7 +24,9 @@ from pytest_tarl.framed import framed, next_payload
 
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
-LARGEST = 1 << 26  # maximum size in bytes of a record; a larger stated length shows that the log is damaged
+LARGEST = (
+    1 << 26
+)  # maximum size of a record (bytes); if a record's length field exceeds this, the log is damaged
 
 Record = dict[str, Any]
 
@@ -70,7 +72,7 @@ class LogFile:
     def set_aside(self, keep: int = 0) -> None:
         """Rotate the log: rename it with the next free number (`missions.log.7`) and continue in a new file.
 
-        `keep` is the number of rotated files to keep, 0 for all; if there are more, the oldest are removed.
+        `keep` is the number of rotated files to keep, or 0 for all; the oldest files beyond that number are removed.
         """
         self.close()
         older = set_aside(self.path)

@@ -16,14 +16,14 @@ from pytest_tarl.sensors import Sensor
 Listener = Callable[[Any], None]
 NUMBER = "std_msgs/msg/Float64"
 WORD = "std_msgs/msg/String"
-DEPTH = 1000  # messages queued per topic while the node is busy; rclpy drops the oldest of a full queue
+DEPTH = 1000  # number of messages queued per topic while the node is busy; rclpy drops the oldest from a full queue
 
 
 @dataclass(frozen=True)
 class Topics:
-    """The observed topics: `types` holds message types by topic.
+    """The observed topics; `types` holds message types by topic.
 
-    `reward` and `mission` are the topics that close steps and delimit missions, or empty.
+    `reward` is the topic that closes steps, `mission` the one that delimits missions; either may be empty.
     """
 
     types: Mapping[str, str]
@@ -46,7 +46,7 @@ class Topics:
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
     """Pass messages to the observer while a node of this client library runs. Raise LogError."""
-    # import it before any message type, because the library selects ROS 1 or ROS 2 messages
+    # imported before any message type, because the library selects ROS 1 or ROS 2 messages
     import_module(library)
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
@@ -109,7 +109,7 @@ def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[
 def _watch_rclpy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
     """Subscribe through the first node that the program creates."""
     node_class = import_module("rclpy.node").Node
-    qos = import_module("rclpy.qos")  # best effort and volatile match every publisher
+    qos = import_module("rclpy.qos")  # best effort and volatile are compatible with every publisher
     profile = qos.QoSProfile(depth=DEPTH, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
     make, pending = node_class.__init__, list(listeners)
 

@@ -1,4 +1,4 @@
-"""Observe a node: keep the latest sensor values, track rewards and missions, and send both to the writer process.
+"""Observe a node: keep the latest sensor values, track rewards and missions, and send all of it to the writer process.
 
 In a control cycle, the observer only appends numbers to lists, which garbage collection does not visit. Every `PERIOD`
 seconds, a thread moves the lists to memory that the writer process shares.
@@ -23,7 +23,7 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor
 
-PERIOD = 0.02  # seconds between two transfers; each holds the interpreter lock for about 0.1 ms
+PERIOD = 0.02  # time between two transfers (s); each transfer holds the interpreter lock for about 0.1 ms
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
@@ -54,21 +54,21 @@ class Observer:
             one.name: (at, reader(one.field), binner(one), following and not one.categories)
             for at, one in enumerate(self.sensors)
         }
-        self.signals = tuple(signals)  # signals of formulas that are read from messages
+        self.signals = tuple(signals)  # the signals of formulas that are read from messages
         self._signal_readers = {one.name: reader(one.field) for one in self.signals}
         self._following = following  # whether to record every change, which formulas need
         self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
-        self._times: list[float] = []  # when steps were closed
+        self._times: list[float] = []  # times at which steps were closed
         self._begun = monotonic()
         self._outlet = Outlet(log, {"format": FORMAT, **about}, rotation)
         self._idle = idle
         self._bins: list[int | None] = [None] * len(self.sensors)
         self._values: list[Any] = [None] * len(self.sensors)
-        self._numbers: dict[str, float] = {}  # values of signals received in this mission
-        self._before: dict[str, float] = {}  # earlier values, for signals without a message in this mission
-        self._readings: list[Any] = []  # the values of all sensors at each step, one step after another
+        self._numbers: dict[str, float] = {}  # values of the signals received in this mission
+        self._before: dict[str, float] = {}  # earlier values of the signals without a message in this mission
+        self._readings: list[Any] = []  # values of all sensors at each step, one step after another
         self._active = monotonic()
-        self.running = False  # whether a mission runs
+        self.running = False  # whether a mission is in progress
         self.problem = ""  # the first error of the observer; errors must not reach the node
         self._lock = threading.RLock()  # keeps records in order
         # locked until `close`; waiting for an Event would cost the node more time
@@ -115,7 +115,7 @@ class Observer:
             self.stream.reward(reward)
 
     def begin(self) -> None:
-        """Begin a mission; a running mission ends as succeeded."""
+        """Begin a mission; a mission in progress ends as succeeded."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -128,7 +128,7 @@ class Observer:
             self._outlet.put("mission", time())
 
     def end(self, *, passed: bool, failure: str = "") -> None:
-        """End the mission, if there is one."""
+        """End the mission, if one is in progress."""
         with self._lock:
             if not self.running:
                 return
@@ -141,7 +141,7 @@ class Observer:
             self.running = False
 
     def active(self) -> None:
-        """Register activity of the node; if `idle` is set, this begins a mission."""
+        """Note that the node is active; if `idle` is set, this begins a mission."""
         self._active = monotonic()
         if self._idle is not None and not self.running:
             self.begin()
@@ -167,7 +167,7 @@ class Observer:
         return tuple(known) if len(known) == len(self._bins) else None
 
     def _look(self) -> None:
-        """Send recorded data, end idle missions, and report a writer that ended."""
+        """Send recorded data, end idle missions, and check whether the writer is still running."""
         reported = False
         while not self._over.acquire(timeout=PERIOD):
             with self._lock:

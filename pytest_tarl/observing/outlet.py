@@ -18,15 +18,15 @@ from pytest_tarl.observing.ring import SIZE, Ring, shared_memory
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, PERIOD, READY
 
-MOST_WAITING = 1 << 26  # maximum bytes of waiting messages; beyond this, events are dropped
+MOST_WAITING = 1 << 26  # maximum size of queued messages (bytes); beyond this, events are dropped
 ENDED = (
     f"The process that writes the log was ended: the last {PERIOD:g} s before that may be missing from the log, and "
     "all later records are lost."
 )
-_PIECE = SIZE // 4  # bytes; larger messages are sent in pieces of this size
-_PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
-_LOOKS = 10  # calls of `pump` between two checks that the writer still runs
-_PAUSE = 0.005  # seconds between two attempts while closing
+_PIECE = SIZE // 4  # size of the pieces in which larger messages are sent (bytes)
+_PLAIN = 2  # version of marshal without references to repeated objects, which is written faster
+_LOOKS = 10  # number of calls of `pump` between two checks that the writer still runs
+_PAUSE = 0.005  # time between two attempts while closing (s)
 
 
 class Outlet:
@@ -39,8 +39,8 @@ class Outlet:
     def __init__(self, log: Path, about: Mapping[str, Any], rotation: Rotation) -> None:
         self.problem = ""  # why writing stopped
         self._waiting: deque[bytes] = deque()  # pieces that did not fit into the ring yet
-        self._held = 0  # bytes of the waiting pieces
-        self._pumped = 0  # calls of `pump`
+        self._held = 0  # total size of the waiting pieces (bytes)
+        self._pumped = 0  # number of calls of `pump`
         self._owner = os.getpid()
         memory = shared_memory()
         order = {
@@ -82,7 +82,7 @@ class Outlet:
             self._queue(data)
 
     def pump(self) -> None:
-        """Send as many queued pieces as fit into the shared memory now; notice a writer that ended."""
+        """Send as many queued pieces as now fit into the shared memory; check that the writer still runs."""
         if os.getpid() != self._owner:
             return
         self._pumped += 1

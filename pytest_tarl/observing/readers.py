@@ -1,7 +1,7 @@
 """Read and bin the values of a sensor quickly, because a node's control cycle waits for it.
 
 The functions return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and for
-values of the usual types, and use the general functions otherwise.
+values of the usual types; in all other cases, they use the general functions.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pytest_tarl.sensors import Sensor, field_value
 
 Read = Callable[[Any], Any]
 Bin = Callable[[Any], int | None]
-_EXACT = 2**53  # smaller integers convert to float exactly
-_MOST = 64  # maximum number of message classes kept per field
+_EXACT = 2**53  # integers below this convert to float exactly
+_MOST = 64  # maximum number of message classes remembered per field
 
 
 def reader(field: str | Read | None) -> Read:

@@ -1,8 +1,8 @@
 """A stream of bytes through memory that two processes share; neither side waits or makes system calls.
 
-The memory holds two 64-bit counters, the bytes written and the bytes taken, and then a ring buffer. A piece is `length,
-crc32` and that many bytes. On processors with weak memory ordering, the reader may see the new counter before the
-bytes. The checksum then fails, and the reader tries the piece again later.
+The memory holds two 64-bit counters (bytes written, bytes taken), and then a ring buffer. A piece is `length, crc32`
+and that many bytes. On processors with weak memory ordering, the reader may see the new counter before the bytes. The
+checksum then fails, and the reader tries again later.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from zlib import crc32
 
 from pytest_tarl.framed import HEAD, framed, unpack_head
 
-SIZE = 1 << 20  # size of the buffer in bytes
-_START = 16  # size of the counters in bytes
+SIZE = 1 << 20  # size of the buffer (bytes)
+_START = 16  # size of the counters (bytes)
 
 
 def shared_memory() -> int:
@@ -39,17 +39,17 @@ class Ring:
     def __init__(self, descriptor: int, *, writes: bool = False) -> None:
         self._memory = mmap.mmap(descriptor, 0)
         if writes:
-            self._memory[:] = bytes(len(self._memory))  # map every page now, not during a control cycle
+            self._memory[:] = bytes(len(self._memory))  # maps every page now, not during a control cycle
         self._size = len(self._memory) - _START
         self._counters = memoryview(self._memory)[:_START].cast("Q")
 
     @property
     def unread(self) -> int:
-        """Return the number of bytes that were written but not taken."""
+        """Return the number of bytes that were written but not taken yet."""
         return self._counters[0] - self._counters[1]
 
     def write(self, data: bytes) -> bool:
-        """Append a piece; return False if it does not fit now."""
+        """Append a piece; return False if it does not fit at the moment."""
         written, taken = self._counters
         piece = framed(data)
         length = len(piece)

@@ -1,4 +1,4 @@
-"""A recorder that is emptied while the node runs, so that memory stays bounded for missions of any length."""
+"""A recorder that is emptied while the node runs, so that the memory stays bounded in missions of any length."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.sensors import Cell
 
-MOST_ENTRIES = 4_000_000  # maximum waiting entries (two per event); further events are dropped and counted
+MOST_ENTRIES = (
+    4_000_000  # maximum number of queued entries (two per event); later events are dropped and counted
+)
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Chunk:
     """The events between two cuts, as columns.
 
     Columns of events have shape (events,), columns of steps (steps,). `step` counts from the first step of the chunk.
-    Events after the chunk's last reward belong to a step that the next chunk closes.
+    Events after the last reward in the chunk belong to a step that the next chunk closes.
     """
 
     cells: tuple[Cell, ...]
@@ -44,10 +46,12 @@ class Cut(NamedTuple):
     """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
 
     cells: list[Cell]  # cells that are new in this cut
-    latched: list[int]  # number of the current cell at each mark
+    latched: list[int]  # index of the current cell at each mark
     rewards: list[int]  # indices of the marks that close a step
     totals: list[float]
-    threads: list[tuple[list[Any], list[int]]]  # entries of each thread, and their number at each mark
+    threads: list[
+        tuple[list[Any], list[int]]
+    ]  # for each thread: its entries, and the number of entries at each mark
 
     @property
     def empty(self) -> bool:
@@ -76,7 +80,7 @@ class Stream(Recorder):
     def cut(self, drop: bool = False) -> Cut:
         """Return and remove the events recorded since the last call; any thread may call this.
 
-        It only slices lists, to be fast. With `drop`, for lack of memory, events are only counted; rewards and cells
+        To be fast, it only slices lists. With `drop` (for lack of memory), events are only counted; rewards and cells
         are kept.
         """
         if drop:
@@ -94,7 +98,7 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop the events of each thread with more than `most` waiting entries, and count them in `dropped`.
+        """Drop the events of each thread with more than `most` queued entries, and count them in `dropped`.
 
         The default of `most` is MOST_ENTRIES.
         """
@@ -126,7 +130,7 @@ def merged(cuts: Sequence[Cut]) -> Cut:
     cells, latched, rewards, totals = list[Cell](), list[int](), list[int](), list[float]()
     threads: list[tuple[list[Any], list[int]]] = []
     for cut in cuts:
-        carried = 1 if latched else 0  # a cut begins with the cell of the previous one
+        carried = 1 if latched else 0  # a cut begins with the last cell of the previous one
         rewards += [mark + len(latched) - carried for mark in cut.rewards]
         threads += [([], [0] * len(latched)) for _ in cut.threads[len(threads) :]]
         for (entries, lengths), (new, marks) in zip(threads, cut.threads, strict=True):
@@ -146,10 +150,10 @@ def _in_order(one: Chunk) -> Chunk:
 
 
 def _cut(entries: list[Any]) -> list[Any]:
-    """Remove complete events from the front while the owning thread may append; each operation is atomic."""
+    """Remove complete events from the front; each operation is atomic, since the owning thread may append meanwhile."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
-        count -= 1  # keep a site whose value is not appended yet
+        count -= 1  # keep a site whose value has not been appended yet
     taken = entries[:count]
     del entries[:count]
     return taken

@@ -17,14 +17,14 @@ from pytest_tarl.observing.frames import LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Cut, chunk, merged
 from pytest_tarl.sensors import Cell
 
-MOST_HELD = 200_000  # approximate maximum of entries (two per event) per record, to bound memory
+MOST_HELD = 200_000  # approximate maximum number of entries (two per event) per record; bounds the memory
 
 
 @dataclass(frozen=True)
 class Rotation:
     """When to rotate a log: before a mission, if the log has at least `size` bytes.
 
-    `keep` is the number of rotated files to keep, 0 for all.
+    `keep` is the number of rotated files to keep, or 0 for all.
     """
 
     size: int = 0  # 0 for never
@@ -39,7 +39,7 @@ class Writer:
         self._about = about
         self._rotation = rotation
         self._cells: list[Cell] = []
-        self._cuts: list[Cut] = []  # cuts of the running mission that are not written yet
+        self._cuts: list[Cut] = []  # cuts of the current mission that are not written yet
         self._readings: list[list[Any]] = []
         self._times: list[float] = []
         self._changes: list[list[Any]] = []

@@ -23,11 +23,11 @@ from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.ring import Ring
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # seconds between two syncs: the most that a power cut loses, approximately
-LENGTH = struct.Struct("<I")  # length of a message in bytes; 0 marks the end
+PERIOD = 0.25  # time between two syncs (s), which is about the most that a power cut loses
+LENGTH = struct.Struct("<I")  # length of a message (bytes); 0 marks the end
 READY = "ready"
 NICER = 5  # nice value that gives the node's threads priority
-_POLL = 0.02  # seconds between two checks of the shared memory
+_POLL = 0.02  # time between two checks of the shared memory (s)
 
 
 def main() -> int:

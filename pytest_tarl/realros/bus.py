@@ -22,7 +22,9 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
-_SWITCH_INTERVAL = 0.0002  # s; Python's default, 0.005 s, delays a message at every switch of threads
+_SWITCH_INTERVAL = (
+    0.0002  # thread switch interval (s); the default, 0.005 s, delays a message at every switch
+)
 
 
 class RealBus(Bus):
@@ -35,7 +37,7 @@ class RealBus(Bus):
         scheduler.collect = self.collect
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world. Every idle subscriber receives the message before this method returns."""
+        """Publish from the world; every idle subscriber receives the message before this method returns."""
         place = self.topic(topic)
         message = self._own_class(message, place.name)
         stamp_if_unset(message, self._scheduler.time)
@@ -51,7 +53,7 @@ class RealBus(Bus):
         )
 
     def disconnect(self, process: Program) -> None:
-        """Do nothing, because an ended process receives no messages anyway."""
+        """Do nothing: a process that has ended receives no messages anyway."""
 
     def collect(self) -> bool:
         """Receive one message in transit; return whether there was one."""
@@ -102,7 +104,7 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Set the parameters of a launch file. If a node's name is unknown before it runs, set them for all nodes."""
+        """Set the parameters of a launch file; if a node's name is unknown before it runs, set them for all nodes."""
         super().launch(given)
         private = {} if given.node else {f"~{key}": one for key, one in given.private.items()}
         for name, value in {**given.shared, **private}.items():
@@ -135,7 +137,7 @@ class RealRos(Ros):
 
 
 def _arguments(parameters: Mapping[str, Any], *, ros2: bool) -> Iterator[str]:
-    """Yield the command line arguments that set private parameters, in the syntax (ROS 1 or 2) of the remappings."""
+    """Yield command line arguments that set private parameters, in the syntax of remappings in ROS 1 or 2."""
     for name, value in parameters.items():
         text = json.dumps(value)  # JSON is YAML
         yield from ("-p", f"{name}:={text}") if ros2 else (f"_{name}:={text}",)

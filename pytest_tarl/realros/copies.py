@@ -14,7 +14,7 @@ Modules = dict[str, ModuleType]
 
 
 def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Modules:
-    """Import a new copy of a package and some of its modules; other copies stay in use elsewhere.
+    """Import a new copy of a package and of some of its modules; existing copies remain usable.
 
     `argv` is the command line that the package reads on import.
     """
@@ -31,7 +31,7 @@ def present(package: str) -> Modules:
 
 
 def show(package: str, modules: Modules) -> None:
-    """Replace the modules of a package in `sys.modules` by `modules`."""
+    """Replace the modules of a package in `sys.modules` with `modules`."""
     for name in present(package):
         del sys.modules[name]
     sys.modules.update(modules)

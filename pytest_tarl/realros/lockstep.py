@@ -1,4 +1,4 @@
-"""Lock-step: count the sent messages, and resume nodes only after all of them have arrived.
+"""Lock-step: count the messages that were sent, and resume nodes only after all of them have arrived.
 
 Messages pass through a real network and arrive in threads of the client library. This module restores the
 deterministic order of the scheduler.
@@ -15,7 +15,7 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-PATIENCE = 10.0  # s of wall time until a message must have arrived
+PATIENCE = 10.0  # maximum wall time until a message has arrived (s)
 
 
 class Way(NamedTuple):
@@ -45,7 +45,7 @@ class Wire:
             self._arrival.notify()
 
     def take(self) -> tuple[Way, Any] | None:
-        """Wait for the message that was sent first and return it; None if no message is in transit.
+        """Wait for the message that was sent first and return it, or None if no message is in transit.
 
         Raise RecordingError if it does not arrive within PATIENCE.
         """
@@ -83,7 +83,7 @@ class WireScheduler(Scheduler):
         self.collect: Callable[[], bool] = (
             bool  # receives a message in transit; returns False if there was none
         )
-        self.enter: Callable[[Process], None] | None = None  # called before a task of a process resumes
+        self.enter: Callable[[Process], None] | None = None  # called before a task of a process is resumed
 
     def settle(self) -> None:
         """Run all ready tasks and those made ready by arriving messages, until no message is in transit."""

@@ -17,12 +17,12 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task
 
 WORLD = "tarl_world"
-_DOMAINS = range(1, 100)  # their ports are below the kernel's ephemeral range
-_PAUSE = 0.0001  # s of wall time, polling period for a sent message
+_DOMAINS = range(1, 100)  # the ports of these domains are below the kernel's ephemeral range
+_PAUSE = 0.0001  # polling period while waiting for a sent message (s of wall time)
 
 
 class RclpyNetwork:
-    """The network, one per test run. All nodes share one process and participant, so that no discovery is needed."""
+    """The network of a test run. All nodes share one process and one participant, so no discovery is needed."""
 
     def __init__(self) -> None:
         self._environment = _own_domain()
@@ -42,7 +42,7 @@ class RclpyNetwork:
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
         self.expected: Counter[Any] = Counter()  # messages in transit, by subscription of a node
-        self.kept: Counter[Any] = Counter()  # stored messages that publishers send to late subscribers
+        self.kept: Counter[Any] = Counter()  # messages stored by publishers for late subscribers
         self.for_world: deque[Any] = (
             deque()
         )  # one entry per message in transit to the world: the world's subscription
@@ -131,7 +131,8 @@ class RclpyNetwork:
     def joined(self, subscription: Any) -> None:
         """Count the publishers' stored messages as in transit to a new subscription.
 
-        Wait until all are sent: a node that took one earlier would also get old messages, which a short queue drops.
+        Wait until all are sent: a node that took a newer message first would also get old messages, which a short queue
+        drops.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return

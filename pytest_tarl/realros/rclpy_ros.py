@@ -56,7 +56,7 @@ class RclpyBus(RealBus):
     def _publisher(self, topic: str, message_class: Any, latch: bool) -> Any:
         """Return the world's publisher.
 
-        It is transient local with depth 1 if it latches or a subscription requires that.
+        It is transient local with depth 1 if it latches or if a subscription requires that.
         """
         qos = self._network.rclpy.qos
         wanted = [
@@ -142,4 +142,4 @@ def close_network() -> None:
 
 
 def _nothing(_message: Any) -> None:
-    """Do nothing, because `collect` takes the world's messages one at a time."""
+    """Do nothing: `collect` takes the world's messages one at a time."""

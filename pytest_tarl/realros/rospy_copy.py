@@ -16,7 +16,7 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 
 
 class RospyCopy:
-    """A private copy of rospy. `process` is the process that uses it in this episode; None for the world's copy."""
+    """A private copy of rospy. `process` is the process that uses it in this episode, or None for the world's copy."""
 
     def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)
@@ -27,7 +27,7 @@ class RospyCopy:
         self.services: list[Any] = []  # services of the current episode
 
     def __getattr__(self, part: str) -> ModuleType:
-        """Return a module of this copy: `copy.core`, `copy.topics`."""
+        """Return a module of this copy, such as `copy.core` or `copy.topics`."""
         try:
             return self.modules[f"rospy.{part}"]
         except KeyError:

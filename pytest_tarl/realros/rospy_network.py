@@ -25,7 +25,7 @@ _BASE = frozenset({"/run_id", "/rosdistro", "/rosversion"})
 
 
 class RospyNetwork:
-    """The network, one per test run.
+    """The network of a test run.
 
     The episode sets `scheduler` and the two callbacks. `patch` makes a copy of rospy run in lock-step.
     """
@@ -74,7 +74,7 @@ class RospyNetwork:
         self.wire.forget()
 
     def enter(self, process: Process) -> None:
-        """Assign a copy of rospy to a starting process, the same one as in the last episode."""
+        """Assign a copy of rospy to a process that starts, if possible the one that it had in the last episode."""
         if process in self._copies:
             return
         key, number = process.argv, 0
@@ -91,9 +91,9 @@ class RospyNetwork:
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do the work of `init_node`. Reset a node from an earlier episode to the state of a new one.
+        """Do the work of `init_node`, or reset a node from an earlier episode to the state of a new node.
 
-        Raise NodeError if the node's name has changed since an earlier episode.
+        Raise NodeError if the node's name has changed since the earlier episode.
         """
         if copy.core.is_initialized():
             copy.real["init_node"](name, *args, **kwargs)  # raises if the arguments differ

@@ -1,7 +1,7 @@
 """Service calls of rospy in lock-step. A call is either in transit or in its handler, which runs in virtual time.
 
-Virtual time stands still while a call is in transit. The order of arrivals does not depend on the network: first
-answers, in the order of the calls, then requests, by service and content.
+Virtual time stands still while a call is in transit. The order of arrivals does not depend on the network: answers come
+first, in the order of their calls, then requests, by service and content.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Order = tuple[int, int, str]
 
 
 class Arrival(NamedTuple):
-    """A received request or answer, with its order among simultaneous ones."""
+    """A received request or answer, with its position among simultaneous ones."""
 
     order: Order
     goes_on: Callable[[], None]
