@@ -65,7 +65,7 @@ def _severity(finding: Finding) -> types.DiagnosticSeverity:
 
 
 def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInformation]:
-    """Return the statements of a flow with their roles; if the flow has a shortest chain, only those on it."""
+    """Return the statements of a flow with their roles; if the flow has a shortest chain, only those on the chain."""
     chosen = [flow.steps[at] for at in flow.chain] or list(flow.steps)
     return [
         types.DiagnosticRelatedInformation(places.location(step.span), f"{step.role}: {step.code}")
@@ -74,7 +74,7 @@ def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInfor
 
 
 def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
-    """Return a code lens above each publish call of a file: the sources of its data and of its conditions."""
+    """Return a code lens above each publish call in a file: the sources of its data and of its conditions."""
     by_call: dict[Span, list[Flow]] = defaultdict(list)
     for finding in (*result.findings, *result.silenced):
         if finding.flow is not None and finding.flow.sink.span.path == path:
@@ -86,7 +86,7 @@ def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
 
 
 def title(flows: Sequence[Flow]) -> str:
-    """Return the title of a lens: `data of /odom, decided by /estop`."""
+    """Return the title of a lens, such as `data of /odom, decided by /estop`."""
     words = {"explicit": "data of", "implicit": "decided by"}
     parts = []
     for kind, word in words.items():

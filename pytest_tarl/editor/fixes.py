@@ -19,7 +19,7 @@ _IGNORED = re.compile(r"#\s*tarl:\s*ignore\[([^\]]*)\]")
 def fixes(
     uri: str, path: str, found: Sequence[types.Diagnostic], patches: Iterable[Path], places: Places
 ) -> list[types.CodeAction]:
-    """Return quick fixes for the diagnostics at a place, and actions that apply repairs of the same file."""
+    """Return quick fixes for the diagnostics at a place, and actions that apply repairs to the same file."""
     actions = []
     for diagnostic in found:
         data: Any = diagnostic.data
@@ -54,7 +54,7 @@ def fixes(
 
 
 def _comment(path: str, at: types.Range, code: str, places: Places) -> types.TextEdit:
-    """Return the edit that ignores a finding: add its code to the ignore comment on its last line, or add a comment."""
+    """Return the edit that ignores a finding: it adds a comment, or the code to the existing ignore comment."""
     number = at.end.line + 1
     line = places.line(path, number)
     known = _IGNORED.search(line)

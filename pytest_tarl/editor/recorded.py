@@ -1,6 +1,6 @@
 """Results of the last comparisons by line: utility, its difference under a drift, rank, and accepted repairs.
 
-The source is `.tarl/results/*.json`. Statements are matched by their site id, not by line number, so moved lines keep
+The source is `.tarl/results/*.json`. Statements are matched by site ID, not by line number, so lines that moved keep
 their figures.
 """
 

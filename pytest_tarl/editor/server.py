@@ -20,7 +20,7 @@ from tarl_lint.editing import Result, Superseded, Workspace
 from tarl_lint.errors import LintError
 
 Apply = Callable[[Path], Iterable[str]]  # patch → lines to show; raises TarlError if it no longer fits
-PAUSE = 0.15  # seconds without a keystroke before the workspace is linted
+PAUSE = 0.15  # time without a keystroke before the workspace is linted (s)
 CHANGES = (
     types.TEXT_DOCUMENT_DID_OPEN,
     types.TEXT_DOCUMENT_DID_CHANGE,
@@ -40,7 +40,7 @@ class Server(LanguageServer):
         self.linted: Workspace | None = None
         self.result: Result | None = None
         self.places = Places(self.root, {})
-        self.shown_in = self.places  # positions in the texts for which diagnostics were last published
+        self.shown_in = self.places  # positions in the texts of the diagnostics that were last published
         self.kept = recorded.Recorded()
         self.shown: dict[str, list[types.Diagnostic]] = {}
         self._waiting: asyncio.Task[None] | None = None
@@ -55,7 +55,7 @@ class Server(LanguageServer):
         self.linted = Workspace([root])
 
     def changed(self) -> None:
-        """Lint after PAUSE; a further change restarts the wait."""
+        """Lint after PAUSE; another change restarts the wait."""
         self._changes += 1
         if self._waiting is not None:
             self._waiting.cancel()
@@ -68,8 +68,8 @@ class Server(LanguageServer):
     async def lint(self) -> None:
         """Lint the workspace with the open buffers, and publish changed diagnostics.
 
-        A further change stops the run before the next program and starts a new run. Files whose findings are final
-        get their diagnostics while other programs are still being analysed.
+        Another change stops the run before the next program and starts a new run. Files whose findings are final get
+        their diagnostics while other programs are still being analysed.
         """
         if self.linted is None:
             return
