@@ -1,4 +1,4 @@
-"""Change numbers inside a message; fields are named as for sensors: `pose.pose.position.x`, `ranges`, `ranges.0`."""
+"""Change numbers in a message; fields are named as for sensors, such as `pose.pose.position.x` or `ranges.0`."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def store(message: Any, field: str, value: Any) -> None:
 
 
 def no_such_field(name: str, kind: str, topic: str, field: str, message: Any) -> SettingsError:
-    """Return the error for a fault of a field that the messages lack or that is not a number."""
+    """Return the error for a fault of a field that the messages lack, or that is not a number."""
     return SettingsError(
         f"faults.{kind} of {name!r}: a message on {topic} ({type(message).__name__}) has no number {field!r}. Correct "
         "the field in the marker."

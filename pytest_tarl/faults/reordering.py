@@ -1,4 +1,4 @@
-"""Messages in a wrong order, as over UDP or several network paths."""
+"""Messages in the wrong order, as over UDP or several network paths."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeRestart:
-    """End a node's process at the moment `at`, in s, and restart it after the fault's size, in s."""
+    """End a node's process at the moment `at` (s), and restart it after a time that is the fault's size (s)."""
 
     node: str
     at: float

@@ -1,4 +1,4 @@
-"""A wrong sign, as caused by swapped wires of a motor or encoder or by another axis convention."""
+"""A wrong sign, as caused by swapped wires of a motor or encoder or by a different axis convention."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two swapped axes, as caused by a sensor mounted at an angle of 90° or by another frame convention."""
+"""Two swapped axes, as caused by a sensor mounted at an angle of 90° or by a different frame convention."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ from pytest_tarl.spaces import Choice, Span, span
 if TYPE_CHECKING:
     import numpy as np
 
-Arrivals = Iterable[tuple[float, Any]]  # (delay in s, message)
-Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → arrivals of the message, in order
+Arrivals = Iterable[tuple[float, Any]]  # (delay (s), message)
+Channel = Callable[[Any, float], Arrivals]  # (message, virtual time (s)) → arrivals of the message, in order
 OFF_ON = Choice((False, True))
 
 
@@ -23,7 +23,7 @@ OFF_ON = Choice((False, True))
 class TopicFault:
     """A fault of all messages on one topic.
 
-    `begin` makes the channel of an episode from the fault's size and random numbers.
+    `begin` creates the channel of an episode from the fault's size and random numbers.
     """
 
     kind: str
@@ -84,7 +84,7 @@ def of_topic(
 def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     """Return the range of a fault's sizes.
 
-    Raise SettingsError if it does not include `none`, the size without a fault.
+    Raise SettingsError if it does not include `none`, the size at which there is no fault.
     """
     found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
     if not found.low <= none <= found.high:
@@ -94,7 +94,7 @@ def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     return Span(found.low, found.high, none)
 
 
-# s, the longest time of a fault: in nanoseconds, 30 years fit into the 64 bits of a message's time
+# maximum length of a time in a fault (s); in nanoseconds, 30 years fit into the 64 bits of a message's time
 LONGEST = 1e9
 
 
@@ -105,7 +105,7 @@ def moment(value: Any) -> float | None:
 
 
 def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
-    """Return the sizes from 0, no fault, to `most`.
+    """Return the sizes from 0 (no fault) to `most`.
 
     Raise SettingsError unless `most` is positive and at most `limit`.
     """
