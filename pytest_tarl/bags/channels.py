@@ -8,8 +8,8 @@ from typing import NamedTuple
 class Channel(NamedTuple):
     """A recorded topic.
 
-    `type` has the form of ROS 2, `std_msgs/msg/Bool`, also for bags of ROS 1. `definition` is the text of the type, or
-    empty if the bag has none. `latched` is true if the publisher kept its last message for late subscribers.
+    `type` has the form of ROS 2, such as `std_msgs/msg/Bool`, also for bags of ROS 1. `definition` is the text of the
+    type, or empty if the bag has none. `latched` is true if the publisher kept its last message for late subscribers.
     """
 
     topic: str
@@ -20,7 +20,7 @@ class Channel(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """A serialised message and the time of its recording in ns."""
+    """A serialised message and the time at which it was recorded (ns)."""
 
     time: int
     topic: str

@@ -32,7 +32,7 @@ def converted(recorded: Any, wanted: type[Any]) -> Any:
 
 
 def _value(value: Any, template: Any, kind: Kind) -> Any:
-    """Return a field's value in the form of `template`, the value of this field in a new message."""
+    """Return a field's value in the same form as `template`, which is the field's value in a new message."""
     if hasattr(template, "nsecs"):
         return type(template)(value.sec, value.nanosec)
     if is_message(template):

@@ -28,14 +28,14 @@ ENDINGS = (".bag", ".bag.active", ".mcap", ".db3")
 class Bag:
     """A recorded mission: its channels by topic, and access to its messages.
 
-    `notes` are sentences for the user; reading messages can add to them.
+    `notes` are sentences for the user; reading the messages can add further notes.
     """
 
     path: Path
     kind: Kind
     channels: Mapping[str, Channel]
     source: Callable[[], Iterator[Recorded]]
-    start: int  # time of the first message, ns
+    start: int  # time of the first message (ns)
     notes: list[str] = field(default_factory=list)
 
     def messages(self) -> Iterator[Recorded]:

@@ -39,16 +39,16 @@ ALWAYS_THERE = {
 
 
 class MissionReplayed(Skipped):
-    """Raised to leave the test body after the replay, because the rest of the body would drive the test's own world."""
+    """Raised to leave the test body after the replay, because the rest of the body would run the test's own world."""
 
 
 class Moment:
-    """What a monitor reads at the end of a step: the newest recorded message of every topic."""
+    """What a monitor reads at the end of a step: the newest recorded message of each topic."""
 
     def __init__(self, bag: Bag) -> None:
         self.now = 0.0  # seconds since the bag began
         self.over = False  # whether this is the last step
-        self.observe: Callable[..., None] = _unheard  # sets signals that come from no topic
+        self.observe: Callable[..., None] = _unheard  # sets signals that do not come from a topic
         self._bag = bag
         self._data: dict[str, bytes] = {}
         self._read: dict[str, Any] = {}
@@ -70,7 +70,7 @@ class Moment:
 class Replay:
     """The replay of one bag to the nodes of an episode.
 
-    Topics of sensors and topics to which a node subscribes are replayed, except those that a node of the episode
+    Topics of sensors and topics to which a node subscribes are replayed, except those on which a node of the episode
     publishes. `notes` are sentences for the user.
     """
 
@@ -196,7 +196,7 @@ def _chosen(
 
 
 def _watching(monitor: Monitor) -> Any:
-    """Return a monitor that calls another one and discards its reward."""
+    """Return a monitor that calls another monitor and discards its reward."""
 
     def watch(moment: Moment) -> None:
         monitor(moment)
@@ -205,7 +205,7 @@ def _watching(monitor: Monitor) -> Any:
 
 
 def _made(monitor: Any) -> Monitor:
-    """Return the monitor of one mission, a new instance if the marker names a class."""
+    """Return the monitor of one mission; if the marker names a class, this is a new instance."""
     made: Monitor = monitor() if isinstance(monitor, type) else monitor
     return made
 

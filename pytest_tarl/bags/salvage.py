@@ -153,7 +153,7 @@ _ZSTANDARD = ("zstandard", "ZstdDecompressor")  # library that rosbags 0.11.0 us
 
 
 def _decompressor(compression: str) -> Any:
-    """Return a streaming decompressor from the library that the installed `rosbags` depends on.
+    """Return a streaming decompressor from the library on which the installed `rosbags` depends.
 
     Raise ValueError for an unsupported compression.
     """
@@ -177,7 +177,7 @@ def _decompressor(compression: str) -> Any:
 def _walk_db3(path: Path) -> Walk:
     """Yield the contents of an SQLite bag in the order in which messages were written."""
     with closing(sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)) as database:
-        database.execute("PRAGMA writable_schema=ON")  # without it SQLite refuses a truncated file
+        database.execute("PRAGMA writable_schema=ON")  # without this, SQLite refuses to read a truncated file
         texts: dict[str, tuple[str, str]] = {}
         with suppress(sqlite3.Error):  # table missing in recordings before 2023
             query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
