@@ -1,4 +1,4 @@
-"""`tarl apply` and `tarl revert`: apply and undo patches, in all files or in none."""
+"""`tarl apply` and `tarl revert`: apply and undo patches, either in all files or in none."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the text that the patch was tested on, if `content` is that text plus other patches."""
+    """Return the text on which the patch was tested, if `content` is that text plus other patches."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:
@@ -171,7 +171,7 @@ def _again(patches: Sequence[Patch]) -> list[str]:
 
 
 def _move(patches: Sequence[Patch]) -> str:
-    """Return the shell prefix that changes to the folder in which to run commands."""
+    """Return the shell prefix that changes to the folder in which the commands must run."""
     root = patches[0].root
     return f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
 

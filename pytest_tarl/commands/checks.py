@@ -1,4 +1,4 @@
-"""Checks before a patch is applied: its result is the tested text and compiles, and no uncommitted change is lost."""
+"""Checks before a patch is applied: the result is the tested text and compiles, and no uncommitted change is lost."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.patching.reading import Patch
 
 
 def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> None:
-    """Raise RefusedError if the patched text is not the tested one, whose git blob id is in the patch's header."""
+    """Raise RefusedError if the patched text is not the tested one, whose blob id is in the patch's header."""
     if file.exact(content) is None:
         raise RefusedError(
             f"{patch.name} does not produce the tested text of {target.shown}: the patch was edited or damaged. "

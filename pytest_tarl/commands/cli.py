@@ -20,7 +20,7 @@ from pytest_tarl.printable import print_lines, printable
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command and return its exit code: 0, or 1 if it refuses or a check fails, or 2 for a user error."""
+    """Run a command and return its exit code: 0; 1 if it refuses or a check fails; 2 after a user error."""
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
     if sentence is not None:
@@ -74,7 +74,7 @@ def parser() -> Parser:
 
 
 def _nothing(_: str) -> str | None:
-    """Return None: the command needs no packages besides those of the linter."""
+    """Return None, because the command needs no packages besides those of the linter."""
     return None
 
 
@@ -92,7 +92,7 @@ def _workspace(arguments: argparse.Namespace) -> int:
 def _lsp(_: argparse.Namespace) -> int:
     from tarl_lint import import_path
 
-    import_path.restrict()  # never import modules from the workspace, even if started there
+    import_path.restrict()  # never import modules from the workspace, even if `tarl` was started there
     from pytest_tarl.editor.server import main as serve
 
     return serve(_applied)

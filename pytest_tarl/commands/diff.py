@@ -22,7 +22,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class FixtureDiff:
-    """The changes. `loss` is the mean reward per episode of A minus that of B, `p_loss` its permutation p-value."""
+    """The changes. `loss` is A's mean reward per episode minus B's, `p_loss` its permutation p-value."""
 
     loss: float
     p_loss: float
@@ -30,7 +30,7 @@ class FixtureDiff:
     gone: tuple[SitePlace, ...]
     new: tuple[SitePlace, ...]
     moved: tuple[Moved, ...]
-    cells: tuple[int, int, int]  # number of cells: only in A, in both, only in B
+    cells: tuple[int, int, int]  # numbers of cells: only in A, in both, only in B
     same_sensors: bool
 
     def worse(self, alpha: float, most: float = 0.0) -> bool:
@@ -44,7 +44,7 @@ class FixtureDiff:
 
 
 SIGNIFICANT = 0.05
-MOST = 12  # maximum number of statements listed per kind
+MOST = 12  # maximum number of statements that are listed per kind
 
 
 def compared(first: Fixture, second: Fixture) -> FixtureDiff:
@@ -69,7 +69,7 @@ def compared(first: Fixture, second: Fixture) -> FixtureDiff:
 
 
 def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
-    """Yield the printed lines of a difference."""
+    """Yield the lines that print a difference."""
     a, b = first.sample, second.sample
     yield f"{first.test} → {second.test}" if first.test != second.test else first.test
     yield f"  episodes   {a.episodes} → {b.episodes}"

@@ -1,4 +1,4 @@
-"""`tarl diff` of margins: show as text or Markdown whether a change makes a robot more fragile."""
+"""`tarl diff` for margins: show as text or Markdown whether a change makes a robot more fragile."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def plain(text: str) -> str:
-    """Return a text without characters that end a table cell or a code span."""
+    """Return a text without the characters that end a table cell or a code span."""
     return text.translate(_HARMLESS)
 
 

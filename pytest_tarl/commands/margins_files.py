@@ -19,10 +19,10 @@ def is_recording(place: str) -> bool:
 
 
 def margins_in(place: str) -> list[Margins]:
-    """Return the margins of a file or of the `.json` files of a folder, in the order of their names.
+    """Return the margins of a file, or of the `.json` files of a folder in the order of their names.
 
-    Raise FixtureError if the place does not exist or a file holds no margins. At a revision without the folder, there
-    are no margins.
+    Raise FixtureError if the place does not exist or if a file contains no margins. If the folder does not exist at a
+    revision, there are no margins.
     """
     path = Path(place)
     if path.is_dir():
@@ -64,7 +64,7 @@ def _at(revision: str, inner: str) -> list[Margins]:
 
 
 def _git(*arguments: str) -> bytes | None:
-    """Return git's output; None if it fails."""
+    """Return git's output, or None if git fails."""
     command = ("git", "-c", "core.fsmonitor=false", *arguments)
     done = subprocess.run(command, capture_output=True, check=False)
     return done.stdout if done.returncode == 0 else None

@@ -1,4 +1,4 @@
-"""Replace the contents of several files, all or none. Do not follow links or overwrite concurrent changes."""
+"""Replace the contents of several files, or of none. Neither follow links nor overwrite concurrent changes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _CREATE: int = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NOFOLLOW | getattr(os, "O
 
 
 class MovedError(Exception):
-    """A file changed after its check: it has other content, or another file replaced it."""
+    """A file changed after it was checked: its content differs, or another file replaced it."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(str(path))
@@ -28,7 +28,7 @@ class MovedError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A file inside `project` to change from `before` to `after`; both paths are resolved."""
+    """A file inside `project` that changes from `before` to `after`; both paths are resolved."""
 
     path: Path
     project: Path
@@ -38,7 +38,7 @@ class Change:
 
 @dataclass(frozen=True)
 class _Opened:
-    """A change with its folder held open, so that replacing the folder has no effect."""
+    """A change whose folder is held open, so that replacing the folder has no effect."""
 
     change: Change
     folder: int | None

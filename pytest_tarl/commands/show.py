@@ -18,7 +18,7 @@ FEW = 24  # maximum number of statements listed without --sites
 
 
 def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = False) -> Iterator[str]:
-    """Yield the summary of a recording of `size` bytes; `sizes` are the bytes of its taint lists.
+    """Yield the summary of a recording of `size` bytes; `sizes` are the sizes of its taint lists in bytes.
 
     List the statements if there are few, or if `every` is true.
     """
@@ -49,7 +49,7 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
 
 
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
-    """Describe a sensor and the number of visited bins."""
+    """Describe a sensor and how many of its bins were visited."""
     origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
     origin += f", node variable {sensor.expr}" if sensor.expr else ""
     if len(sensor.edges) == 1:

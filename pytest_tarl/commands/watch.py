@@ -18,7 +18,7 @@ from pytest_tarl.monitoring.watch import Watch
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # maximum seconds between two reports while missions remain unread
+TOLD = 1.0  # maximum time between two reports while missions remain unread (s)
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class Order:
     json: Path | None = None
     alpha: float = 0.05
     seed: int = 0
-    interval: float = 1.0  # seconds between two reads of the logs
-    every: float = 60.0  # seconds between two lines of output
+    interval: float = 1.0  # time between two reads of the logs (s)
+    every: float = 60.0  # time between two lines of output (s)
     once: bool = False
     until_alarm: bool = False
     ros: str = ""  # library that publishes diagnostics: "rospy" or "rclpy"
 
 
 def run(order: Order) -> int:
-    """Watch until an end condition holds. Return 1 after an alarm, 130 if Ctrl-C interrupts `once`, else 0.
+    """Watch until an end condition holds. Return 1 after an alarm, 130 if Ctrl-C interrupts `once`, and 0 otherwise.
 
     Raise LogError if a log cannot be read under `once`; FixtureError, MonitorError or SettingsError for invalid input.
     """

@@ -1,4 +1,4 @@
-"""`tarl workspace`: list the packages of a workspace, their nodes and launch files, and unreadable files."""
+"""`tarl workspace`: list the packages of a workspace, their nodes and launch files, and files that cannot be read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.workspace.model import Package, Problem, Workspace
 from tarl_lint.workspace.read import read
 
 FORMAT_VERSION = 1
-WIDEST = 44  # characters of a list in the table; the JSON format has the whole list
+WIDEST = 44  # maximum number of characters of a list in the table; the JSON output has the whole list
 HEADINGS = ("package", "kind", "nodes and scripts", "launch files", "not read")
 
 
@@ -67,7 +67,7 @@ def _row(package: Package) -> tuple[str, ...]:
 
 
 def _shortened(names: Sequence[str]) -> str:
-    """Return as many names as fit, and the number of omitted names."""
+    """Return as many names as fit, and how many were omitted."""
     shown: list[str] = []
     for name in names:
         if shown and len(", ".join([*shown, name])) > WIDEST:
