@@ -1,4 +1,4 @@
-"""Replacements for rospy and rclpy that run in this process: virtual clock, synchronous delivery, no state left over.
+"""Replacements for rospy and rclpy that run in this process: virtual clock, synchronous delivery, no leftover state.
 
 Heavy modules are imported when `Ros`, `Bus` or `message_type` is first used.
 """

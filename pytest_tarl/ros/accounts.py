@@ -13,7 +13,7 @@ _PACKAGE = str(Path(__file__).parent.parent)
 
 
 def account(error: BaseException, test: Path) -> str:
-    """Return the text to show for an error in a test: its message, and the traceback of the node if a node failed."""
+    """Return the text to show for an error in a test: its message, and the node's traceback if a node failed."""
     cause = error.__cause__
     if not isinstance(error, NodeError) or cause is None or cause.__traceback__ is None:
         return str(error)

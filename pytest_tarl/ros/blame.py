@@ -12,13 +12,13 @@ _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", 
 _SYSTEM = (
     "/dist-packages/",
     "/opt/ros/",
-)  # folders of a system ROS, which sysconfig omits in a virtual environment
+)  # folders of a system ROS, which sysconfig does not list in a virtual environment
 
 Place = tuple[str, int, str]  # file, line, function
 
 
 def of_traceback(traceback: TracebackType | None) -> Place | None:
-    """Return the innermost place in user code of an exception."""
+    """Return the innermost place in user code at which an exception occurred."""
     places = []
     while traceback is not None:
         places.append(
@@ -34,7 +34,7 @@ def of_frame(frame: FrameType | None) -> Place | None:
 
 
 def describe(place: Place | None) -> str:
-    """Format a place, `traveller.py, line 31, in travel`; relative to the working directory if below it."""
+    """Format a place, such as `traveller.py, line 31, in travel`; relative to the working directory if below it."""
     if place is None:
         return "an unknown line"
     file, line, function = place

@@ -18,7 +18,7 @@ from pytest_tarl.ros.services import Reply, ServiceDirectory
 Listener = Callable[[Any], None]
 Channel = Callable[
     [Any, float], Iterable[tuple[float, Any]]
-]  # (message, time in s) → pairs of a delay in s and a message
+]  # (message, time (s)) → pairs of a delay (s) and a message
 
 
 class Subscription(Protocol):
@@ -57,7 +57,7 @@ class Topic:
         self.listeners: list[Listener] = []
         self.latest: Any = None
         self.kept: dict[Any, Any] = {}
-        self.channels: list[Channel] = []  # the faults that messages pass through
+        self.channels: list[Channel] = []  # fault injectors that each message passes through
         self.carried = False  # whether anything was ever published
 
 
@@ -105,7 +105,7 @@ class Bus:
         self._run(self._deliver, place, message, True)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message that a node published on the topic, None before the first."""
+        """Return the newest message that a node published on the topic, or None before the first one."""
         return self.topic(topic).latest
 
     def subscribe(self, topic: str, callback: Listener) -> None:
@@ -117,7 +117,7 @@ class Bus:
         self._observers.append(observer)
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
-        """Serve a service from the world: `handler(request)` returns the response."""
+        """Serve a service from the world; `handler(request)` returns the response."""
         self._own_services("serve").serve(service, service_type, handler)
 
     def call(self, service: str, request: Any) -> Reply:
@@ -149,7 +149,7 @@ class Bus:
         return self._services
 
     def topic(self, name: str) -> Topic:
-        """Return the topic of that name; create it at first use."""
+        """Return the topic with that name; create it on first use."""
         found = self._by_spelling.get(name)
         if found is None:
             resolved = absolute(name)
@@ -184,7 +184,7 @@ class Bus:
             self._scheduler.later(lambda: self._deliver(place, message, False, publication))
 
     def interpose(self, topic: str, channel: Channel) -> None:
-        """Add a channel that all messages on a topic pass through; it comes after the topic's other channels."""
+        """Add a channel that all messages on a topic pass through; it comes after the channels added before."""
         self.topic(topic).channels.append(channel)
 
     def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
@@ -236,7 +236,7 @@ class Bus:
         self._scheduler.later(lambda: self._hand(place, subscription, message, origin))
 
     def disconnect(self, process: Program) -> None:
-        """Forget the publications and subscriptions of a process that has ended."""
+        """Remove the publications and subscriptions of a process that has ended."""
         for place in self._topics.values():
             place.subscriptions = [s for s in place.subscriptions if s.process is not process]
             place.publications = [p for p in place.publications if p.process is not process]

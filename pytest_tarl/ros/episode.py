@@ -24,8 +24,8 @@ from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
 class Ros(Network):
     """Nodes, their bus and their clock, for one episode.
 
-    Every node gets `parameters` (`kp`, `~kp` or `/node/kp`) and `remappings` (old → new name).
-    `watchdog_limit` is the CPU time in seconds after which a node that does not wait is stopped.
+    Every node gets `parameters` (`kp`, `~kp` or `/node/kp`) and `remappings` (old → new name). `watchdog_limit` is the
+    CPU time in seconds after which a node that does not wait is stopped.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class Ros(Network):
     ) -> None:
         super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
-        self._launched = NOTHING  # parameters for the node that is started next
+        self._launched = NOTHING  # launch-file parameters for the node that is started next
         self._launch_notes: list[str] = []
         self.closed = False
 
@@ -129,7 +129,7 @@ class Ros(Network):
             self._run(self.scheduler.spawn, process, function, *arguments)
 
     def interrupt(self, name: str, at: float, outage: float) -> None:
-        """Kill the node `name` at the time `at`, in s, and start it again `outage` seconds later."""
+        """Kill the node `name` at the time `at` (s), and start it again `outage` seconds later."""
 
         def kill() -> None:
             running = next((one for one in self.processes if one.name == name and not one.ended), None)

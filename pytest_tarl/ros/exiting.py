@@ -16,7 +16,7 @@ class ProcessExit(SystemExit):
 
 @contextmanager
 def exits_of_nodes() -> Iterator[None]:
-    """Replace `os._exit` while nodes run, which would end pytest without a verdict and with the node's status."""
+    """Replace `os._exit` while nodes run: it would end pytest without a verdict and with the node's status."""
     real, owner = os._exit, os.getpid()
 
     def leave(status: int) -> NoReturn:

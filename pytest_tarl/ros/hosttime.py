@@ -30,7 +30,7 @@ _CLOCKS: tuple[tuple[Any, str], ...] = (
     (queue, "time"),
 )
 
-_POLL = nanoseconds(0.01)  # ns, polling period of `select`
+_POLL = nanoseconds(0.01)  # polling period of `select` (ns)
 
 
 @contextmanager

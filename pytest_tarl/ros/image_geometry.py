@@ -193,7 +193,7 @@ class StereoCameraModel:
         return self.left.project3dToPixel(point), self.right.project3dToPixel(point)
 
     def projectPixelTo3d(self, left_uv: Point, disparity: float) -> tuple[float, float, float]:
-        """Return the point at a pixel of the left image with that disparity in pixels."""
+        """Return the point at a pixel of the left image that has that disparity in pixels."""
         x, y, z, w = (self.Q @ _matrix([left_uv[0], left_uv[1], disparity, 1.0], 4, 1)).A1.tolist()
         return (x / w, y / w, z / w) if w else (0.0, 0.0, 0.0)
 

@@ -89,7 +89,7 @@ class StandinFinder:
             inner = {key for key, value in contents.items() if isinstance(value, ModuleType)}
             hidden = {
                 key for key in inner if f"{name}.{key}" in STANDINS
-            }  # modules of this package with the name of a stand-in's submodule
+            }  # modules of the package that have the name of a stand-in's submodule
             module.__dict__.update((key, value) for key, value in contents.items() if key not in hidden)
             module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
@@ -234,7 +234,7 @@ def standins_installed(
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
             del sys.modules[
                 name
-            ]  # refers to a stand-in of this episode, so the next episode must import it again
+            ]  # refers to a stand-in of this episode, so that the next episode must import it again
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)

@@ -176,7 +176,7 @@ class _StandardInput:
 
 
 def own_terminal() -> Terminal | None:
-    """Return the terminal of the running node; None outside of nodes."""
+    """Return the terminal of the running node, or None outside of nodes."""
     process = running_process()
     return process.part(Terminal) if process is not None else None
 
@@ -184,7 +184,8 @@ def own_terminal() -> Terminal | None:
 def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None]:
     """Split the streams of a `select`.
 
-    Return the streams that are the node's terminal, all other streams, and the terminal (None if not among them).
+    Return the streams that are the node's terminal, all other streams, and the terminal (or None if it is not among
+    them).
     """
     terminal = own_terminal()
     own = [one for one in streams if terminal is not None and terminal.owns(one)]
@@ -195,7 +196,8 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
     """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
 
-    Replacements by the test stay: its own `input`, or its own stream as `sys.stdin`, from which `input` then reads.
+    Replacements by the test stay in place: its own `input`, or its own stream as `sys.stdin`, from which `input` then
+    reads.
     """
     mine = _StandardInput(sys.stdin)
     replaced: list[tuple[Any, str, Any, Any]] = [(os, "read", os.read, _read(os.read))]

@@ -24,15 +24,15 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.ros_names import joined, remapped
 
-SHOWN = 3  # problems of a launch file in one note
+SHOWN = 3  # maximum number of a launch file's problems in one note
 _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 
 
 @dataclass(frozen=True)
 class Launched:
-    """A node of a launch file. `path` is its Python program; if it has none, `foreign` is the reason.
+    """A node of a launch file. `path` is its Python program; if it has none, `foreign` says why.
 
-    `problem` is the reason why it cannot be started; empty if it can.
+    `problem` says why it cannot be started; it is empty if it can be.
     """
 
     launch: Launch
@@ -65,7 +65,7 @@ class Launched:
 
 @dataclass(frozen=True)
 class LaunchPlan:
-    """The nodes of a launch file in the order of starting, and notes for the user."""
+    """The nodes of a launch file in starting order, and notes for the user."""
 
     file: Path
     nodes: tuple[Launched, ...]
@@ -106,7 +106,7 @@ class LaunchPlan:
 
 
 def named(one: Launched, names: Iterable[str]) -> bool:
-    """Return whether one of these names is a name of the node."""
+    """Return whether the node has one of these names."""
     return not one.spellings.isdisjoint(names)
 
 
@@ -212,7 +212,7 @@ def _command_line(node: LaunchedNode, *, ros2: bool) -> Iterator[str]:
 
 
 def _symbolic(node: LaunchedNode, name: str, arguments: Collection[str]) -> str:
-    """Return a reason if a node cannot be started because part of its description is known only on the robot."""
+    """Return why a node cannot be started if part of its description is only known on the robot, or ""."""
     remaps = [side for pair in node.remaps for side in pair]
     texts = [node.package, node.executable, node.name, node.namespace, node.arguments, *remaps]
     unknown = next((text for text in texts if "$(" in text), None)

@@ -26,9 +26,9 @@ from tarl_lint.workspace.ros_names import joined
 class Given:
     """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
 
-    `node` is the absolute name of a node that `tarl.launch` starts, empty for one that `tarl.start` starts. `valueless`
-    holds names of parameters without a usable value: either the value is known only at launch, or it is null in YAML,
-    which ROS 1 cannot store.
+    `node` is the absolute name of a node that `tarl.launch` starts; it is empty for one that `tarl.start` starts.
+    `valueless` holds names of parameters without a usable value: either the value is only known at launch, or it is
+    null in YAML, which ROS 1 cannot store.
     """
 
     private: Mapping[str, Any] = field(default_factory=dict)
@@ -67,7 +67,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 
 
 def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: Sequence[Path]) -> Given:
-    """Return the parameters if all files agree; otherwise, those on which all files of the script's package agree."""
+    """Return the parameters if all files agree, or else those on which all files of the script's package agree."""
     own = workspace.package_of(script)
     telling = [(one, file) for one, file in zip(found, files, strict=True) if one.private or one.shared]
     near = [(one, file) for one, file in telling if own is not None and file.is_relative_to(own.folder)]
@@ -206,7 +206,7 @@ def _read(file: Path, workspace: Workspace) -> Launch:
 
 @contextmanager
 def texts_replaced() -> Iterator[None]:
-    """Clear the caches of launch and parameter files on entry and exit, because their texts differ in the context."""
+    """Clear the caches of launch and parameter files on entry and on exit, because the texts differ in the context."""
     for clear in WITH_TEXTS:
         clear()
     try:

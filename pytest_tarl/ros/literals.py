@@ -18,7 +18,7 @@ _WORDS = {
 
 
 def parse_value(text: str) -> Any:
-    """Parse a number, boolean, list or string, like `rosrun … _gain:=2.5` and `-p gain:=2.5` do."""
+    """Parse a number, boolean, list or string as `rosrun … _gain:=2.5` and `-p gain:=2.5` do."""
     text = text.strip()
     if text.lower() in _WORDS:
         return _WORDS[text.lower()]

@@ -38,7 +38,7 @@ _COMPILED: Final = frozenset(["PyKDL", "kdl_parser_py", "ompl", "openravepy", "p
 
 
 def module_advice(error: ModuleNotFoundError) -> str:
-    """Return one sentence on how to make a failed import work."""
+    """Return one sentence that says how to make a failed import work."""
     root, _, inner = (error.name or "").partition(".")
     if inner or not root:
         return ""  # the package is there, so the name is misspelled

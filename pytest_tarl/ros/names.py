@@ -22,7 +22,7 @@ class CommandLine:
 
 
 def absolute(name: str) -> str:
-    """Add the leading slash to a name and drop doubled and trailing ones: `odom` → `/odom`."""
+    """Add the leading slash to a name and remove doubled and trailing ones, such as `odom` → `/odom`."""
     return "/" + "/".join(part for part in name.split("/") if part)
 
 

@@ -22,9 +22,9 @@ _PYTHON_2_NAMES = re.compile(
 
 
 def advice(error: BaseException, given: Given) -> str:
-    """Return one sentence of advice on a node's error; empty if the error's own text suffices.
+    """Return one sentence of advice about a node's error; empty if the error's own text is enough.
 
-    `given` are the parameters that launch files give the node.
+    `given` holds the parameters that launch files give the node.
     """
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
@@ -68,7 +68,7 @@ def _of_lookup(error: KeyError, given: Given) -> str:
 
 
 def _of_arguments(error: BaseException) -> str:
-    """Return advice for missing command line arguments, including the message of the node's argument parser."""
+    """Return advice about missing command line arguments, including the message of the node's argument parser."""
     hint = "pass argv=[…] to tarl.start."
     for frame in _frames(error):
         module = frame.f_globals.get("__name__")

@@ -92,7 +92,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
 
 
 def get_package_name(path: str) -> str | None:
-    """Return the name of the package that contains a path; None outside of packages."""
+    """Return the name of the package that contains a path, or None outside of packages."""
     place = Path(path).resolve()
     around = [
         (len(folder.parts), name)
@@ -109,12 +109,12 @@ def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
 
 
 def get_log_dir(env: Mapping[str, str] | None = None) -> str:
-    """Return the folder of ROS's logs: `ROS_LOG_DIR`, else `log` in `get_ros_home`."""
+    """Return the folder of ROS's logs: `ROS_LOG_DIR`, or else `log` in `get_ros_home`."""
     return (os.environ if env is None else env).get("ROS_LOG_DIR") or str(Path(get_ros_home(env)) / "log")
 
 
 def get_ros_home(env: Mapping[str, str] | None = None) -> str:
-    """Return the folder of ROS's logs and settings: `ROS_HOME`, else `.ros` in the home folder."""
+    """Return the folder of ROS's logs and settings: `ROS_HOME`, or else `.ros` in the home folder."""
     given = os.environ if env is None else env
     return given.get("ROS_HOME") or str(Path.home() / ".ros")
 

@@ -34,7 +34,7 @@ class ParameterServer:
                 self.set(f"{node}/{name}", value)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return the value, or the subtree as a dict."""
+        """Return the value, or the subtree as a dictionary."""
         branch: Any = self._root
         for key in keys_of(name):
             if not isinstance(branch, dict) or key not in branch:

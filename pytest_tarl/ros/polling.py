@@ -1,7 +1,7 @@
 """Make polling tasks wait. A task polls if it reads the time or the state of ROS in a loop without a pause.
 
-On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock moves only when every task
-waits, so such a loop would never end. Therefore, a task that polls PATIENCE times at one instant waits for PAUSE. From
+On a robot, time passes while `while rospy.Time.now() < end: …` runs. The virtual clock advances only when every task
+waits, so such a loop would never end. Therefore a task that polls PATIENCE times at one instant waits for PAUSE. From
 then on, it waits after every AGAIN polls, until it waits by itself. These limits are counts, so the result does not
 depend on real time.
 """
@@ -11,8 +11,8 @@ from __future__ import annotations
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import running_task
 
-AGAIN = 10  # polls of a polling task between two waits
-PAUSE = nanoseconds(0.01)  # ns of virtual time that a polling task waits
+AGAIN = 10  # number of polls of a polling task between two waits
+PAUSE = nanoseconds(0.01)  # virtual time that a polling task waits (ns)
 
 
 def asked() -> None:

@@ -19,14 +19,14 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 
 Part = TypeVar("Part")
 
-_PATIENCE = 1_000  # immediate returns from waits before a task counts as ignoring the shutdown
-_ROUNDS = 5  # rounds in which the tasks of an ending process can return before they are killed
+_PATIENCE = 1_000  # number of waits that return at once before a task counts as ignoring the shutdown
+_ROUNDS = 5  # number of rounds in which the tasks of an ending process may return before they are killed
 
 
 class Network:
     """State shared by the processes of an episode: clock, topics, services, parameters.
 
-    `part` holds state that one client library shares between processes, such as its actions.
+    `part` holds state that a client library shares between processes, such as its actions.
     """
 
     def __init__(
@@ -47,11 +47,11 @@ class Network:
 
     @cached_property
     def parameter_server(self) -> ParameterServer:
-        """The ROS 1 parameters, filled from `parameters` at first use."""
+        """The ROS 1 parameters, filled from `parameters` on first use."""
         return ParameterServer(self.parameters)
 
     def part(self, kind: Callable[[Network], Part]) -> Part:
-        """Return this episode's instance of `kind`; create it at first use."""
+        """Return this episode's instance of `kind`; create it on first use."""
         if kind not in self._parts:
             self._parts[kind] = kind(self)
         found: Part = self._parts[kind]
@@ -73,7 +73,7 @@ class Process:
         self._closing = False
         self._refused = 0
         self.launched = NOTHING  # parameters from a launch file
-        self.label = name  # name in messages: that of the node once it has one
+        self.label = name  # name in messages; that of the node as soon as it has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []
@@ -89,7 +89,7 @@ class Process:
         return self.ros.bus
 
     def part(self, kind: Callable[[Process], Part]) -> Part:
-        """Return this process's instance of `kind`; create it at first use."""
+        """Return this process's instance of `kind`; create it on first use."""
         if kind not in self._parts:
             self._parts[kind] = kind(self)
         found: Part = self._parts[kind]
@@ -109,7 +109,7 @@ class Process:
         program()
 
     def failed(self, task: Task, error: BaseException) -> None:
-        """Handle the exception that ended a task. An exception of the node becomes a NodeError."""
+        """Handle the exception that ended a task; an exception of the node becomes a NodeError."""
         if self.ending and getattr(error, "tarl_shutdown", False):
             return
         if isinstance(error, Spinning):
@@ -201,12 +201,12 @@ class Process:
 
 
 def _of_pytest(error: BaseException) -> bool:
-    """Return whether an exception comes from pytest.fail, skip or exit; does not import pytest."""
+    """Return whether an exception comes from pytest.fail, skip or exit, without importing pytest."""
     return any(kind.__module__ == "_pytest.outcomes" for kind in type(error).__mro__)
 
 
 def running_process() -> Process | None:
-    """Return the process of the running task; None outside of nodes."""
+    """Return the process of the running task, or None outside of nodes."""
     task = running_task()
     return task.process if task is not None and isinstance(task.process, Process) else None
 

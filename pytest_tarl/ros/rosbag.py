@@ -117,7 +117,7 @@ class Bag:
         raw: bool = False,
         return_connection_header: bool = False,
     ) -> Iterator[BagMessage]:
-        """Yield topic, message and time in order of time; optionally of some topics, within inclusive limits.
+        """Yield topic, message and time in order of time; optionally only some topics, within inclusive limits.
 
         Raise UnsupportedApiError for filters of connections and for connection headers.
         """
@@ -139,7 +139,7 @@ class Bag:
             yield BagMessage(connection.topic, message, stamp)
 
     def write(self, topic: str, msg: Any, t: Any = None, raw: bool = False, **_: Any) -> None:
-        """Write a message with the time `t`, by default the current time. Raise UnsupportedApiError for `raw`."""
+        """Write a message with the time `t` (default: the current time). Raise UnsupportedApiError for `raw`."""
         if raw:
             raise unsupported("rosbag.Bag.write(raw=True)")
         from pytest_tarl.ros.rospy.timing import Time as RospyTime
@@ -164,7 +164,7 @@ class Bag:
         return float((self._open().end_time - 1) / 1e9)
 
     def get_message_count(self, topic_filters: Any = None) -> int:
-        """Return the number of messages, optionally of some topics."""
+        """Return the number of messages, optionally of some topics only."""
         wanted = [topic_filters] if isinstance(topic_filters, str) else topic_filters
         return sum(one.msgcount for one in self._open().connections if wanted is None or one.topic in wanted)
 
@@ -188,7 +188,7 @@ class Bag:
         return self._bag
 
     def _class(self, connection: Any) -> Any:
-        """Return a connection's message class: the known one if its checksum matches, else built from the bag."""
+        """Return a connection's message class: the known one if its checksum matches, else one built from the bag."""
         name = connection.msgtype.replace("/msg/", "/")
         if name not in self._classes:
             known = find_class("ros1", *name.split("/"))

@@ -26,12 +26,12 @@ __all__ = [
 
 
 def get_message_class(message_type: str, reload_on_error: bool = False) -> Any:  # noqa: ARG001 (genpy's signature)
-    """Return the class of a message type such as `std_msgs/String`; None if it is unknown."""
+    """Return the class of a message type such as `std_msgs/String`, or None if it is unknown."""
     return _class(message_type, "msg")
 
 
 def get_service_class(service_type: str, reload_on_error: bool = False) -> Any:  # noqa: ARG001
-    """Return the class of a service type such as `std_srvs/Empty`; None if it is unknown."""
+    """Return the class of a service type such as `std_srvs/Empty`, or None if it is unknown."""
     return _class(service_type, "srv")
 
 
@@ -45,7 +45,7 @@ def _class(name: str, part: str) -> Any:
 
 
 def strify_message(val: Any, indent: str = "", *_: Any, **__: Any) -> str:
-    """Format a message like `rostopic echo` does."""
+    """Format a message as `rostopic echo` does."""
     return as_yaml(val, indent)
 
 

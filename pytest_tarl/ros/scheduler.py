@@ -1,8 +1,8 @@
 """Schedule tasks, which are greenlets, on a virtual clock.
 
 All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another task
-directly. It only requests that (`wake`, `later`) and continues until it waits itself. So the order of execution is
-deterministic.
+directly: it only requests this (`wake`, `later`) and continues until it waits itself. The order of execution is
+therefore deterministic.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
-PATIENCE = 500  # polls at one instant before a task counts as polling, see polling.py
+PATIENCE = 500  # number of polls at one instant before a task counts as polling, see polling.py
 
 
 class Program(Protocol):
@@ -55,9 +55,9 @@ class Task:
         self.process = process
         self.function = function
         self.args = args
-        self.ticket = 0  # increases at every resumption; heap entries with an older ticket are stale
+        self.ticket = 0  # increases at every resumption; heap entries with an older number are stale
         self.parked = False
-        self.patience = PATIENCE  # polls left until it must wait
+        self.patience = PATIENCE  # number of polls left until the task must wait
         self.done = False
         self.worker: Worker | None = None
 
@@ -103,7 +103,7 @@ def hand_over() -> Any:
 
 
 def running_task() -> Task | None:
-    """Return the running task; None outside of tasks."""
+    """Return the running task, or None outside of tasks."""
     worker = getcurrent()
     return worker.task if isinstance(worker, Worker) else None
 
@@ -128,7 +128,7 @@ class Scheduler:
         self._sequence = 0
         self._running: Task | None = None
         self._idle: list[Worker] = []
-        self.entering: Callable[[Program], None] | None = None  # called before a task of a program resumes
+        self.entering: Callable[[Program], None] | None = None  # called before a task of a program is resumed
 
     def wait(self, until: int | None = None) -> bool:
         """Suspend the running task until the instant `until` or until woken; return whether it was woken.

@@ -9,7 +9,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot, translate
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
-Answer = Callable[[Any], None]  # gets the response; None if the handler returned none
+Answer = Callable[[Any], None]  # is called with the response, or None if the handler returned none
 
 
 class Endpoint(Protocol):
@@ -35,7 +35,7 @@ class ServiceDirectory:
         return name in self._endpoints or name in self._offers
 
     def find(self, name: str) -> Endpoint | None:
-        """Return the endpoint of a service; None if there is none."""
+        """Return the endpoint of a service, or None if there is none."""
         if name not in self._endpoints and name in self._offers:
             self._offers[name]()  # `make` adds the endpoint
         return self._endpoints.get(name)
@@ -66,7 +66,7 @@ class ServiceDirectory:
         return [(name, endpoint.service_class) for name, endpoint in self._endpoints.items()]
 
     def wait(self, task: Task, name: str, until: int | None, going_on: Callable[[], bool]) -> bool:
-        """Wait in `task` until `name` is served; return whether that happened in time."""
+        """Wait in `task` until `name` is served; return whether it is served in time."""
         clock = self._scheduler
         self._waiting.append(task)
         try:

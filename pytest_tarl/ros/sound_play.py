@@ -66,7 +66,7 @@ class SoundClient:
             self.actionclient.send_goal_and_wait(goal)
 
     def voiceSound(self, s: str, volume: float = 1.0) -> Sound:  # noqa: N802
-        """Return a spoken text."""
+        """Return the sound of a spoken text."""
         return Sound(self, _SAY, s, volume=volume)
 
     def waveSound(self, sound: str, volume: float = 1.0) -> Sound:  # noqa: N802
@@ -98,7 +98,7 @@ class SoundClient:
         self._file(sound, "", _LOOP, volume, **kwargs)
 
     def stopWave(self, sound: str) -> None:  # noqa: N802
-        """Stop a file."""
+        """Stop playing a file."""
         self._file(sound, "", _STOP, 1.0)
 
     def playWaveFromPkg(self, package: str, sound: str, volume: float = 1.0, **kwargs: Any) -> None:  # noqa: N802
@@ -110,7 +110,7 @@ class SoundClient:
         self._file(sound, package, _LOOP, volume, **kwargs)
 
     def stopWaveFromPkg(self, sound: str, package: str) -> None:  # noqa: N802
-        """Stop a file of a package."""
+        """Stop playing a file of a package."""
         self._file(sound, package, _STOP, 1.0)
 
     def play(self, sound: int, volume: float = 1.0, **kwargs: Any) -> None:

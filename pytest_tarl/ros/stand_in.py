@@ -31,7 +31,7 @@ class StandIn:
         return self._launched.resolve(name)
 
     def parameter(self, name: str, default: Any = None) -> Any:
-        """Return a parameter that the launch file gives the node, else the default."""
+        """Return a parameter that the launch file gives the node, or else the default."""
         given = self._launched.given
         return given.private.get(name, given.shared.get(self.resolve(name), default))
 
@@ -44,11 +44,11 @@ class StandIn:
         self._ros.bus.subscribe(self.resolve(topic), callback)
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message that a node published on the topic, None before the first."""
+        """Return the newest message that a node published on the topic, or None before the first one."""
         return self._ros.bus.latest(self.resolve(topic))
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
-        """Serve a service: `handler(request)` returns the response (in-process ROS only)."""
+        """Serve a service; `handler(request)` returns the response (in-process ROS only)."""
         self._ros.bus.serve(self.resolve(service), service_type, handler)
 
     def every(self, seconds: float, function: Callable[[], object]) -> None:
@@ -70,7 +70,7 @@ class StandIn:
 
 
 class _OfTest(Process):
-    """The process of a replacing function. Its errors are raised in the test unchanged."""
+    """The process of a function that replaces a node; its errors are raised in the test unchanged."""
 
     def failed(self, task: Task, error: BaseException) -> None:  # noqa: ARG002
         """Raise the error in the test, unless the episode is over."""

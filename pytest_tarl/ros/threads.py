@@ -55,7 +55,7 @@ class Lock:
         self._waiting: deque[Task] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock; return whether that succeeded. Raise RuntimeError on a deadlock of the test itself."""
+        """Acquire the lock; return whether that succeeded. Raise RuntimeError if the test itself would deadlock."""
         clock = self._scheduler
         until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
         while self._held:

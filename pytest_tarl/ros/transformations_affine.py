@@ -258,7 +258,7 @@ def random_vector(size: int) -> Any:
 
 
 def random_quaternion(rand: Numbers | None = None) -> Any:
-    """Return a uniform random rotation, or the one for three given numbers in [0, 1] (Shoemake 1992)."""
+    """Return a uniform random rotation, or the one that three given numbers in [0, 1] determine (Shoemake 1992)."""
     import numpy as np
 
     one, two, three = random_vector(3) if rand is None else rand

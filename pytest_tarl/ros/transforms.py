@@ -10,7 +10,7 @@ from typing import Any
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
-DEFAULT_CACHE = 10_000_000_000  # ns
+DEFAULT_CACHE = 10_000_000_000  # maximum age of stored transforms (ns)
 
 
 class TransformException(Exception):  # noqa: N818 (these names are tf2's)

@@ -25,7 +25,7 @@ class UninstalledFinder:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find a top-level module imported by a workspace file: in its own package, else in the workspace."""
+        """Find a top-level module that a workspace file imports: in its own package, or else in the workspace."""
         if path is not None or "." in name:
             return None
         importer = _importer(sys._getframe(1))
@@ -60,7 +60,7 @@ def _importer(frame: FrameType | None) -> FrameType | None:
 
 
 def _nearest(name: str, importer: Path) -> Path | None:
-    """Return the only module of that name in the importer's package, else the only one in its workspace."""
+    """Return the only module with that name in the importer's package, or else the only one in its workspace."""
     for workspace in workspaces():
         if importer.is_relative_to(workspace.root):
             found = [one for one in _modules(workspace.root).get(name, ()) if one != importer]
@@ -101,7 +101,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 @cache
 def is_optional(file: str, line: int) -> bool:
-    """Return whether a line is in a `try` that catches a failed import: the node can do without the module or name."""
+    """Return whether a line is in a `try` that catches a failed import, so that the node works without the name."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

@@ -1,4 +1,4 @@
-"""Stop a node that never waits. It measures CPU time, so it stops no node just because the machine is busy."""
+"""Stop a node that never waits. CPU time is measured, so no node is stopped just because the machine is busy."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from collections.abc import Callable
 
 from pytest_tarl.held_interpreter import allow
 
-DEFAULT_LIMIT = 10.0  # CPU seconds without progress of virtual time
-_PATIENCE = 12  # factor on the limit for waits outside of ROS, which use no CPU time
-_HOLD = 12  # factor on the limit for a node that holds the interpreter lock
-_INTERVAL = 0.1  # s between two checks
-_IDLE_EXIT = 50  # checks after which an unused watching thread ends
+DEFAULT_LIMIT = 10.0  # limit of CPU time without progress of virtual time (s)
+_PATIENCE = 12  # multiple of the limit for waits outside of ROS, which use no CPU time
+_HOLD = 12  # multiple of the limit for a node that holds the interpreter lock
+_INTERVAL = 0.1  # time between two checks (s)
+_IDLE_EXIT = 50  # number of checks after which an unused watching thread ends
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
     time, "pthread_getcpuclockid", None
@@ -35,14 +35,14 @@ class Watchdog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._armed = False
-        self._moves = 0  # counts progress: an equal count in two checks means none
+        self._moves = 0  # counts progress; if two checks find the same count, there was none
         self._limit = DEFAULT_LIMIT
         self._target = 0
         self._clock = -1
         self._watching = False
         self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        self.hung = False  # whether it fired because of a wait outside of ROS, not of computing
+        self.hung = False  # whether it fired because of a wait outside of ROS, not because of computing
 
     def arm(self, limit: float) -> None:
         """Watch the calling thread: fire after `limit` CPU seconds without `beat`."""
@@ -89,7 +89,7 @@ class Watchdog:
             idle = 0 if self._armed else idle + 1
             if idle > _IDLE_EXIT:
                 self._watching = False
-                if not self._armed:  # nothing armed it since the last check, so this thread may end
+                if not self._armed:  # nothing has armed it since the last check, so this thread may end
                     return
                 self._watching = True
             self._allow(self._limit * _HOLD if self._armed else 0.0)
@@ -112,7 +112,7 @@ class Watchdog:
             self._allow(0.0)
 
     def _computed(self) -> float:
-        """Return the CPU seconds of the watched thread; of the process if there is no thread clock."""
+        """Return the CPU seconds of the watched thread, or of the process if there is no thread clock."""
         if self._clock != -1 and _read_clock is not None:
             try:
                 return _read_clock(self._clock)

@@ -15,7 +15,7 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Time, get_rostime
 from pytest_tarl.ros.scheduler import Task, current_task
 
-_LOOK = nanoseconds(0.1)  # ns, polling period while waiting for the server
+_LOOK = nanoseconds(0.1)  # polling period while waiting for the server (ns)
 
 
 class SimpleGoalState:
@@ -60,7 +60,7 @@ class SimpleActionClient:
         Subscriber(f"{self._name}/feedback", self._types.action_feedback, self._take_feedback)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until the action has a server; return whether that happened in time. No timeout if None or zero."""
+        """Wait until the action has a server; return whether it has one in time. There is no limit for None or zero."""
         return self._wait(lambda: self._servers.ready(self._name), timeout, poll=True)
 
     def send_goal(
@@ -83,7 +83,7 @@ class SimpleActionClient:
         self._goal_pub.publish(message)
 
     def send_goal_and_wait(self, goal: Any, execute_timeout: Any = None, preempt_timeout: Any = None) -> int:
-        """Send a goal and wait for its end; cancel it after the first timeout; return its state."""
+        """Send a goal and wait for its end; cancel it after the first timeout. Return its state."""
         self.send_goal(goal)
         if not self.wait_for_result(execute_timeout):
             self.cancel_goal()
@@ -91,17 +91,17 @@ class SimpleActionClient:
         return self.get_state()
 
     def wait_for_result(self, timeout: Any = None) -> bool:
-        """Wait until the goal has ended; return whether that happened in time. No timeout if None or zero."""
+        """Wait until the goal has ended; return whether it ended in time. There is no limit for None or zero."""
         if self._goal_id is None:
             return False
         return self._wait(lambda: self._done, timeout)
 
     def get_result(self) -> Any:
-        """Return the result, None before there is one."""
+        """Return the result, or None before there is one."""
         return self._result
 
     def get_state(self) -> int:
-        """Return the goal's state as a number of actionlib_msgs/GoalStatus; LOST without a goal."""
+        """Return the goal's state as a number of actionlib_msgs/GoalStatus, or LOST if there is no goal."""
         asked()
         if self._goal_id is None:
             return protocol.LOST
@@ -109,7 +109,7 @@ class SimpleActionClient:
         return simple.get(self._state, self._state)
 
     def get_goal_status_text(self) -> str:
-        """Return the server's status text on the goal."""
+        """Return the server's status text for the goal."""
         return self._text
 
     def cancel_goal(self) -> None:

@@ -1,4 +1,4 @@
-"""Common parts of client and server of a ROS 1 action."""
+"""Common parts of the client and the server of a ROS 1 action."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 
 def __getattr__(name: str) -> Any:
-    """Build GoalStatus and GoalID at first use."""
+    """Build GoalStatus and GoalID on first use."""
     if name in ("GoalStatus", "GoalID", "GoalStatusArray"):
         return message_type(f"actionlib_msgs/{name}")
     raise AttributeError(name)

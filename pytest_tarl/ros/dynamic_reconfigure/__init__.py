@@ -1,4 +1,4 @@
-"""dynamic_reconfigure: parameters that change at run time; server, client, generated configurations."""
+"""dynamic_reconfigure, for parameters that change at run time: server, client, generated configurations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class DynamicReconfigureCallbackException(DynamicReconfigureException):
 
 
 def find_reconfigure_services() -> list[str]:
-    """Return the names of the nodes that offer parameters to change, sorted."""
+    """Return the names of the nodes that offer reconfigurable parameters, sorted."""
     from pytest_tarl.ros.tools import graph
 
     return sorted(

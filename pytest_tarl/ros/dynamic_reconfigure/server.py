@@ -23,7 +23,7 @@ _EVERYTHING = 0xFFFFFFFF  # level of the first call: all bits
 
 
 class Server:
-    """Calls `callback(config, level)` at the start and at each change; uses the configuration that it returns."""
+    """Calls `callback(config, level)` at the start and at each change, and uses the configuration that it returns."""
 
     def __init__(self, type: Any, callback: Callable[[Config, int], Any], namespace_prefix: str = "") -> None:  # noqa: A002
         self.type = type

@@ -47,7 +47,7 @@ class MenuHandler:
         command: str = "",
         callback: Callable[[Any], Any] | None = None,
     ) -> int | None:
-        """Add an entry at the top or below another one; return its number, None for an unknown parent."""
+        """Add an entry at the top or below another entry; return its number, or None if `parent` does not exist."""
         if parent and parent not in self._entries:
             return None
         number = len(self._entries) + 1
@@ -63,12 +63,12 @@ class MenuHandler:
         return self._set(handle, "check", check_state)
 
     def getCheckState(self, handle: int) -> int | None:
-        """Return the check mark of an entry; None for an unknown one."""
+        """Return the check mark of an entry, or None if it does not exist."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.check
 
     def getTitle(self, handle: int) -> str | None:
-        """Return the title of an entry; None for an unknown one."""
+        """Return the title of an entry, or None if it does not exist."""
         entry = self._entries.get(handle)
         return None if entry is None else entry.title
 

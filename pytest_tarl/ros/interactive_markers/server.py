@@ -18,7 +18,7 @@ MESSAGES = ["ImageMarker", "InteractiveMarker", "InteractiveMarkerControl", "Int
 __all__ = ["InteractiveMarkerServer", *MESSAGES]  # nodes get the messages by `import *` from here
 
 Callbacks = dict[int, Callable[[Any], Any]]
-DEFAULT = 255  # event type whose callback gets the feedback that no other callback gets
+DEFAULT = 255  # type of event whose callback gets the feedback that no other callback gets
 
 
 def __getattr__(name: str) -> Any:
@@ -69,7 +69,7 @@ class InteractiveMarkerServer:
         feedback_callback: Callable[[Any], Any] | int | None = None,
         feedback_type: int = DEFAULT,
     ) -> None:
-        """Add a marker. If a marker of its name exists, replace it but keep its callbacks."""
+        """Add a marker. If a marker with its name exists, replace it but keep its callbacks."""
         now = self._waiting.get(marker.name) or self._shown.get(marker.name)
         self._waiting[marker.name] = _Shown(snapshot(marker), now.callbacks if now is not None else {})
         self._moved.pop(marker.name, None)
@@ -116,7 +116,7 @@ class InteractiveMarkerServer:
         return True
 
     def get(self, name: str) -> Any:
-        """Return a copy of a marker with all changes; None if there is no marker of that name."""
+        """Return a copy of a marker with all changes, or None if there is no marker with that name."""
         known = self._newest(name)
         return None if known is None else snapshot(known.marker)
 

@@ -45,7 +45,7 @@ def message_type(name: str) -> type[Any]:
 
 @cache
 def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[Any] | None:
-    """Return the class of a message (`part` msg), service (srv) or action type; None if it is unknown."""
+    """Return the class of a message (`part` msg), service (srv) or action type, or None if it is unknown."""
     builder = _BUILDERS.get((kind, part))
     return installed_class(kind, package, name, part) or (
         builder(package, name) if builder is not None else None

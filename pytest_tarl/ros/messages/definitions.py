@@ -18,7 +18,9 @@ Shape = Literal["one", "array", "sequence"]
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-_FILLER = "structure_needs_at_least_one_member"  # ROS 2's dummy member of empty types, hidden from programs
+_FILLER = (
+    "structure_needs_at_least_one_member"  # dummy member that ROS 2 gives empty types, hidden from programs
+)
 _PRIMITIVES = frozenset(
     [
         "bool",
@@ -59,7 +61,7 @@ class Field:
 
     @property
     def text(self) -> str:
-        """Return the type as in a message file: `float64[36]`."""
+        """Return the type as in a message file, such as `float64[36]`."""
         return self.base + {"one": "", "array": f"[{self.size}]", "sequence": "[]"}[self.shape]
 
 
@@ -142,7 +144,7 @@ def _part_of_action(package: str, name: str) -> Definition | None:
 
 
 def _text(kind: Kind, part: Part, name: str) -> str | None:
-    """Return a definition from the user's workspace, or else a known one."""
+    """Return a definition from the user's workspace, or else from the known types."""
     return workspace_types(part).get(name) or known_types(kind, part).get(name)
 
 
@@ -168,7 +170,7 @@ def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
 
 @cache
 def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
-    """Return the names that do not depend on the user's workspace."""
+    """Return those names that do not depend on the user's workspace."""
     shipped = _store(kind) if part == "msg" else {}
     names = (name for table in (shipped, known_types(kind, part)) for name in table)
     return frozenset(name.rpartition("/")[2] for name in names if name.startswith(f"{package}/"))

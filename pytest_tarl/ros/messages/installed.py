@@ -15,9 +15,9 @@ _asked: list[Kind] = []  # generations of the classes that are being looked up, 
 
 @cache
 def installed_kind(package: str) -> Kind | None:
-    """Return the ROS generation that generated the installed Python package; None if it is not installed.
+    """Return the ROS generation that generated the installed Python package, or None if it is not installed.
 
-    Decided by file names, without an import: genpy writes `msg/_Twist.py`, rosidl `msg/_twist.py`.
+    File names decide this without an import: genpy writes `msg/_Twist.py`, rosidl `msg/_twist.py`.
     """
     spec = PathFinder.find_spec(package)
     if spec is None or spec.submodule_search_locations is None:
@@ -30,7 +30,7 @@ def installed_kind(package: str) -> Kind | None:
 
 
 def installed_class(kind: Kind, package: str, name: str, part: str) -> type[Any] | None:
-    """Return the class from an installed ROS of this generation; None if there is none."""
+    """Return the class from an installed ROS of this generation, or None if there is none."""
     if installed_kind(package) != kind:
         return None
     _asked.append(kind)
@@ -42,5 +42,5 @@ def installed_class(kind: Kind, package: str, name: str, part: str) -> type[Any]
 
 
 def asked_kind() -> Kind | None:
-    """Return the generation of the class that is being looked up; None if an import comes from elsewhere."""
+    """Return the generation of the class that is being looked up, or None if an import comes from elsewhere."""
     return _asked[-1] if _asked else None

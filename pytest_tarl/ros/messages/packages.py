@@ -1,4 +1,4 @@
-"""Message packages as modules: `from geometry_msgs.msg import Twist` builds the class at first use."""
+"""Message packages as modules: `from geometry_msgs.msg import Twist` builds the class on first use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 def could_be_package(name: str) -> bool:
     """Return whether a name could be a message package.
 
-    The check has to be cheap, because most imported modules are no message packages.
+    The check must be cheap, because most imported modules are not message packages.
     """
     return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 
@@ -55,7 +55,7 @@ class PackagePart(ModuleType):
         return sorted([*names, *(name + half for name in names for half in halves)])
 
     def _half_of_service(self, name: str) -> Any:
-        """Return `SetBoolRequest` or `SetBoolResponse` of a ROS 1 service `SetBool`; None for other names."""
+        """Return `SetBoolRequest` or `SetBoolResponse` of a ROS 1 service `SetBool`, or None for other names."""
         for suffix, attribute in (("Request", "_request_class"), ("Response", "_response_class")):
             if self._kind == "ros1" and self._part == "srv" and name.endswith(suffix):
                 return getattr(ros1.service_class(self._package, name.removesuffix(suffix)), attribute, None)
@@ -78,7 +78,7 @@ class MessagePackage(ModuleType):
 
 
 def package_module(kind: Kind, name: str) -> ModuleType | None:
-    """Create the module of that dotted name; None if it is not part of a message package."""
+    """Create the module with that dotted name, or return None if it is not part of a message package."""
     package, _, part = name.partition(".")
     if not is_package(kind, package):
         return None

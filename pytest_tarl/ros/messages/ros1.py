@@ -1,6 +1,6 @@
 """ROS 1 message classes, generated from definitions, that behave like genpy's.
 
-Each class gets a function `_tarl_copy(message)` with the effect of sending and receiving: it checks types, rounds
+Each class gets a function `_tarl_copy(message)`, which has the effect of sending and receiving: it checks types, rounds
 float32, turns arrays of numbers into tuples (bytes for uint8), and shares nothing with the original.
 """
 
@@ -85,7 +85,7 @@ class Message:
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Compare two fields; a list equals a tuple, since received messages hold tuples."""
+    """Compare two fields; a list can equal a tuple, since received messages hold tuples."""
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return tuple(one) == tuple(other)
     return bool(one == other)
@@ -121,7 +121,7 @@ def as_yaml(value: Any, indent: str = "") -> str:
 
 @cache
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built at first use; None if it is unknown."""
+    """Return the class of a message type, built on first use, or None if it is unknown."""
     definition = find_message("ros1", package, name)
     return build(definition, f"{package}.msg") if definition is not None else None
 
@@ -229,7 +229,7 @@ def _nested(base: str) -> type[Message]:
 
 
 def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
-    """Return source lines that copy one field: the exact type inline, other values through `slow`."""
+    """Return source lines that copy one field: values of the exact type inline, others through `slow`."""
     name, slow = field.name, f"slow{position}(v, {field.name!r})"
     exact = {"float64": "float", "string": "str", "bool": "bool"}.get(field.base)
     if field.shape == "one" and not field.primitive:
@@ -278,7 +278,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
 
 
 def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    """Reuse the last result if the bytes are equal, since covariances rarely change."""
+    """Reuse the last result if the bytes are equal, because covariances rarely change."""
     pack = Struct(f"{size}d").pack
     last: tuple[bytes, Any] = (b"", ())
 

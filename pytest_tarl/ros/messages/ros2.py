@@ -93,7 +93,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 @cache
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built at first use; None if it is unknown."""
+    """Return the class of a message type, built on first use, or None if it is unknown."""
     definition = find_message("ros2", package, name)
     return build(definition, f"{package}.msg") if definition is not None else None
 
@@ -186,7 +186,7 @@ def _constant(constant: Constant) -> Any:
 
 PACKED = frozenset(CODES) - {"byte"}  # types that rosidl stores in an `array.array`
 _UNSET = object()
-_parts: dict[str, type[Message]] = {}  # parts of services and actions, for the transport messages
+_parts: dict[str, type[Message]] = {}  # parts of services and actions, needed by the transport messages
 
 
 def _init_lines(fields: list[Field]) -> list[str]:

@@ -32,7 +32,7 @@ def as_float(value: Any, field: str) -> float:
 
 
 def as_float32(value: Any, field: str) -> float:
-    """Round a number to float32. Raise FieldError for other values and if it is too large."""
+    """Round a number to float32. Raise FieldError for other values, or if it is too large."""
     try:
         rounded: float = _FLOAT32.unpack(_FLOAT32.pack(as_float(value, field)))[0]
     except OverflowError as error:
@@ -41,7 +41,7 @@ def as_float32(value: Any, field: str) -> float:
 
 
 def as_integer(value: Any, base: str, field: str) -> int:
-    """Return an integer that fits `base`. Raise FieldError for other values, also for floats, as in ROS."""
+    """Return an integer that fits `base`. Raise FieldError for other values, including floats, as in ROS."""
     low, high = INTEGERS[base]
     try:
         number = operator.index(value)
@@ -72,7 +72,7 @@ def as_text(value: Any, field: str) -> str:
 
 
 def as_numbers(values: Iterable[Any], base: str, size: int, field: str) -> array[Any]:
-    """Return numbers packed as `base`. `size` 0 takes any length. Raise FieldError for another length or type."""
+    """Return numbers packed as `base`; `size` 0 allows any length. Raise FieldError for a wrong length or type."""
     if isinstance(values, str) or not hasattr(values, "__len__"):
         raise FieldError(f"field {field!r} must be a sequence of {base}, not {values!r}")
     try:
@@ -85,7 +85,7 @@ def as_numbers(values: Iterable[Any], base: str, size: int, field: str) -> array
 
 
 def as_list(values: Any, size: int, field: str, convert: Callable[[Any, str], Any]) -> list[Any]:
-    """Return a list of converted elements. `size` 0 takes any length. Raise FieldError for another length or type."""
+    """Return a list of converted elements; `size` 0 allows any length. Raise FieldError for a wrong length or type."""
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
         raise FieldError(f"field {field!r} must be a sequence, not {values!r}")
     converted = [convert(value, field) for value in values]

@@ -36,7 +36,7 @@ def on_forget(clear: Callable[[], None]) -> None:
 
 
 def forget() -> None:
-    """Empty all caches of facts about the workspaces; they are read again at next use."""
+    """Empty all caches of facts about the workspaces, which are then read again on next use."""
     for clear in _CACHES:
         clear()
 

@@ -14,7 +14,7 @@ class Context:
     """The rclpy context of a process. It is a singleton, which `Context()` returns."""
 
     def __new__(cls, process: Process | None = None) -> Context:
-        """Return the process's context; create it at first use."""
+        """Return the process's context; create it on first use."""
         return object.__new__(cls) if process is not None else this_context("Context")
 
     def __init__(self, process: Process | None = None) -> None:
@@ -49,7 +49,7 @@ class Context:
     def shutdown(self) -> None:
         """Shut ROS down.
 
-        Raise RuntimeError if it is not initialised, RCLError if the node was ended from outside.
+        Raise RuntimeError if ROS is not initialised, and RCLError if the node was ended from outside.
         """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")

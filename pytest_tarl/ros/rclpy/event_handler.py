@@ -1,4 +1,4 @@
-"""Callbacks for quality-of-service events: accepted but never called, since no message is late or lost."""
+"""Callbacks for quality-of-service events: accepted but never called, because no message is late or lost."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class EventInfo:
     """The argument of an event's callback; never created here."""
 
 
-# rclpy has one class for each event, and nodes name them in annotations
+# rclpy has a class for each event, which nodes name in annotations
 IncompatibleTypeInfo = QoSLivelinessChangedInfo = QoSLivelinessLostInfo = QoSMessageLostInfo = EventInfo
 QoSOfferedDeadlineMissedInfo = QoSRequestedDeadlineMissedInfo = EventInfo
 QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = EventInfo

@@ -142,7 +142,7 @@ class Executor:
             self._spin_towards(future, until)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
-        """Run one callback unless the future is done."""
+        """Run one callback, unless the future is done."""
         future.watch(self.wake)
         future.add_done_callback(_nothing)
         self._spin_towards(future, _until(self._clock.time, timeout_sec))
@@ -188,7 +188,7 @@ class Executor:
         return False
 
     def _look(self) -> bool:
-        """Collect the ready timers, and other ready entities if any may have changed; return whether there are any."""
+        """Collect ready timers, and also other ready entities if any may have changed; return whether there are any."""
         if self._stirred:
             self._stirred = False
             self._batch.extend(self._ready())
@@ -296,7 +296,7 @@ class MultiThreadedExecutor(Executor):
 
 
 def _nothing(_: Future) -> None:
-    """Replace rclpy's callback that wakes the executor, so that done callbacks take as many turns as in rclpy."""
+    """Stand in for rclpy's callback that wakes the executor, so that done callbacks take as many turns as in rclpy."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

@@ -138,7 +138,7 @@ class NodeGraph:
         ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until a node exists; return whether that happened within `timeout` seconds."""
+        """Wait until a node exists; return whether it exists within `timeout` seconds."""
         clock = self.process.scheduler
         until = clock.time + nanoseconds(timeout)
         wanted = "/" + fully_qualified_node_name.lstrip("/")

@@ -90,7 +90,7 @@ def _wanted(frame: Any, options: dict[str, Any]) -> bool:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """Return the logger of that name. Raise ValueError if the name is empty."""
+    """Return the logger with that name. Raise ValueError if the name is empty."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return RcutilsLogger(name)
@@ -101,7 +101,7 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """Return the level of a name in upper or lower case. Raise RuntimeError for an unknown name."""
+    """Return the level with a name, given in upper or lower case. Raise RuntimeError for an unknown name."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
@@ -109,7 +109,7 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """Return that no level is set."""
+    """Return UNSET: loggers have no level of their own."""
     return LoggingSeverity.UNSET
 
 

@@ -37,7 +37,7 @@ _NOT_YET = frozenset(["add_waitable", "remove_waitable", "get_node_names_and_nam
 
 
 class Node(NodeEntities, NodeGraph, NodeParameters):
-    """A node: its name and the functions that create its entities; base classes add entities, graph, parameters."""
+    """A node: its name, and the functions that create its entities. Base classes add entities, graph and parameters."""
 
     def __init__(
         self,
@@ -198,7 +198,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         raw: bool = False,
         content_filter_options: Any = None,
     ) -> Subscription:
-        """Create a subscription; raise for raw messages and for filters of content, which the bus does not have."""
+        """Create a subscription; raise for raw subscriptions and content filters, which the bus does not support."""
         if raw:
             raise unsupported("Node.create_subscription(raw=True)")
         if content_filter_options is not None:

@@ -22,9 +22,9 @@ def parameter_dict_from_yaml_file(
     target_nodes: list[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """Return rcl_interfaces/Parameter messages by name from a YAML file, of all nodes or of `target_nodes`.
+    """Return rcl_interfaces/Parameter messages by name from a YAML file, for all nodes or for `target_nodes`.
 
-    `use_wildcard` adds the parameters under `/**`. Raise RuntimeError if the file or a node in it is missing.
+    `use_wildcard` adds the parameters under `/**`. Raise RuntimeError if the file, or a node in it, is missing.
     """
     content = params_files.read(parameter_file)
     wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]

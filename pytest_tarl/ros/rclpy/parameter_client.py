@@ -22,7 +22,7 @@ Done = Callable[[Future], Any]
 
 
 class AsyncParameterClient:
-    """Reads and sets another node's parameters by its six services."""
+    """Reads and sets another node's parameters through its six parameter services."""
 
     def __init__(
         self, node: Node, remote_node_name: str, qos_profile: Any = None, callback_group: Any = None

@@ -47,7 +47,7 @@ class ParameterServices:
         self._node = node
 
     def get_parameters(self, request: Any, response: Any) -> Any:
-        """Return values; an empty list if one is not declared."""
+        """Return values, or an empty list if any parameter is not declared."""
         try:
             response.values = [
                 p.get_parameter_value() for p in self._node.get_parameters(list(request.names))
@@ -57,7 +57,7 @@ class ParameterServices:
         return response
 
     def get_parameter_types(self, request: Any, response: Any) -> Any:
-        """Return types; an empty list if any parameter is not declared."""
+        """Return types, or an empty list if any parameter is not declared."""
         try:
             response.types = [int(t) for t in self._node.get_parameter_types(list(request.names))]
         except ParameterException:
@@ -80,7 +80,7 @@ class ParameterServices:
         return response
 
     def describe_parameters(self, request: Any, response: Any) -> Any:
-        """Return descriptors; an empty list if one is not declared."""
+        """Return descriptors, or an empty list if any parameter is not declared."""
         try:
             response.descriptors = self._node.describe_parameters(list(request.names))
         except ParameterException:

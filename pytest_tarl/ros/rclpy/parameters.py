@@ -42,7 +42,7 @@ class NodeParameters:
         self._parameters["use_sim_time"] = Parameter("use_sim_time", value=False)
 
     def declare_all_overrides(self) -> None:
-        """Declare every override, with dynamic type."""
+        """Declare every override, with a dynamic type."""
         for name, value in self._parameter_overrides.items():
             if name not in self._parameters:
                 self.declare_parameter(name, value, new_descriptor(dynamic_typing=True))
@@ -93,7 +93,7 @@ class NodeParameters:
     def declare_parameters(
         self, namespace: str, parameters: Iterable[Any], ignore_override: bool = False
     ) -> list[Parameter]:
-        """Declare several, given as (name), (name, value) or (name, value, descriptor)."""
+        """Declare several parameters, given as (name), (name, value) or (name, value, descriptor)."""
         declared = []
         for entry in parameters:
             name, value, descriptor = (*((entry,) if isinstance(entry, str) else entry), None, None)[:3]

@@ -91,11 +91,11 @@ class QoSProfile:
 
     @property
     def capacity(self) -> int | None:
-        """The number of messages in a queue of this profile; None if unlimited."""
+        """The number of messages in a queue with this profile; None if unlimited."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
     def satisfies(self, wanted: QoSProfile) -> bool:
-        """Return whether a publisher of this profile connects with a subscription of the other one."""
+        """Return whether a publisher with this profile connects to a subscription with the other one."""
         lossy = (
             self.reliability == ReliabilityPolicy.BEST_EFFORT
             and wanted.reliability == ReliabilityPolicy.RELIABLE
@@ -175,5 +175,5 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def get_from_short_key(cls, name: str) -> Any:
-        """Return the profile of a name in upper or lower case. Raise KeyError."""
+        """Return the profile with a name, given in upper or lower case. Raise KeyError."""
         return cls[name.upper()].value

@@ -81,7 +81,7 @@ class QoSOverridingOptions:
 def overridden(node: Any, kind: str, topic: str, profile: QoSProfile, options: Any) -> QoSProfile:
     """Declare the parameters of a publisher or subscription (`kind`), and return the profile with their values.
 
-    Raise InvalidQosOverridesError for an invalid value, and if the options' callback refuses the profile.
+    Raise InvalidQosOverridesError for an invalid value, or if the options' callback refuses the profile.
     """
     if options is None:
         return profile

@@ -45,7 +45,7 @@ class Service(Introspected):
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Return whether a request waits."""
+        """Return whether a request is waiting."""
         return bool(self.queue)
 
     def run(self) -> Any:
@@ -90,7 +90,7 @@ class Client(Introspected):
         return self.srv_name in self._directory
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Wait until the service is available; return whether that happened in time."""
+        """Wait until the service is available; return whether it is available in time."""
         process = self.node.process
         until = None if timeout_sec is None else process.scheduler.time + nanoseconds(timeout_sec)
         found = self._directory.wait(current_task(), self.srv_name, until, self.node.context.ok)
@@ -115,7 +115,7 @@ class Client(Introspected):
         return future
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
-        """Send a request and wait for the response in this task; None after the timeout."""
+        """Send a request and wait for the response in this task; return None after the timeout."""
         clock = self.node.process.scheduler
         future = self.call_async(request)
         self._calling[future] = current_task()
@@ -138,7 +138,7 @@ class Client(Introspected):
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Return whether a response waits."""
+        """Return whether a response is waiting."""
         return bool(self.queue)
 
     def run(self) -> None:

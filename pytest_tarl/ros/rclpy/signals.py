@@ -19,7 +19,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Return that no handler is installed."""
+    """Return NO: no handler is installed."""
     return SignalHandlerOptions.NO
 
 

@@ -25,7 +25,7 @@ class Future:
         return self.result()
 
     def done(self) -> bool:
-        """Return whether there is a result or an exception; false if cancelled."""
+        """Return whether there is a result or an exception; false if the future was cancelled."""
         return self._done
 
     def pending(self) -> bool:

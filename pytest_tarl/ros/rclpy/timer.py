@@ -61,7 +61,7 @@ class Timer:
         return self._clock.time - self._last
 
     def time_until_next_call(self) -> int | None:
-        """Return nanoseconds until the timer is ready; None while cancelled."""
+        """Return nanoseconds until the timer is ready, or None while it is cancelled."""
         return None if self.canceled else self.due - self._clock.time
 
     def destroy(self) -> None:
@@ -109,7 +109,7 @@ def _told_as(callback: Callable[..., Any]) -> str | None:
 
 
 class Rate:
-    """Keeps a loop at a frequency in Hz. Needs no second thread that spins, unlike rclpy's."""
+    """Keeps a loop at a frequency in Hz. Unlike rclpy's, it needs no second thread that spins."""
 
     def __init__(self, node: Node, frequency: float) -> None:
         self._process = node.process

@@ -118,7 +118,7 @@ class Subscription:
             self.arrived()
 
     def is_ready(self) -> bool:
-        """Return whether a message waits."""
+        """Return whether a message is waiting."""
         return bool(self.queue)
 
     def run(self) -> Any:

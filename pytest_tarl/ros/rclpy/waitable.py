@@ -25,7 +25,7 @@ class GuardCondition:
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Return whether it was triggered since the last run of the callback."""
+        """Return whether it was triggered since the callback last ran."""
         return self._triggered
 
     def run(self) -> Any:

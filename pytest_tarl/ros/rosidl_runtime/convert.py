@@ -1,7 +1,7 @@
 """rosidl_runtime_py.convert: messages as dictionaries, YAML and comma-separated values.
 
 `truncate_length` cuts sequences and strings after this number of elements. `no_arr` and `no_str` replace arrays and
-strings by a description of their type and length.
+strings with a description of their type and length.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _elements(values: Any, style: _Style, kind: str) -> Any:
 
 
 def _described(length: int, kind: str) -> str:
-    """Return the type and length of an array in place of its elements."""
+    """Return the type and length of an array, to show instead of its elements."""
     if fixed := _ARRAY.match(kind):
         return f"<array type: {fixed['element']}[{fixed['size']}]>"
     sequence = _SEQUENCE.match(kind)

@@ -24,12 +24,12 @@ from pytest_tarl.ros.scheduler import current_task
 from pytest_tarl.ros.services import Answer, adapted
 
 _LOGGER = logging.getLogger("rosout")
-_POLL = 0.3  # s, polling period of `wait_for_service`
+_POLL = 0.3  # polling period of `wait_for_service` (s)
 _NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
 class Refusal:
-    """Takes the place of a response if the handler failed."""
+    """Stands for the response if the handler failed."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason

@@ -105,7 +105,7 @@ class Rate:
         return Time(0, self._last)
 
     def remaining(self) -> Duration:
-        """Return the rest of the current cycle."""
+        """Return the remaining time of the current cycle."""
         return Duration(0, self._period - (self._clock.time - self._last))
 
     def sleep(self) -> None:

@@ -110,7 +110,7 @@ class Inboxes:
     def open(
         self, topic: str, message_type: type | None, callback: Callback | None, capacity: int | None
     ) -> Inbox:
-        """Add a callback to the inbox of a topic; connect the inbox at first use."""
+        """Add a callback to the inbox of a topic; connect the inbox on first use."""
         inbox = self._by_topic.get(topic)
         new = inbox is None
         if inbox is None:
@@ -184,7 +184,7 @@ class Publisher(Topic):
     def connection_header(self) -> dict[str, str]:
         """Return the connection header for subscribers.
 
-        It is computed late, since `init_node` may follow the publisher.
+        It is computed on request, since `init_node` may be called after the publisher is created.
         """
         return {**self._headers, "callerid": self._node.name, "latching": str(self._latch)}
 

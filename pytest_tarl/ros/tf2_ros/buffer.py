@@ -11,7 +11,7 @@ from typing import Any
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.transforms import DEFAULT_CACHE, TransformException, TransformTree, clean
 
-_LOOK = 10_000_000  # ns, polling period of a waiting look-up
+_LOOK = 10_000_000  # polling period of a waiting look-up (ns)
 
 
 class TypeException(Exception):  # noqa: N818 (tf2_ros's name)

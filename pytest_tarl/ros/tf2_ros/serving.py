@@ -12,7 +12,7 @@ from pytest_tarl.ros.process import Network, current_process
 from pytest_tarl.ros.tf2_ros.buffer import Buffer, BufferInterface, nanoseconds_of
 from pytest_tarl.ros.transforms import TimeoutException
 
-_LOOK = nanoseconds(0.01)  # ns, polling period while waiting for the server
+_LOOK = nanoseconds(0.01)  # polling period while waiting for the server (ns)
 
 
 class BufferServers:
@@ -48,7 +48,7 @@ class BufferClient(BufferInterface):
         self._padding = nanoseconds_of(timeout_padding)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until there is a server; return whether that happened in time. No timeout if None or zero."""
+        """Wait until there is a server; return whether there is one in time. There is no limit for None or zero."""
         span = 0 if timeout is None else nanoseconds_of(timeout)
         return self._server(None if not span else self.process.scheduler.time + span) is not None
 

@@ -24,7 +24,7 @@ REMAP = ":="
 
 
 def get_ros_namespace(env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None) -> str:
-    """Return the namespace of the command line (`__ns:=`), else of the variable `ROS_NAMESPACE`, else `/`."""
+    """Return the namespace of the command line (`__ns:=`), or else the variable `ROS_NAMESPACE`, or else `/`."""
     for argument in argv or ():
         if argument.startswith("__ns:="):
             return make_global_ns(argument.removeprefix("__ns:="))

@@ -22,7 +22,7 @@ class ROSNodeIOException(ROSNodeException):
 
 
 def get_node_names(namespace: str | None = None) -> list[str]:
-    """Return the names of the nodes, optionally of one namespace."""
+    """Return the names of the nodes, optionally of one namespace only."""
     return sorted(name for name in graph.nodes() if graph.below(name, namespace))
 
 

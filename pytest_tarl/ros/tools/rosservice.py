@@ -23,13 +23,13 @@ class ROSServiceIOException(ROSServiceException):
 
 
 def get_service_list(node: str | None = None, namespace: str | None = None) -> list[str]:
-    """Return the names of services, optionally of one node or namespace."""
+    """Return the names of the services, optionally of one node or namespace only."""
     entries = [(name, nodes) for name, nodes in graph.ends()[2] if graph.below(name, namespace)]
     return sorted(name for name, nodes in entries if node is None or graph.resolved(node) in nodes)
 
 
 def get_service_type(service_name: str) -> str | None:
-    """Return the type of a service; None if it is unknown."""
+    """Return the type of a service, or None if it is unknown."""
     found = graph.services().get(graph.resolved(service_name))
     return None if found is None else str(found._type)
 
@@ -48,7 +48,7 @@ def get_service_node(service_name: str) -> str | None:
 
 
 def call_service(service_name: str, service_args: Any, service_class: Any = None) -> tuple[Any, Any]:
-    """Call a service with a list of values or a dict of fields; return request and response."""
+    """Call a service with a list of values or a dictionary of fields; return the request and the response."""
     made = service_class or get_service_class_by_name(service_name)
     if isinstance(service_args, list) and len(service_args) == 1 and isinstance(service_args[0], dict):
         service_args = service_args[0]

@@ -16,7 +16,7 @@ from pytest_tarl.sensors import field_value
 __all__ = ["ROSTopicException", "ROSTopicHz", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
 
 Evaluate = Callable[[Any], Any] | None
-_LOOK = nanoseconds(0.1)  # ns, polling period of a blocking query
+_LOOK = nanoseconds(0.1)  # polling period of a blocking query (ns)
 
 
 class ROSTopicException(Exception):  # noqa: N818 (these names are rostopic's)

@@ -14,7 +14,7 @@ from pytest_tarl.ros.rospy.timing import get_time
 
 Rate = tuple[
     float, float, float, float, int
-]  # rate in Hz; shortest period, longest period and standard deviation in s; number of messages
+]  # rate (Hz); shortest period, longest period and standard deviation (s); number of messages
 
 
 class ROSTopicHz:
@@ -32,7 +32,7 @@ class ROSTopicHz:
             kept.append(get_time())
 
     def get_hz(self, topic: str | None = None) -> Rate | None:
-        """Return the rate, the statistics of its periods, and the number of messages; None before the second one."""
+        """Return the rate, statistics of the periods, and the number of messages; None before the second message."""
         times = [*self._times.get(topic, ())]
         periods = [later - earlier for earlier, later in pairwise(times)]
         if not periods or not sum(periods):

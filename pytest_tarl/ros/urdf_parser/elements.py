@@ -1,4 +1,4 @@
-"""The elements of a robot description, and the error for one of a wrong form.
+"""The elements of a robot description, and the error for a malformed element.
 
 Lengths are in metres, angles in radians, masses in kilograms. An element that the description lacks is None.
 """
@@ -14,7 +14,7 @@ __getattr__ = refusing("urdf_parser_py.xml_reflection.core")
 
 
 class ParseError(Exception):
-    """Raised if an element lacks an attribute or has one of a wrong form."""
+    """Raised if an element lacks an attribute or has a malformed one."""
 
 
 @dataclass
@@ -138,7 +138,7 @@ class Inertial:
 
 @dataclass
 class JointLimit:
-    """Largest effort and velocity of a joint, and the bounds of its position."""
+    """Maximum effort and velocity of a joint, and the bounds of its position."""
 
     effort: float | None = None
     velocity: float | None = None
@@ -156,7 +156,7 @@ class JointDynamics:
 
 @dataclass
 class JointMimic:
-    """The joint that a joint follows: multiplier * position + offset."""
+    """The joint that this joint follows: multiplier * position + offset."""
 
     joint: str | None = None
     multiplier: float | None = None

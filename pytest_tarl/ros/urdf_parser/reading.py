@@ -33,7 +33,7 @@ TYPES = ("unknown", "revolute", "continuous", "prismatic", "floating", "planar",
 
 
 def read_link(element: Element) -> Link:
-    """Return a link. Raise ParseError if an element is of a wrong form."""
+    """Return a link. Raise ParseError if an element is malformed."""
     inertial = element.find("inertial")
     return Link(
         attribute(element, "name"),
@@ -79,7 +79,7 @@ def _material_of(element: Element) -> Material | None:
 
 
 def read_material(element: Element) -> Material:
-    """Return a material. Raise ParseError if an element is of a wrong form."""
+    """Return a material. Raise ParseError if an element is malformed."""
     color, texture = element.find("color"), element.find("texture")
     return Material(
         element.get("name"),
@@ -89,7 +89,7 @@ def read_material(element: Element) -> Material:
 
 
 def read_joint(element: Element) -> Joint:
-    """Return a joint. Raise ParseError if an element is of a wrong form."""
+    """Return a joint. Raise ParseError if an element is malformed."""
     kind = attribute(element, "type")
     if kind not in TYPES:
         raise _wrong(element, f"Invalid joint type: {kind}")
@@ -160,7 +160,7 @@ def attribute(element: Element, name: str) -> str:
 
 
 def _number(element: Element, name: str, default: float | None = None) -> float:
-    """Return an attribute as a number; the default if it is missing. Raise ParseError if it is missing without one."""
+    """Return an attribute as a number, or the default if it is missing. Raise ParseError if there is no default."""
     if default is not None and name not in element.attrib:
         return default
     return next(_floats(element, name, attribute(element, name)))

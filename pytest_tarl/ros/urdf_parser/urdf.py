@@ -60,7 +60,7 @@ __getattr__ = refusing("urdf_parser_py.urdf")
 
 @dataclass
 class Robot:
-    """A robot: links, and the joints that connect them to a tree."""
+    """A robot: links, and the joints that connect them into a tree."""
 
     name: str | None = None
     version: str = "1.0"
@@ -69,7 +69,7 @@ class Robot:
     materials: list[Material] = field(default_factory=list)
     joint_map: dict[str, Joint] = field(default_factory=dict)
     link_map: dict[str, Link] = field(default_factory=dict)
-    # name of a link → names of the joint and the link above it
+    # name of a link → names of the joint above it and of its parent link
     parent_map: dict[str, tuple[str, str]] = field(default_factory=dict)
     # name of a link → names of the joints and links below it
     child_map: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
@@ -97,7 +97,7 @@ class Robot:
     def get_chain(
         self, root: str, tip: str, joints: bool = True, links: bool = True, fixed: bool = True
     ) -> list[str]:
-        """Return the names of the links and joints from one link down to another. Raise KeyError without a chain."""
+        """Return the names of the links and joints from one link down to another. Raise KeyError if there is none."""
         chain = [tip] if links else []
         link = tip
         while link != root:
@@ -110,7 +110,7 @@ class Robot:
 
     @classmethod
     def from_xml_string(cls, xml_string: str | bytes) -> Robot:
-        """Read a robot from XML. Raise ParseError for an element of a wrong form, and ElementTree's for broken XML."""
+        """Read a robot from XML. Raise ParseError for a malformed element, and ElementTree's error for broken XML."""
         root = ElementTree.fromstring(xml_string)  # noqa: S314 - expat limits the growth of entities
         if root.tag != "robot":
             raise ParseError(f"ParseError in /{root.tag}:\nThe root element is not a robot")

@@ -38,7 +38,7 @@ class ActionClient:
         return self._name in self._directory.servers
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until the action has a server; return whether that happened in time."""
+        """Wait until the action has a server; return whether it has one in time."""
         process = self._node.process
         clock = process.scheduler
         until = None if timeout_sec is None else clock.time + nanoseconds(timeout_sec)
@@ -106,7 +106,7 @@ class ActionClient:
         self._mailbox.post(self._take_status, goal_key(goal_id), status)
 
     def complete(self, future: Future, result: Any) -> None:
-        """Complete a future by the executor."""
+        """Complete a future through the executor."""
         self._mailbox.post(self._complete, future, result)
 
     def destroy(self) -> None:

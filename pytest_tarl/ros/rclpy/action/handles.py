@@ -47,7 +47,7 @@ class ActionDirectory:
         self._goals = 0
 
     def new_goal_id(self) -> Any:
-        """Return a new unique_identifier_msgs/UUID; they are consecutive numbers, so that runs are reproducible."""
+        """Return a new unique_identifier_msgs/UUID. UUIDs are numbered consecutively to make runs reproducible."""
         self._goals += 1
         made: Any = find_class("ros2", "unique_identifier_msgs", "UUID")
         return made(uuid=list(self._goals.to_bytes(16, "big")))
@@ -121,7 +121,7 @@ class ServerGoalHandle:
 
 
 class ClientGoalHandle:
-    """A goal sent by a client and answered by the server."""
+    """A goal that a client sent and the server answered."""
 
     def __init__(self, client: ActionClient, goal_id: Any, *, accepted: bool, stamp: Any) -> None:
         self._client = client
