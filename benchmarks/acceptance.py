@@ -2,10 +2,10 @@
 
     python benchmarks/acceptance.py [--runs 400]
 
-Missions are drawn, not simulated. The total of a successful mission is normal with mean `ratio` × 10; a failed
-mission earns -10, as little as the worst recorded one. Designed missions earn 10 on average and never fail. The seed
-determines a share of their variance, which pairing can therefore remove. A repair is right if it loses less than 5 %
-of the designed reward on average, including failures, and fails in less than 5 % of its missions.
+Missions are drawn, not simulated. The total of a successful mission is normal with mean `ratio` × 10; a failed mission
+earns -10, as little as the worst recorded mission. Designed missions earn 10 on average and never fail. The seed
+determines a share of the variance, which pairing can therefore remove. A repair is right if it loses less than 5 % of
+the designed reward on average, including failures, and fails in less than 5 % of its missions.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random total rewards of missions, as designed and, on the same seeds, with a repair."""
+    """Random total rewards of missions: as designed and, with the same seeds, with a repair."""
 
     seed: int
     spread: float

@@ -34,7 +34,7 @@ from tarl_lint.api import analyse
 
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "shuttle"
 ROUNDS = 3
-BEGAN = 1_700_000_000 * 10**9  # ns
+BEGAN = 1_700_000_000 * 10**9  # start of the mission (ns since 1970)
 SENSORS = (
     Sensor("x", topic="/odom", field="pose.pose.position.x", low=0, high=12, bins=24),
     Sensor("terrain", topic="/terrain", field="data"),

@@ -2,10 +2,10 @@
 
     python benchmarks/bound_coverage.py [--repetitions 2000]
 
-Rows are distributions of an episode's total; columns are numbers of episodes. A cell is the share of lower / upper
-bounds that held. Exact bounds must hold in at least 94 % of the samples, within the error of the benchmark.
-Approximate bounds have no goal. A loss compares 200 recorded episodes with new episodes of the same world; the column
-says how many new ones.
+Rows are distributions of an episode's total; columns are numbers of episodes. A cell holds the shares of samples in
+which the lower and the upper bound held. Exact bounds must hold in at least 94 % of the samples, within the error of
+the benchmark. Approximate bounds have no goal. A loss compares 200 recorded episodes with new episodes of the same
+world; the column is the number of new episodes.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range; thes
 OFFLINE = 200
 QUANTILE = 0.05
 LIMIT = 0.01  # margin of an acceptance test, as a share of the range
-TRUTH = 2_000_000  # draws from which the true mean or quantile is computed
+TRUTH = 2_000_000  # number of draws from which the true mean or quantile is computed
 
 Generator = np.random.Generator
 Held = tuple[bool, bool]
@@ -107,7 +107,7 @@ class World:
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Return whether the bets of an acceptance test stay below the limit if n episodes lose exactly the margin."""
+        """Return whether an acceptance test stays below its limit if n episodes lose exactly the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin
@@ -133,7 +133,7 @@ def rate_holds(p: float, draws: Generator, n: int) -> Held:
 
 
 def sequence_holds(p: float, draws: Generator, n: int) -> Held:
-    """Return whether the bounds on a rate hold after every one of n episodes."""
+    """Return whether the bounds on a rate hold after each of n episodes."""
     passed = np.cumsum(draws.random(n) < p)
     barred = log(1 / (1 - CONFIDENCE))
     ends = range(1, n + 1, max(1, n // 50))

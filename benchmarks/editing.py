@@ -4,7 +4,8 @@
 
 Files are drawn from those with a diagnostic; with --all, from all files. Each file is edited in three ways: a comment
 before a random statement, a statement in a random function, and a statement at the end. Times are CPU seconds of the
-linter until all findings are known, and until the findings of the edited file are. The protocol adds milliseconds.
+linter until all findings are known, and until the findings of the edited file are known. The protocol adds
+milliseconds.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 
 from tarl_lint.editing import Result, Workspace
 
-GOAL = 1.0  # seconds
+GOAL = 1.0  # maximum latency (s)
 
 
 def main() -> None:

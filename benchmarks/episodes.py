@@ -1,4 +1,4 @@
-"""Measure the cost of an episode: of the shuttle, uninstrumented and recorded, and of an empty test.
+"""Measure the cost of an episode: of the shuttle (uninstrumented and recorded), and of an empty test.
 
     python benchmarks/episodes.py [--episodes 200]
 

@@ -11,7 +11,7 @@ Robots drive past ten places, dry or wet, at 40 sites. Three things differ from 
 - a repair of the release, rolled out to every other robot of its sites in the last sixth: it undoes the loss at all of
   them but one, where it does nothing
 
-Groups are formed by version and site, by site, and by site and week. A season does not show in the first of these
+Groups are formed by version and site, by site, and by site and week. The season is not visible in the first of these
 groupings. For comparison, the script also computes the z-score of the mean reward of each robot and group against the
 recorded episodes; |z| > 3 is an alarm.
 """
@@ -55,8 +55,8 @@ SENSORS = (
     Sensor("place", topic="/place", field="data", low=0, high=PLACES, bins=PLACES),
     Sensor("wet", topic="/wet", field="data"),
 )
-BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and time between two missions of a robot, in s
-ALARM = 3.0  # |z|
+BEGAN, APART = 1.76e9, 21_600.0  # time of the first mission, and time between two missions of a robot (s)
+ALARM = 3.0  # minimum |z| of an alarm
 REPAIR, IDLE = "guard-1", 3  # name of the repair, and the site at which it has no effect
 
 
@@ -72,7 +72,7 @@ class World:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and the true changes of its missions. Missions are numbered from 0; -1 means never."""
+    """A robot and the true changes of its missions. Missions are numbered from 0; -1 stands for never."""
 
     number: int
     site: int
@@ -174,7 +174,7 @@ def rows(robots: list[Robot], missions: int, seed: int) -> Iterator[tuple[str, R
 
 
 def stored(to: Store, robots: list[Robot], missions: int, seed: int, where: Origin) -> tuple[int, float]:
-    """Write the data set as `tarl ingest` does, some robots at a time; return its bytes and the CPU seconds it took."""
+    """Write the data set as `tarl ingest` does, some robots at a time; return its size in bytes and the CPU seconds."""
     size, spent = 0, 0.0
     for begin in range(0, len(robots), 200):
         parts: dict[tuple[str, str], list[Row]] = {}
@@ -260,7 +260,7 @@ def command(*arguments: object) -> tuple[float, str]:
 
 
 def peak() -> float:
-    """Return the largest memory that any command has used so far, in MB."""
+    """Return the largest memory that any command used so far, in MB."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 
 

@@ -3,8 +3,8 @@
     python benchmarks/fleet_cost.py [--missions 1e9] [--core-hour 0.05] [--gb-month 0.023]
 
 The measurements are those of docs/benchmarks/fleet.md, section "A fleet". `--measured 100000:20.1:500
-1000000:80.2:1300` replaces them by others: the missions, CPU seconds and peak memory in MB of a question. Prices are
-assumptions in dollars; replace them by those of your provider.
+1000000:80.2:1300` replaces them with others: number of missions, CPU seconds and peak memory (MB) of a query. Prices
+are assumptions in dollars; replace them with those of your provider.
 """
 
 from __future__ import annotations
@@ -15,12 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
-BYTES = 193  # stored bytes of a mission without taint lists
-INGESTED = 2000  # missions per CPU second
-SCORES = 26 + 16  # bytes that a worker returns for a mission: its number, and one byte for each score
-TAKEN = 26 + 25  # bytes that a task receives for a mission: its scores and results
-PARALLEL = 0.75  # share of a question's CPU time that runs on workers
-TRANSFER = 1.25e9  # bytes per second between the client and the workers (10 Gbit/s)
+BYTES = 193  # stored size of a mission without taint lists (bytes)
+INGESTED = 2000  # number of missions ingested per CPU second
+SCORES = (
+    26 + 16
+)  # number of bytes that a worker returns for a mission: its number, and one byte for each score
+TAKEN = 26 + 25  # number of bytes that a task receives for a mission: its scores and results
+PARALLEL = 0.75  # share of a query's CPU time that runs on workers
+TRANSFER = 1.25e9  # transfer rate between the client and the workers (bytes per second), 10 Gbit/s
 
 
 @dataclass(frozen=True)

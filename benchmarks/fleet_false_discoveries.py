@@ -31,14 +31,14 @@ from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.seeds import generator
 
 Q = 0.05
-SHARE = 10  # robots per drifting robot
+SHARE = 10  # one robot in this many drifts
 METHODS = ("missions differ", "below a bound", "z-score")
 
 
 def drawn(
     rng: np.random.Generator, drifted: np.ndarray[tuple[int], np.dtype[np.bool_]], cells: int
 ) -> Sample:
-    """Return missions as `drive` of benchmarks/fleet.py runs them; the place costs reward in the missions `drifted`."""
+    """Return missions as `drive` in benchmarks/fleet.py runs them; in the missions `drifted`, a place costs reward."""
     count = len(drifted)
     wet = rng.random(count) < 0.3
     stays = rng.random((count, PLACES)) < 0.5

@@ -6,7 +6,7 @@ import math
 import struct
 from typing import Any
 
-SOME = 3  # elements of an array of variable length
+SOME = 3  # number of elements in an array of variable length
 
 
 def publish_to_all(tarl: Any, step: int) -> int:

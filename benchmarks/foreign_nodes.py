@@ -3,10 +3,10 @@
     python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--counted N --seed N] [--keep SCRATCH] [--json FILE]
 
 Each FOLDER contains checkouts, one folder per repository. The checkouts are copied to a scratch folder. Each script
-gets a minimal simulation test: start it, then publish messages on the topics that it subscribes to, for a few virtual
-seconds. Each test runs in its own process with a time limit and restricted access: no programs, no network, no files
-outside the scratch folder. Scripts in Python 2, tests, and scripts that need a GPU library or a device's SDK that is
-not installed are counted separately, with the reason.
+gets a minimal simulation test, which starts the script and then publishes messages on the topics that it subscribes to,
+for a few virtual seconds. Each test runs in its own process with a time limit and restricted access: no programs, no
+network, no files outside the scratch folder. Scripts in Python 2, tests, and scripts that need a GPU library or a
+device's SDK that is not installed are counted separately, with the reason.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ import foreign_closed
 from foreign_reasons import set_apart, why
 from foreign_scripts import Script, scripts
 
-LIMIT = 60  # time limit of a test in seconds
+LIMIT = 60  # time limit of a test (s)
 TEST = """
 import json
 import sys

@@ -47,7 +47,7 @@ class Script:
 
     @property
     def package(self) -> Path:
-        """Return the folder of the script's ROS package or, without one, the folder around its Python package.
+        """Return the folder of the script's ROS package, or else the folder around its Python package.
 
         pytest imports the `__init__.py` of each folder above a test before the in-process ROS is installed.
         """
@@ -87,7 +87,7 @@ def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
 
 
 def script(repository: Path, path: Path, entry: str | None) -> Script | None:
-    """Return the file as a node script; None if it is not one."""
+    """Return the file as a node script, or None if it is not one."""
     text = path.read_text("utf-8", errors="replace")
     if path.name == "setup.py" or path.name.endswith(".launch.py") or not MADE_BY.search(text):
         return None

@@ -15,7 +15,7 @@ FORMULAS = (
     "(gap > 0.6) until[0:5] (gap > 2.5)",
 )
 STEPS = (100, 400)
-STEP = 40_000_000  # ns
+STEP = 40_000_000  # length of a step (ns)
 ROUNDS = 3
 CAP = 100.0
 
@@ -31,7 +31,7 @@ def episode(text: str, steps: int) -> Judge:
 
 
 def milliseconds(text: str, steps: int, *, rewarding: bool) -> float:
-    """Return the least CPU time in ms of judging an episode, with step rewards if `rewarding`."""
+    """Return the minimum CPU time of judging an episode (ms), with step rewards if `rewarding`."""
     least = float("inf")
     for _ in range(ROUNDS):
         judge = episode(text, steps)

@@ -31,7 +31,7 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), and drifting (False)
+POOLED = {True: 3000, False: 1500}  # number of missions in a pool: as designed (True), drifting (False)
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
 
@@ -43,8 +43,8 @@ class Seen:
     drift: bool
     kolmogorov: bool
     threshold: bool
-    held: float  # share of the visited changed cells that are in the region
-    others: int  # cells in the region that the drift does not change
+    held: float  # share of the changed cells that were visited and are in the region
+    others: int  # number of cells in the region that the drift does not change
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
 @dataclass(frozen=True)
 class Example:
-    """A test of the examples; its drift ranges from 1 (as designed) down to the value in the marker."""
+    """A test from the examples; its drift ranges from 1 (as designed) down to the value in the marker."""
 
     test: str
     mode: Mode  # how the sensors of the example show the drift
@@ -56,7 +56,7 @@ class Recording:
 
 
 def recorded(name: str, size: float, episodes: int) -> Pool:
-    """Run missions of an example. It is not known which cells the drift changes."""
+    """Run missions of an example, of which it is not known which cells the drift changes."""
     example = EXAMPLES[name]
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / name

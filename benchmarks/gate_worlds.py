@@ -34,7 +34,7 @@ Simulation = Callable[[Generator, float], Log]
 
 
 def binned(value: float, low: float, high: float, bins: int) -> int:
-    """Return the bin of a value; -1 below the range and `bins` above it."""
+    """Return the bin of a value: -1 below the range, `bins` above it."""
     return max(-1, min(bins, int((value - low) / (high - low) * bins // 1)))
 
 

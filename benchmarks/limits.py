@@ -1,4 +1,4 @@
-"""Measure time and memory at very large sizes, to see whether they grow in proportion and where the limit is.
+"""Measure time and memory at very large sizes: whether they grow in proportion, and where the limit is.
 
 `python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. It prints CPU seconds and
 the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100
@@ -34,8 +34,8 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
-EPISODE = 12_800  # bytes per episode in the file of the case `recording`
-WORSE = 3.0  # allowed growth of time or memory per unit, from the second size to the last
+EPISODE = 12_800  # size of an episode in the file of the case `recording` (bytes)
+WORSE = 3.0  # maximum growth of time or memory per unit, from the second size to the last
 NODE = """
 import rospy
 from std_msgs.msg import {kind}
@@ -119,7 +119,7 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 def recording(size: int) -> str:
     """Save and load a recording of about `size` MB.
 
-    Episodes after the 500th repeat earlier episodes under other seeds.
+    Beyond the 500th, episodes repeat earlier episodes under other seeds.
     """
     count = max(2, size * 1_000_000 // EPISODE)
     distinct = [world(range(seed, seed + 1), 400, 20, 1500) for seed in range(min(count, 500))]

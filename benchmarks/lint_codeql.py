@@ -1,10 +1,11 @@
 """Score the analysis against CodeQL's own data-flow tests: `python benchmarks/lint_codeql.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/codeql (only python/ql/test/library-tests/dataflow is read). In those tests, the
-variable SOURCE and a few literals are sources, and arguments of SINK and SINK_F are sinks. Comments state which flows
-exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows it invents (`SPURIOUS`). The analysis gets
-both by its settings: the variable becomes a call of a configured source, and the functions are configured sinks. Only
-files are scored that CodeQL tests for plain data flow and that need no models of library functions.
+CHECKOUT is a checkout of github/codeql, of which only python/ql/test/library-tests/dataflow is read. In those tests,
+the variable SOURCE and a few literals are sources, and arguments of SINK and SINK_F are sinks. Comments state which
+flows exist (`flow=`), which of these CodeQL misses (`MISSING`), and which flows it invents (`SPURIOUS`). The analysis
+learns of both through its settings: the variable becomes a call of a configured source, and the functions are
+configured sinks. Only those files are scored that CodeQL tests for plain data flow and that need no models of library
+functions.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ def expected(text: str) -> Expected:
 
 
 def prepared(text: str, wanted: Expected) -> str:
-    """Return the file with calls in place of sources, without its own definitions, and with calls of its tests.
+    """Return the file with sources replaced by calls, without its own definitions, and with calls of its tests.
 
     Line numbers do not change.
     """
@@ -146,7 +147,7 @@ def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) 
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file by lines, and those in which the value itself reaches the sink.
+    """Return the explicit flows of a prepared file as pairs of lines, and those whose value itself reaches the sink.
 
     The other flows pass a list or an object that contains the value. That is a flow for a publish call, but not for
     CodeQL's sinks.

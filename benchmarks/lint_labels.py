@@ -1,10 +1,10 @@
 """Score tarl-lint against real nodes whose flows are known: `python benchmarks/lint_labels.py CHECKOUT LABELS.json`.
 
 CHECKOUT contains the repositories, each in a directory named owner/name, owner__name, owner+name or name. A flow is
-matched by the lines of its subscription and publish calls. For each node and in total, it prints the flows found,
-found with the other kind, missing and surplus; the lines found of labelled paths; the data steps that are labelled or
-optional lines; and reports at publish calls without a flow. Python 2 files, and flows from or to services, actions
-and transforms, are not counted, since the labels do not cover them.
+matched by the lines of its subscription and publish calls. For each node and in total, the script prints the flows that
+are found, found with the other kind, missing or surplus; how many lines of the labelled paths are found; how many data
+steps are on labelled or optional lines; and the reports at publish calls without a flow. Python 2 files, and flows from
+or to services, actions and transforms, are not counted, since the labels do not cover them.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _lines(lines: set[int]) -> str:
 
 
 def directory(checkout: Path, repo: str) -> Path | None:
-    """Return the directory of a repository below the checkout; None if there is none."""
+    """Return the directory of a repository below the checkout, or None if there is none."""
     owner, _, name = repo.partition("/")
     names = (f"{owner}/{name}", f"{owner}__{name}", f"{owner}+{name}", name)
     return next((checkout / n for n in names if (checkout / n).is_dir()), None)

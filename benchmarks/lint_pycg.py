@@ -50,7 +50,7 @@ class Calls(Linker):
         return f"{module}.{inner}" if inner else module
 
     def edges(self) -> set[Edge]:
-        """Return every call between functions of the files."""
+        """Return every call between functions of the analysed files."""
         frames = [f for f in self.frames.values() if f.caller is not None and _own(f.caller)]
         return {(self.name(f.caller), self.name(f)) for f in frames if f.caller is not None}
 
@@ -90,7 +90,7 @@ class Calls(Linker):
 
 
 def _own(frame: Frame) -> bool:
-    """Return whether a frame is a function or module of the files, not one of the interpreter."""
+    """Return whether a frame belongs to a function or module of the analysed files, not to the interpreter."""
     return not (isinstance(frame.key, tuple) and frame.key[0] == "root")
 
 

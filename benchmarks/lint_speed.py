@@ -1,4 +1,4 @@
-"""Compare the speed of `tarl-lint` with `ast.parse` and Semgrep on the same trees, in one run.
+"""Compare the speed of `tarl-lint` with that of `ast.parse` and Semgrep on the same trees, in one run.
 
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
@@ -102,7 +102,7 @@ def python_files(tree: Path) -> list[Path]:
 
 
 def parsing(tree: Path, repetitions: int) -> Cost:
-    """Return the cost of `ast.parse` over a tree, without starting Python and reading the files."""
+    """Return the cost of `ast.parse` over a tree, excluding the start of Python and the reading of files."""
     names = "\n".join(str(p) for p in python_files(tree))
     bare, whole = (
         least([sys.executable, "-c", PARSE.replace("PARSES", flag)], repetitions, given=names)
@@ -112,7 +112,7 @@ def parsing(tree: Path, repetitions: int) -> Cost:
 
 
 def linting(tree: Path, repetitions: int, *, cached: bool) -> Cost:
-    """Return the cost of tarl-lint, with an empty cache or with a full one (`cached`)."""
+    """Return the cost of tarl-lint with an empty cache or, if `cached`, with a full one."""
     command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "concise"]
     with tempfile.TemporaryDirectory() as home:
         directory = Path(home)

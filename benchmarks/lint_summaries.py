@@ -1,8 +1,9 @@
 """Measure what function summaries could save: `python benchmarks/lint_summaries.py TREE [TREE ...]`.
 
-For each tree, it prints the CPU seconds of the interpretation, and of the function bodies that it executes, without
-nested calls. It also prints how much of that is the first run of a call context, and the part that a summary would
-save if applying one cost nothing. It assumes that a summary holds for all runs of a function with the same key:
+For each tree, it prints the CPU seconds of the interpretation and, within it, of executing function bodies (without
+nested calls), separately for the first run in a call context and for later runs. It also prints which part of these a
+summary would save if applying one cost nothing. It assumes that a summary holds for all runs of a function with the
+same key:
 
 - *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The
   result also depends on what the function reads elsewhere, so no correct summary reaches this bound.
@@ -111,8 +112,8 @@ def _nameable(names: Names, key: Key) -> bool:
 class Meter:
     """Measures executed function bodies, and which of them a summary would replace."""
 
-    total: float = 0.0  # seconds of the interpretation
-    overhead: float = 0.0  # seconds of measuring
+    total: float = 0.0  # duration of the interpretation (s)
+    overhead: float = 0.0  # time spent measuring (s)
     spent: defaultdict[str, float] = field(default_factory=lambda: defaultdict(float))
     nested: list[float] = field(default_factory=list)
     contexts: set[Frame] = field(default_factory=set)

@@ -56,8 +56,8 @@ class Place:
     def read(cls, text: str, beside: str = "") -> Place:
         """Return the place that `text` names: `path:line`, or a line of the file `beside`.
 
-        A path is relative to the directory of the trees if it begins with the same folder as `beside`, else to that
-        folder.
+        A path is relative to the directory of the trees if it begins with the same folder as `beside`; otherwise, it is
+        relative to that folder.
         """
         path, _, line = text.rpartition(":")
         home = beside.partition("/")[0]
@@ -119,7 +119,7 @@ def drawn(calls: Sequence[Place], loud: set[Place], seed: int, each: int) -> lis
 
 
 def seen(file: Path) -> set[tuple[str, int]]:
-    """Return the last two parts of the path and the line of each place that a text names."""
+    """Return, for each place that a text names, the last two parts of the path and the line."""
     text = file.read_text(encoding="utf-8")
     return {(_tail(path), int(line)) for path, line in re.findall(r"([\w./+-]+):(\d+)", text)}
 
@@ -182,7 +182,7 @@ class Truth:
 
 
 def lines(texts: Sequence[str], beside: str) -> Iterator[Place]:
-    """Yield the places that a judged path names: lines or ranges of lines, also after a path and a colon."""
+    """Yield the places that a judged path names: lines or ranges of lines, which may follow a path and a colon."""
     for text in texts:
         path, _, span = text.rpartition(":")
         first, _, last = span.partition("-")

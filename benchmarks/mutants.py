@@ -34,8 +34,8 @@ ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-BUDGET = 120.0  # seconds of tests per fault, as measured without the fault
-PATIENCE = 60.0  # seconds allowed beyond three times the duration of the tests without the fault
+BUDGET = 120.0  # budget of tests per fault (s), as measured without the fault
+PATIENCE = 60.0  # time that the tests may take beyond three times their duration without the fault (s)
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -108,7 +108,7 @@ def main() -> None:
 
 
 def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) -> Reached:
-    """Return which tests reach which lines; measure it, or read it from the files."""
+    """Return which tests reach which lines: measure this, or read it from the files."""
     if not keep:
         return measured(copy, package, tests)
     reached = Reached()
@@ -172,7 +172,7 @@ def pytest_runtest_setup(item):
 def sample(
     copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
 ) -> list[Fault]:
-    """Choose `each` faults per package, or `count` in all. Files are weighted by their number of possible faults."""
+    """Choose `each` faults per package, or `count` in total; files are weighted by their number of possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
@@ -189,7 +189,7 @@ def sample(
 def precompiled(copy: Path) -> None:
     """Compile the sources of the copy.
 
-    Python compares the digest of a source with the compiled one, so it never misses a fault.
+    Python compares the hash of a source with the compiled file, so it never misses a fault.
     """
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
@@ -226,9 +226,9 @@ def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, 
 
 
 def tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
-    """Return pytest's exit status and the test that failed first; no test if pytest itself failed.
+    """Return pytest's exit status, and the test that failed first; no test if pytest itself failed.
 
-    Raises TimeoutExpired if the tests exceed the limit in seconds.
+    Raise TimeoutExpired if the tests exceed the limit in seconds.
     """
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header"]
     with subprocess.Popen(

@@ -33,8 +33,8 @@ SENSORS = (
 )
 LINES = [f"    v{n} = v{n - 1} * 0.5 + {n}" for n in range(1, 19)]
 NODE = "\n".join(["def cycle(v0):", *LINES, "    speed = 5 * v18", "    return speed", ""])
-PERIOD = 0.002  # seconds between two cycles
-WARM = 50  # cycles at the start of a block that are not counted
+PERIOD = 0.002  # time between two cycles (s)
+WARM = 50  # number of cycles at the start of a block that are not counted
 AT = (50, 99, 99.9)
 
 
@@ -122,7 +122,7 @@ def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
 
 
 def loop(cycle: Any, observer: Observer | None, cycles: int) -> tuple[list[float], list[float]]:
-    """Run the control loop; return for each cycle the µs since it was due and since it began."""
+    """Run the control loop; return, for each cycle, the time since it was due and since it began (µs)."""
     since_due, since_begun = [], []
     due = perf_counter_ns()
     for number in range(cycles + WARM):

@@ -29,9 +29,9 @@ from pytest_tarl.observing.frames import records, set_aside
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, unpacked
 
-RATE = 100  # cycles a second
+RATE = 100  # number of cycles per second
 BEHIND = RATE  # maximum number of steps that wait for the observer's thread
-OBJECTS = 1000  # allowed growth of the memory blocks that Python holds
+OBJECTS = 1000  # maximum growth of the number of memory blocks that Python holds
 SAMPLES = 24  # number of memory samples and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
 
@@ -88,7 +88,7 @@ def main() -> None:
 
 
 def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, float]], list[int], int]:
-    """Run the cycles; return samples of the memory of both processes (MB) and of the blocks, and the events dropped."""
+    """Run the cycles; return samples of both processes' memory (MB) and of the blocks, and the dropped events."""
     clock, sizes, blocks = Clock(), [], list[int]()
     vars(observing)["monotonic"] = clock
     observer = Observer(SENSORS, log, ABOUT, rotation=rotation, following=True)

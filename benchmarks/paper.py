@@ -83,7 +83,7 @@ VARIANTS = {
 
 @dataclass
 class Study:
-    """A pytest plugin that runs one test's episodes in both worlds and stores the results."""
+    """A pytest plugin that runs a test's episodes in both worlds and stores the results."""
 
     seed: int
     variant: Variant
@@ -183,7 +183,7 @@ def _watched_mud() -> list[bool]:
 
 
 def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool]) -> list[list[int]]:
-    """Return the muddy cells, which have half or more of their steps in mud, and 5 % or more of all steps in mud."""
+    """Return the muddy cells: those with at least half of their steps in mud, and at least 5 % of all steps in mud."""
     counts: dict[Cell, list[bool]] = {}
     for seed in online.sample.seeds:
         mud.clear()
@@ -198,7 +198,7 @@ def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool])
 
 
 def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str, float]:
-    """Return the share of steps in mud at which the guard is true, and of the others at which it is false."""
+    """Return the share of steps in mud at which the guard is true, and of the other steps at which it is false."""
     hits: dict[bool, list[bool]] = {True: [], False: []}
     patched = Mutants(order).source(candidate)
     for seed in seeds.episode_seeds(order.options.seed, "guard", ONLINE):

@@ -20,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = ("tarl_lint", "pytest_tarl", "website", "benchmarks")
-SHORTEST = 4  # words; shorter texts are labels
+SHORTEST = 4  # minimum number of words; shorter texts are labels
 NO_PROSE = re.compile(
     r"^(noqa|type:|fmt:|!/)|\bimport \w+ (from|import)\b|^(\{[^}]*\}\W*)+$"
 )  # directives, embedded code, layouts

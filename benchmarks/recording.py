@@ -39,11 +39,11 @@ from pytest_tarl.learning.statistics import sample
 
 os.environ["COVERAGE_CORE"] = "ctrace"  # newer versions of Python would use sys.monitoring
 TURNS = 60
-ROUNDS = 2_000  # rounds that record about ten thousand events, as in an episode
+ROUNDS = 2_000  # number of rounds, which record about ten thousand events, as in an episode
 STEPS = 200
 DISCS = 340  # number of discs with which a step takes about 200 µs
 RUNS = 12
-STARTS = 41  # starts of pytest, with and without the plugin
+STARTS = 41  # number of starts of pytest, with and without the plugin
 
 STRAIGHT = """
 def work(rounds):
@@ -188,7 +188,7 @@ def control_step() -> tuple[float, float]:
 
 
 def called(control: Callable[[Any, float], float]) -> float:
-    """Return the microseconds per call of the controller alone, since the noise of world steps would hide that cost."""
+    """Return the microseconds per call of the controller alone; the noise of world steps would hide them."""
     node = SimpleNamespace(kp=0.4)
     start = time.process_time()
     for i in range(STEPS):
@@ -214,7 +214,7 @@ def stepped(control: Callable[[Any, float], float]) -> float:
 
 
 def finishing() -> tuple[float, float]:
-    """Return how many million events per second go from the buffer to a trace, and from the buffer to statistics."""
+    """Return how many million events per second are converted from the buffer to a trace, and to statistics."""
     best = [float("inf")] * 2
     for _ in range(10):
         recorder = Recorder()

@@ -92,7 +92,7 @@ def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> 
 
 
 def real(library: str) -> Callable[[], Ros] | None:
-    """Return a factory that runs an episode on the real ROS; None if it is not installed."""
+    """Return a factory of episodes on the real ROS, or None if it is not installed."""
     if PathFinder.find_spec(library) is None:
         return None
     if library == "rospy":

@@ -30,8 +30,8 @@ import pytest
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
 FOUND = HERE.parent / ".tarl-same-world.jsonl"
-BATCH = 10  # comparisons per process
-ONLINE_SEEDS = 1_000_000  # added to the number of a comparison; it gives seeds that no recording has
+BATCH = 10  # number of comparisons per process
+ONLINE_SEEDS = 1_000_000  # added to the number of a comparison, to get seeds that no recording has
 SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
 
 
@@ -94,7 +94,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
 
 
 def ran(world: World, *flags: str) -> None:
-    """Run pytest. Raises RuntimeError if a run does not reach a verdict."""
+    """Run pytest. Raise RuntimeError if it does not reach a verdict."""
     quiet = ("-q", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])

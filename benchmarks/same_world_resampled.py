@@ -2,10 +2,10 @@
 
     python benchmarks/same_world_resampled.py shuttle [--episodes 4000] [--splits 2500] [--seed 0]
 
-`same_world.py` records for each comparison, which costs seconds. Here `pytest --tarl-record` runs a world once, with
-many episodes. Each split draws 200 of them as the designed world and 40 as the deployed world, which costs 50 ms. If
-the recording is many times longer than a split, the share of splits with p below a level estimates the true rate of
-false alarms at that level.
+`same_world.py` makes a recording for each comparison, which takes seconds. Here `pytest --tarl-record` runs a world
+once, with many episodes. Each split draws 200 of them as the designed world and 40 as the deployed world, which takes
+50 ms. If the recording is many times longer than a split, the share of splits with p below a level estimates the true
+rate of false alarms at that level.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import Fixture, load
 from pytest_tarl.learning.tables import Ints, Sample
 
-DESIGNED, DEPLOYED = 200, 40  # episodes of a recording and of a comparison; the plugin's defaults
+DESIGNED, DEPLOYED = 200, 40  # numbers of episodes of a recording and of a comparison; the plugin's defaults
 LEVELS = (0.01, 0.05, 0.1, 0.25, 0.5)
 
 
@@ -47,7 +47,7 @@ class Lengthened(Undrifted):
 
 
 def recorded(world: World, episodes: int) -> Fixture:
-    """Record a world. Raises RuntimeError if the recording fails."""
+    """Record a world. Raise RuntimeError if the recording fails."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / world.folder.name
         shutil.copytree(world.folder, folder, ignore=SPARED)
@@ -64,7 +64,7 @@ def recorded(world: World, episodes: int) -> Fixture:
 
 
 def chosen(sample: Sample, episodes: Ints) -> Sample:
-    """Return the sample of these episodes (indices in ascending order)."""
+    """Return the sample of the given episodes (indices in ascending order)."""
     place = np.full(sample.episodes, -1)
     place[episodes] = np.arange(len(episodes))
     rows = place[sample.chain.episode] >= 0
@@ -82,7 +82,7 @@ def chosen(sample: Sample, episodes: Ints) -> Sample:
 
 
 def p_values(fixture: Fixture, splits: int, seed: int) -> list[float]:
-    """Return p_drift of every split, `splits` values."""
+    """Return p_drift of each split."""
     generator = np.random.default_rng(seed)
     found = []
     for _ in range(splits):

@@ -3,10 +3,10 @@
     python benchmarks/shared_episodes.py [--runs 1000] [--total 160] [--recorded 60] [--seed 0]
 
 Totals of episodes are normal with standard deviation 1; a drift of size d lowers their mean by d. All drifts of a world
-are compared with one recording. Looks, the choice of the comparison that continues, and the permutation test are those
-of the plugin; regions of sensor space are left out, so a loss is found as soon as it is significant. "even, as many
-run" has the smallest even share with which early endings leave as many episodes to run, on average, as were run by the
-shared total; a user cannot know this share beforehand.
+are compared with one recording. The looks, the choice of the comparison that continues, and the permutation test are
+those of the plugin; regions of sensor space are left out, so a loss is found as soon as it is significant. The row
+"even, as many run" has the smallest even share with which comparisons that end early run, on average, as many episodes
+as with the shared total; a user cannot know this share beforehand.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Result = tuple[list[bool], int]  # whether each drift was found, and the number 
 
 @dataclass(frozen=True)
 class World:
-    """The recorded total rewards, and those of each drift, as many as any rule may run."""
+    """The recorded total rewards, and for each drift as many total rewards as any rule may run."""
 
     recorded: Floats
     drifts: Sequence[Floats]
@@ -58,7 +58,7 @@ class World:
 
 
 def even(world: World, share: int, looks: int) -> Result:
-    """Compare each drift by itself, with as many episodes."""
+    """Compare each drift separately, each with the same number of episodes."""
     plan = planned(share, looks)
     found, run = [], 0
     for drift in range(len(world.drifts)):

@@ -50,7 +50,12 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # not every message needs a test, so no faults
+_UNSEEN = (
+    ast.Import,
+    ast.ImportFrom,
+    ast.Assert,
+    ast.Raise,
+)  # no faults here: not every message needs a test
 
 
 @dataclass(frozen=True, order=True)
@@ -64,7 +69,7 @@ class Fault:
     kind: str
     was: str
     now: str
-    lines: tuple[int, ...] = ()  # the statement without its body, as in coverage data
+    lines: tuple[int, ...] = ()  # line numbers of the statement without its body, as in coverage data
 
     @property
     def name(self) -> str:
@@ -100,7 +105,7 @@ def _compiles(data: bytes) -> bool:
 
 
 class _Finder:
-    """Collect the faults of a module in one walk."""
+    """Collect the faults of a module in one pass."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self._data = data

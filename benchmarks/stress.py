@@ -4,10 +4,10 @@
 
 The tasks are those of benchmarks/drift, and the examples whose drift is a single number. Each has one direction, from
 its nominal value to its drift. The grid has 41 values, each with 40 episodes on its own seeds. Its boundary is where
-the interpolated margin first crosses zero. A line for each task gives both boundaries in shares of the range, their
-distance, and the episodes of both. With `--harmless N`, each task also gets N runs on the part of the range up to
-half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
-boundaries in the file are not measured again.
+the interpolated margin first crosses zero. A line for each task gives both boundaries as shares of the range, the
+distance between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the
+range up to half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
+boundaries that the file contains are not measured again.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ from pytest_tarl.stressing.guarantee import Guarantee, Outcome, guaranteed  # no
 from pytest_tarl.stressing.rays import rays  # noqa: E402
 from pytest_tarl.stressing.search import along_rays, near_ends  # noqa: E402
 
-GRID, EPISODES = 41, 40  # number of values, and episodes at each of them
+GRID, EPISODES = 41, 40  # number of values, and number of episodes at each of them
 RECORDED = 100
 SHARE = 0.15  # share of the grid's episodes that a stress run may use
-NEAR = 0.05  # maximum distance of the boundary from that of the grid, as a share of the range
-RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, combinations, and nominal
+NEAR = 0.05  # maximum distance between the boundary and that of the grid, as a share of the range
+RISK = 0.05 / 3  # alpha of a run with one ray, divided among the ray, the combinations and the nominal drift
 SIZE = "size"  # name of the only direction
 EXAMPLES = {"line_follower": HERE.parent / "examples" / "line_follower"}
 
@@ -53,7 +53,7 @@ class Sized:
 
     stage: Stage
     name: str  # of the drift
-    whole: bool  # whether the task counts in whole numbers
+    whole: bool  # whether the task's drift must be a whole number
     workers = 1
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
@@ -72,7 +72,7 @@ class Sized:
 
 
 def nominal_of(stage: Stage) -> str:
-    """Return the nominal value as the task's test writes it."""
+    """Return the nominal value as the task's test states it."""
     (path,) = [path for path in stage.folder.glob("test_*.py") if "tarl_drift or" in path.read_text()]
     found = re.search(r"tarl_drift or ([-\d.]+)", path.read_text())
     if found is None:
@@ -87,7 +87,7 @@ def sized(stage: Stage, name: str) -> tuple[Sized, float, float]:
 
 
 def span_of(low: float, high: float) -> Space:
-    """Return the space from the nominal value to another."""
+    """Return the space from the nominal value to another value."""
     return Space({SIZE: Span(min(low, high), max(low, high), low)}, {})
 
 
@@ -105,7 +105,7 @@ def recorded(rollout: Sized, nominal: float) -> Guarantee:
 
 
 def exhaustive(rollout: Sized, given: Guarantee, nominal: float, far: float) -> float | None:
-    """Return where the margin first crosses zero, as a share of the range; None if it never crosses zero."""
+    """Return where the margin first crosses zero, as a share of the range, or None if it never does."""
     seeds = episode_seeds(12, "grid", EPISODES)
     before = run_at(rollout, nominal, seeds)
     last = 1.0
@@ -120,7 +120,7 @@ def exhaustive(rollout: Sized, given: Guarantee, nominal: float, far: float) -> 
 
 
 def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: int) -> tuple[Curve, int]:
-    """Return the curve of a stress run in one direction, and its episodes."""
+    """Return the curve of a stress run in one direction, and the number of its episodes."""
     evaluator = Evaluator(rollout, space, "stress", given, seed, budget, lambda *_: None)
     (curve,) = (Curve(ray) for ray in rays(space, {}))
     with suppress(BudgetSpentError):
@@ -131,7 +131,7 @@ def stressed(rollout: Sized, given: Guarantee, space: Space, seed: int, budget: 
 
 @dataclass(frozen=True)
 class Compared:
-    """One task: boundaries in shares of the range, episodes of the run, and false boundaries of harmless runs."""
+    """One task: boundaries as shares of the range, episodes of the run, and false boundaries in harmless runs."""
 
     grid: float | None
     found: float | None

@@ -60,15 +60,15 @@ from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
 HARMLESS = {"harmless": harmless, **QUIET_WORLDS}  # nothing in the space breaks the guarantee
-BUDGET = 600  # episodes of a run
-PROBES = 4  # episodes at a drift that a peer proposes
-OFFERS = 10  # failing drifts of a method that are tested on fresh seeds
+BUDGET = 600  # maximum number of episodes of a run
+PROBES = 4  # number of episodes at each drift that a peer proposes
+OFFERS = 10  # maximum number of a method's failing drifts that are tested on fresh seeds
 RECORDED = 100
 RISK = 0.05  # risk of the test on fresh seeds
-SIZES = (16, 32, 64)  # fresh episodes after which the test ends if it succeeds
+SIZES = (16, 32, 64)  # numbers of fresh episodes after which the test ends if it succeeds
 SIZE = "size"
 SCENARIO = "stress"
-LARGEST = 2.0  # no drift in four directions is farther from nominal
+LARGEST = 2.0  # upper limit of distances: no drift in four directions is farther from nominal
 FORMULA = Designation(
     (), (), min_success=0.95, tolerance=TOLERANCE
 )  # the test of a world of stress_worlds.py
@@ -76,7 +76,7 @@ PEERS = {"Ψ-TaLiRo": "psy_taliro_peer.py", "STGEM": "stgem_peer.py"}
 
 
 class Numbered(Space):
-    """A space whose world takes a single number, as in the tests of benchmarks/drift."""
+    """A space whose test takes a single number as its drift, as the tests of benchmarks/drift do."""
 
     def world(self, point: Point) -> Any:
         """Return the value of the task's own drift."""
@@ -175,7 +175,7 @@ class Uniform:
 class Process:
     """A peer in its own process and environment.
 
-    It writes a point and reads the cost of the point, each as a line of JSON.
+    It writes a point and reads the point's cost, each as a line of JSON.
     """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
@@ -187,7 +187,7 @@ class Process:
         self.until = monotonic() + seconds
 
     def ask(self) -> Sequence[float] | None:
-        """Return the next point; None after the last one, or when the time is up."""
+        """Return the next point, or None after the last one or when the time is up."""
         assert self.process.stdout is not None
         if not select([self.process.stdout], [], [], max(self.until - monotonic(), 0.0))[0]:
             print(f"{self.script} did not end in time", file=sys.stderr, flush=True)
@@ -211,7 +211,7 @@ class Process:
 
 @contextmanager
 def optimiser(method: str, size: int, seed: int, home: Path, seconds: float) -> Iterator[Any]:
-    """Yield a peer by its name."""
+    """Yield the peer with this name."""
     if method in PEERS:
         peer = Process(home, PEERS[method], size, seed, seconds)
         try:
@@ -256,7 +256,7 @@ def peer_run(one: Arena, seed: int, method: str, home: Path, seconds: float = 60
 
 
 def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
-    """Return the distance of the nearest point that fails on fresh seeds; None if no point does."""
+    """Return the distance of the nearest point that fails on fresh seeds, or None if no point does."""
     judge = one.evaluator(10_000 + seed, 10**9)
     for k, point in enumerate(points[:OFFERS], 1):
         if judge.confirm(point, "judge", RISK / (k * (k + 1)), SIZES):
@@ -265,7 +265,7 @@ def verified(one: Arena, seed: int, points: Sequence[Point]) -> float | None:
 
 
 def at_least_as_near(own: float | None, other: float | None) -> bool:
-    """Return whether our distance is at most the other one; two methods that find nothing are equally good."""
+    """Return whether our distance is at most the other one; two methods that find nothing count as equal."""
     if own is None or other is None:
         return other is None
     return own <= other * (1 + 1e-9)

@@ -5,7 +5,7 @@
 Each task has one direction, from its nominal value to its drift. The task is recorded, stressed with 246 episodes,
 repaired at the boundary and beyond, and stressed again, as `pytest --tarl-stress --tarl-repair` does with seed 1. A
 line for each task gives the interval of the boundary before and after the repair, as shares of the range, and the
-change. With `--results`, results are added to a JSON Lines file; tasks in the file are not run again.
+change. With `--results`, results are added to a JSON Lines file; tasks that the file contains are not run again.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Moved:
 
     @property
     def grew(self) -> bool | None:
-        """Return whether the guarantee now fails farther from nominal, or nowhere; None without a repair."""
+        """Return whether the guarantee now fails farther from nominal, or nowhere; None if there is no repair."""
         before, after = self.before[1], self.after[1]
         return None if not self.change else after is None or (before is not None and after > before)
 

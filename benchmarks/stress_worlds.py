@@ -1,8 +1,9 @@
 """Worlds of four directions, defined by formulas, in which the nearest failing drift is known up to noise.
 
-The reward has noise that depends only on the seed, as in a simulation, and a quarter as much that also depends on the
-drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. It returns whether the
-episode passes, and its reward. The guarantee: 95 % of the episodes pass, and at most TOLERANCE of the reward is lost.
+The reward has noise that depends only on the seed, as in a simulation, and a quarter as much noise that also depends on
+the drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. It returns whether the
+episode passes, and its reward. The guarantee is that 95 % of the episodes pass and that at most TOLERANCE of the reward
+is lost.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from pytest_tarl.spaces import Space, Span
 Vector = NDArray[np.float64]
 World = Callable[[Vector, np.random.Generator], tuple[bool, float]]
 TOLERANCE = 0.5
-SHARED, NOISE = 0.2, 0.05  # standard deviations of the reward
+SHARED, NOISE = 0.2, 0.05  # standard deviations of the reward's noise: by seed, by seed and drift
 NAMES = ("a", "b", "c", "d")
 _NONE = np.zeros(0, np.int32)
 
@@ -62,7 +63,7 @@ def island(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def harmless(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Lose at most 62 % of the tolerated reward, and fail 1 episode in 100 everywhere."""
+    """Lose at most 62 % of the tolerated reward, and fail in 1 episode of 100 everywhere."""
     _, total = plane(0.3 * x, draws)
     return bool(draws.random() < 0.99), total
 

@@ -22,14 +22,14 @@ import pytest
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.recorder import Recorder
 
-EVERY = 0.2  # CPU seconds after which recorded events are dropped, to bound memory
+EVERY = 0.2  # CPU time after which recorded events are dropped, to bound the memory (s)
 OPEN = ExitStack()
 FOUND: dict[str, list[str]] = {}
 COUNTS = {"sites": 0, "events": 0, "files": 0}
 
 
 def every_site(file: Path, first: int) -> dict[tuple[int, int], int]:
-    """Return the places of all statements, handlers, cases and lambda bodies, numbered from `first`."""
+    """Return the positions of all statements, handlers, cases and lambda bodies, numbered from `first`."""
     text = file.read_text(encoding="utf-8")
     lines, sites = text.split("\n"), dict[tuple[int, int], int]()
     for node in ast.walk(ast.parse(text)):
@@ -102,4 +102,4 @@ def pytest_unconfigure() -> None:
 
 
 if "SUITE_RESULT" in os.environ:
-    begin()  # this happens before any conftest.py imports the package
+    begin()  # before any conftest.py imports the package

@@ -1,10 +1,9 @@
-"""Run test suites of other projects, plain and with every statement recorded, and compare each test's outcome.
+"""Run test suites of other projects, plain and with every statement recorded, and compare the outcome of each test.
 
-`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in
-a temporary environment, runs each suite twice and prints the tests whose outcome differs. If some outcomes differ,
-the plain suite runs up to three times more, and then the files of the tests that still differ run up to twenty times.
-An outcome that also occurs in a plain run is not due to recording. The exit status is 1 if recording changed an
-outcome.
+`python benchmarks/third_party_suites.py toolz attrs` downloads the sdists (pinned, with hashes), installs them in a
+temporary environment, runs each suite twice and prints the tests whose outcomes differ. If some outcomes differ, the
+plain suite runs up to three more times, and then the files of the tests that still differ run up to twenty times. An
+outcome that also occurs in a plain run is not due to recording. The exit status is 1 if recording changed an outcome.
 """
 
 from __future__ import annotations
@@ -24,14 +23,14 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-PLAIN_RUNS = 4  # at most
+PLAIN_RUNS = 4  # maximum number of plain runs
 FILE_RUNS = 20  # maximum number of plain runs of only the files whose tests still differ
 TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
 
 
 @dataclass(frozen=True)
 class Suite:
-    """A release: digest of its sdist, folder of its package, requirements of its tests, and how to run them."""
+    """A release: hash of its sdist, folder of its package, requirements of its tests, and how to run them."""
 
     version: str
     sha256: str
@@ -150,7 +149,7 @@ def install(python: Path, *what: str) -> None:
 
 
 def sources(name: str, folder: Path, python: Path) -> Path:
-    """Download a suite's sdist, check its digest and return the folder of its contents."""
+    """Download a suite's sdist, check its hash and return the folder of its contents."""
     suite, store = SUITES[name], folder / name
     # the metadata of the suite, and the packages that it needs
     install(python, f"{name}=={suite.version}", *suite.needs)

@@ -1,4 +1,4 @@
-"""Print how fast the same test runs in-process, in lock-step on a real rclpy, and against an external simulator.
+"""Print how fast the same test runs in-process, in lock-step on a real rclpy, and with an external simulator.
 
     python benchmarks/three_worlds.py
 

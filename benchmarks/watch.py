@@ -40,22 +40,22 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 ALPHA = 0.05
-LIFE = 1000  # missions of a stream without drift; also the maximum after the start of a drift
+LIFE = 1000  # number of missions in a stream without drift, and maximum number after the start of a drift
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
-DISTINCT = 5000  # distinct missions in the log of the speed test
+DISTINCT = 5000  # number of distinct missions in the log of the speed test
 WINDOW, EVERY = 40, 10
 METHODS = ("watch", "success", "mean", "world", "repeated KS", "CUSUM")
 
 
 @dataclass(frozen=True)
 class Alarms:
-    """The mission, counted from 1, at which each method raised its first alarm; None if it never did."""
+    """The mission, counted from 1, at which each method first raised an alarm; None if it never did."""
 
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return the missions from the start of a drift to the alarm; None if no alarm or an earlier one was raised."""
+        """Return the missions from the start of a drift to the alarm, or None if there is none or an earlier one."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 

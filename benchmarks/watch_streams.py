@@ -23,8 +23,8 @@ from pytest_tarl.learning.tables import END, Chain, Sample
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
-OFFLINE = 200  # missions of a recording
-POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), and drifting (False)
+OFFLINE = 200  # number of missions in a recording
+POOLED = {True: 3000, False: 1500}  # number of missions in a pool: as designed (True), drifting (False)
 POOLED_EXAMPLE = {True: 1000, False: 300}
 FAILING = 0.03  # share of the designed missions that count as failed: those with the smallest totals
 Rows = NDArray[np.int64]
@@ -43,7 +43,7 @@ def heavy(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
 
 
 def rare(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of one step; one of fifty missions loses much reward."""
+    """Draw a mission of one step; one mission of fifty loses much reward."""
     return [(0,)], [-100.0 if rng.random() < 0.02 else 1.0]
 
 
@@ -52,7 +52,7 @@ SYNTHETIC: dict[str, Callable[[Generator], tuple[list[tuple[int, ...]], list[flo
     "heavy": heavy,
     "rare": rare,
 }
-UNBOUNDED = ("heavy",)  # worlds whose totals have no range
+UNBOUNDED = ("heavy",)  # worlds whose totals have no declared range
 WATCHED = (*WORLDS, *EXAMPLES, *SYNTHETIC)
 
 
@@ -94,7 +94,7 @@ def _pool(world: str, size: float) -> Sample:
 
 @cache
 def total_range(world: str) -> Range | None:
-    """Return the range of a mission's total, with or without drift, as a marker declares it; None if it has none."""
+    """Return the range of a mission's total, with or without drift, as a marker declares it, or None."""
     if world in UNBOUNDED:
         return None
     totals = [_pool(world, size).total for size in ((0.0, 1.0) if world not in SYNTHETIC else (0.0,))]
@@ -142,7 +142,7 @@ def gathered(pool: Sample, rows: Rows) -> Sample:
 
 
 def _over(chosen: Sample, pool: Sample, cells: tuple[tuple[int, ...], ...]) -> Sample:
-    """Return missions with cells numbered as in `cells`; all other cells get the number after the last."""
+    """Return missions with cells numbered as in `cells`; all other cells get the next number."""
     number = {cell: row for row, cell in enumerate(cells)}
     place = np.array([*(number.get(cell, len(cells)) for cell in pool.cells), END], np.int64)
     chain = chosen.chain

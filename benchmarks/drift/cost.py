@@ -2,9 +2,9 @@
 
     python benchmarks/drift/cost.py [--seeds 2] [--sizes 10,20,40,80] [--workers 1]
 
-Three tasks of the benchmark are padded with statements on the way from sensor to command. The constants of these
-statements matter little (a correction of at most one in a thousand) or not at all (a limit that is never reached).
-The fault of the node stays the same. The smallest size is the node without padding.
+Three tasks of the benchmark are padded with statements between sensor and command. The constants of these statements
+have little effect (a correction of at most one in a thousand) or none (a limit that is never reached). The fault of the
+node stays the same. The smallest size is the node without padding.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PLACES = {
     "pan_tracker": ("tracker.py", "pixels = msg.point.x - self.MIDDLE", "pixels"),
 }
 PADDING = ("{name} += 0.0004 * {name} / ({at}.7 + abs({name}))", "{name} = min({name}, 9{at}e4)")
-A_BLOCK = 3  # constants in a block of padding
+A_BLOCK = 3  # number of constants in a block of padding
 
 
 def padded(text: str, statement: str, name: str, blocks: int) -> str:

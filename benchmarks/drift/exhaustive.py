@@ -2,12 +2,12 @@
 
     python benchmarks/drift/exhaustive.py [TASK ...] [--workers 2]
 
-Every operand of every site takes every value of a fine grid, without a guard and under the guard that the task's
-author knows to be true ("where"). A constant that a site repeats is also changed in all places at once, and the
-operands of a site are also changed in pairs. A site is right if changing its operands alone restores the drifted
-world to 95 % of the designed reward, over EPISODES seeds that nothing else uses. If no site is right, all pairs of
-operands are tried. If a task has more than two culprits, each of them is replaced in turn by every other operand,
-while the others keep the values that the author knows.
+Every operand of every site takes every value of a fine grid, without a guard and under the guard that, as the task's
+author knows, is true where the drift acts ("where"). A constant that occurs several times at a site is also changed at
+all of them at once, and pairs of operands of a site are also changed together. A site is right if changing its operands
+alone restores the drifted world to 95 % of the designed reward, over EPISODES seeds that nothing else uses. If no site
+is right, all pairs of operands are tried. If a task has more than two culprits, each of them in turn is replaced by
+every other operand, while the others keep the values that the author knows.
 """
 
 from __future__ import annotations
@@ -39,20 +39,20 @@ from tarl_lint.model import Operand
 FINE = tuple(percent / 100 for percent in range(5, 100, 5))
 FACTORS = (*sorted((*FINE, *(round(1 / factor, 3) for factor in FINE)), key=lambda f: abs(log(f))), 0.0, -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
-# repairs of the same sites after which the search for one that also holds in the nominal world ends
+# number of repairs of the same sites after which the search for one that also works in the nominal world ends
 SHOWN = 8
-COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # factors for the pairs of all operands
+COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # factors for all pairs of operands
 EPISODES = 24
 RESTORED = 0.95
-SCREENED = 3  # number of first episodes, of which a candidate may lose none ...
-MOST_LOST = 2  # ... and the number of episodes that a candidate may lose in total
+SCREENED = 3  # a candidate that loses reward in one of the first SCREENED episodes is dropped
+MOST_LOST = 2  # maximum number of episodes in which a candidate may lose reward
 
 Change = tuple[Mutation, ...]
 
 
 @dataclass(frozen=True)
 class Found:
-    """One candidate that restores the drifted world; `nominal` is its reward in the designed world."""
+    """A candidate that restores the drifted world; `nominal` is its reward in the designed world."""
 
     change: Change
     guard: Guard
@@ -97,7 +97,7 @@ class World:
     def tried(self, changes: Iterator[Change], guards: Sequence[Guard] | None = None) -> list[Found]:
         """Return the changes that restore the drifted world under one of the guards.
 
-        Sites that were shown to be right are not tried again.
+        Sites already known to be right are not tried again.
         """
         found: list[Found] = []
         for change in changes:
@@ -137,7 +137,7 @@ class World:
 
 
 def singles(world: World) -> Iterator[Change]:
-    """Yield the changes of one operand, and the joint changes of equal operands of a site."""
+    """Yield every change to one operand, and every joint change to equal operands of a site."""
     of_site: dict[Any, list[Operand]] = {}
     for operand in world.operands:
         of_site.setdefault(operand.site, []).append(operand)
@@ -152,19 +152,19 @@ def singles(world: World) -> Iterator[Change]:
 
 
 def of_one_site(world: World) -> Iterator[Change]:
-    """Yield the changes of two operands of one site."""
+    """Yield every joint change to two operands of the same site."""
     for site in dict.fromkeys(operand.site for operand in world.operands):
         yield from pairs(world, [operand for operand in world.operands if operand.site == site], COARSE)
 
 
 def pairs(world: World, operands: Sequence[Operand], factors: Sequence[float]) -> Iterator[Change]:
-    """Yield all changes of two operands."""
+    """Yield every joint change to two operands."""
     for one, other in combinations(operands, 2):
         yield from product(world.mutations(one, factors), world.mutations(other, factors))
 
 
 def replaced(world: World, known: Change) -> Iterator[Change]:
-    """Yield variants of a known repair: each part in turn is replaced by every mutation of every other operand."""
+    """Yield variants of a known repair: each part in turn is replaced by each mutation of each other operand."""
     for part in known:
         rest = tuple(mutation for mutation in known if mutation != part)
         taken = {mutation.operand for mutation in rest}
@@ -214,7 +214,7 @@ def _minimal(sets: set[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 
 def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
-    """Return the best repair of a set of sites; repairs that hold in both worlds come first."""
+    """Return the best repair of a set of sites; repairs that work in both worlds come first."""
     of_sites = [one for one in found if _sites(one.change) == sites]
     best = max(of_sites, key=lambda one: (one.nominal > 0, one.drifted))
     return {

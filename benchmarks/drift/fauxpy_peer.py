@@ -1,7 +1,7 @@
-"""FauxPy as a localiser: ranks by spectra (SBFL) and mutants (MBFL) of four designed and four drifted episodes.
+"""FauxPy as a localiser: rankings by spectra (SBFL) and by mutants (MBFL) from four designed and four drifted episodes.
 
-A site gets the score of the best of its lines. Sites with the same score all get the mean of their ranks, as is
-usual. FauxPy proposes no repair. It needs a separate environment, since it pins plugins of pytest.
+A site gets the score of the best of its lines. Sites with equal scores all get the mean of their ranks, as is usual.
+FauxPy proposes no repair. It needs an environment of its own, since it pins plugins of pytest.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from stage import Stage
 from pytest_tarl.seeds import episode_seeds
 
 FAUXPY = ("FauxPy SBFL", "FauxPy MBFL")
-EPISODES = 4  # of each world
-PATIENCE = 3600  # seconds
+EPISODES = 4  # number of episodes of each world
+PATIENCE = 3600  # time limit (s)
 CONFTEST = """\
 from pytest_tarl.repeating import EPISODE, Episode, designated
 from pytest_tarl.rollout import EpisodePlan
@@ -93,7 +93,7 @@ def localised(stage: Stage, seed: int, method: str, python: str | None) -> dict[
 
 
 def _by_line(file: Path) -> dict[tuple[str, int], float]:
-    """Return score by file name and line."""
+    """Return scores by file name and line."""
     with file.open(encoding="utf-8") as text:
         rows = [(row["Entity"].rpartition("::"), float(row["Score"])) for row in csv.DictReader(text)]
     return {(Path(where).name, int(line)): score for (where, _, line), score in rows}

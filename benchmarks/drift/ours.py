@@ -22,8 +22,8 @@ from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds
 
-HELD_OUT = 30  # held-out episodes of each world
-JUDGED = 400  # held-out episodes of each world on which an accepted repair is judged
+HELD_OUT = 30  # number of held-out episodes of each world
+JUDGED = 400  # number of held-out episodes of each world on which an accepted repair is judged
 RESTORED = 0.95
 Overlay = Mapping[Path, str]
 
@@ -88,7 +88,7 @@ class Seen:
 
 
 def judged(order: Order, overlay: Overlay | None) -> dict[str, Any]:
-    """Evaluate a repair on held-out seeds in both worlds; without a repair, nothing is restored."""
+    """Evaluate a repair on held-out seeds in both worlds; if there is no repair, nothing is restored."""
     episodes = HELD_OUT if overlay is None else JUDGED
     designed = seen(order, None, {}, episodes)
     found: dict[str, Any] = {"offline": designed.mean}
@@ -110,7 +110,7 @@ def seen(order: Order, drift: str | None, overlay: Overlay, episodes: int) -> Se
 
 
 def _outcome(order: Order, episode: EpisodePlan) -> Outcome:
-    """Run one episode. If the node ends before the episode, the episode earns as little as the worst recorded one."""
+    """Run one episode; if the node ends before the episode, the reward is that of the worst recorded episode."""
     try:
         run = sound(order.rollout(episode))
     except TarlError:

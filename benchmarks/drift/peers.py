@@ -1,4 +1,4 @@
-"""Other searches with the same 200 episodes: random search, CMA-ES and Optuna over all constants at once.
+"""Other searches with the same 200 episodes: random search, CMA-ES and Optuna, over all constants at once.
 
 Each proposes a factor for every operand (on a log scale, between a tenth and ten; signs and booleans flip at random),
 and then receives the reward of one drifted episode with these factors. A proposal that comes near the designed reward

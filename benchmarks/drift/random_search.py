@@ -8,19 +8,19 @@ from collections.abc import Sequence
 
 from pytest_tarl.searching.ask_tell import Constant
 
-MOVED = 0.5  # share of the constants that a draw changes
-REACH = math.log(10.0)  # largest absolute logarithm of a factor
+MOVED = 0.5  # share of the constants that each proposal changes
+REACH = math.log(10.0)  # maximum absolute logarithm of a factor
 
 
 class Random:
-    """Random search: half of the constants keep their values; factors for the others are between 0.1 and 10."""
+    """Random search: half of the constants keep their values; the factors of the others are between 0.1 and 10."""
 
     def __init__(self, constants: Sequence[Constant], seed: int) -> None:
         self.constants = constants
         self.draws = random.Random(seed)
 
     def ask(self) -> list[float]:
-        """Return the next factors; a negative one flips a boolean."""
+        """Return the next factors; a negative factor flips a boolean."""
         return [self._factor(isinstance(constant.value, bool)) for constant in self.constants]
 
     def tell(self, factors: Sequence[float], gain: float) -> None:

@@ -57,7 +57,7 @@ class Stage:
 
     @property
     def permanent(self) -> bool:
-        """Return whether the drift is permanent, so that a repair need not hold in the designed world."""
+        """Return whether the drift is permanent, so that a repair need not work in the designed world."""
         return self.marked.drifts[self.drift].permanent
 
     @cached_property
@@ -110,7 +110,7 @@ def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None
         str(where),
     ]
     before = Path.cwd()
-    os.chdir(where)  # folder to which the paths of the analysis are relative
+    os.chdir(where)  # paths in the analysis are relative to this folder
     try:
         with redirect_stdout(sys.stderr):
             status = pytest.main(arguments, [guest])

@@ -106,7 +106,7 @@ def _slices(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
 
 
 def _by_task(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
-    """Return our figures by task."""
+    """Return our own figures by task."""
     rows = _head(OUR_COLUMNS)
     for task in dict.fromkeys(task for task, _ in found):
         seen, known = [result for name, result in found if name == task], answers[task]
@@ -144,9 +144,9 @@ def _right(known: Mapping[str, Any]) -> str:
 
 
 def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
-    """Return the rank of the first right set; 1 if its sites are at the top, None if no right set is ranked.
+    """Return the rank of the first right set: 1 if its sites are at the top, None if no right set is ranked.
 
-    If a set has several sites, all of them have to be ranked before other sites.
+    If a set has several sites, all of them must be ranked before any other site.
     """
     places = {site: i for i, site in enumerate(sites)}
     ranks = [
@@ -158,7 +158,7 @@ def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
 
 
 def both(result: Result) -> bool:
-    """Return whether a repair was accepted and holds in both worlds; if the drift is permanent, only in the new one."""
+    """Return whether a repair was accepted and works in both worlds (after a permanent drift, in the new one)."""
     nominal = result["nominal restored"] or result.get("permanent", False)
     return bool(result["accepted"] and result["drifted restored"] and nominal)
 

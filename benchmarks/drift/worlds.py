@@ -2,10 +2,10 @@
 
     python benchmarks/drift/worlds.py [TASK ...] [--episodes 100] [--folder benchmarks/drift] [--by-hand]
 
-For each task, it prints the success rate and the average total reward, as designed and under the drift, the time of
-an episode, and the number of sites and operands. With `--by-hand`, it prints the same for a copy of each task with
-the repair that the task's author knows: `answer.json` has it under "hand" as triples of a file, a text in it, and the
-text to put in its place.
+For each task, it prints the success rate and the average total reward, as designed and under the drift, the duration of
+an episode, and the numbers of sites and operands. With `--by-hand`, it prints the same for a copy of each task with the
+repair that the task's author knows: `answer.json` holds it under "hand", as triples of a file, a text in it, and the
+replacement of that text.
 """
 
 from __future__ import annotations
@@ -53,9 +53,7 @@ def seen(home: Path, task: str, episodes: int, by_hand: bool) -> dict[str, Any]:
         for name, old, new in answers_in(home)[task]["hand"] if by_hand else ():
             text = (copy / name).read_text()
             if text.count(old) != 1:
-                raise SystemExit(
-                    f"{task}: {name} holds {text.count(old)} times {old!r}; it has to be there once."
-                )
+                raise SystemExit(f"{task}: {name} holds {text.count(old)} times {old!r}; it must occur once.")
             (copy / name).write_text(text.replace(old, new))
         found: dict[str, Any] = visit(task, lambda stage: look(stage, episodes), copy, home)
     return found

@@ -1,4 +1,4 @@
-"""Copy the real nodes at their commits next to their worlds. This repository does not contain the nodes.
+"""Copy the real nodes, at their commits, next to their worlds. This repository does not contain the nodes.
 
     python benchmarks/real_nodes/bring.py TARGET --source PLACE
 
@@ -50,7 +50,7 @@ def blob(text: bytes) -> str:
 
 
 def text_of(node: Node, source: str, scratch: Path) -> bytes:
-    """Return the node's text. Raises SystemExit if the file is missing or differs."""
+    """Return the node's text. Raise SystemExit if the file is missing or differs."""
     place = Path(source)
     found = [place / node.repo, place / node.repo.replace("/", "+")] if place.is_dir() else []
     plain = next((folder / node.path for folder in found if (folder / node.path).is_file()), None)
@@ -70,9 +70,7 @@ def repaired(node: Node, text: bytes) -> bytes:
     """Return the text with the repair that was found by hand."""
     for old, new in node.by_hand:
         if text.count(old.encode()) != 1:
-            raise SystemExit(
-                f"{node.path}: {old!r} has to be there once, not {text.count(old.encode())} times."
-            )
+            raise SystemExit(f"{node.path}: {old!r} must occur once, not {text.count(old.encode())} times.")
         text = text.replace(old.encode(), new.encode())
     return text
 

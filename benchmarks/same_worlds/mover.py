@@ -1,4 +1,4 @@
-"""Go to a goal: the node of all worlds in this folder."""
+"""The node of all worlds in this folder: go to a goal."""
 
 import rospy
 from std_msgs.msg import Float64
@@ -7,7 +7,7 @@ GAIN = 0.6
 
 
 class Mover:
-    """Answer each position with a speed."""
+    """Answers each position with a speed."""
 
     def __init__(self):
         self.speed = rospy.Publisher("/speed", Float64, queue_size=1)

@@ -17,7 +17,7 @@ Bool = message_type("std_msgs/msg/Bool")
 PLACE = Sensor("place", topic="/place", field="data", low=0, high=5, bins=10, unit="m")
 LOADED = Sensor("loaded", topic="/loaded", field="data")
 STILL = Sensor("still", low=0, high=1, bins=4)
-DT = 0.5  # s
+DT = 0.5  # duration of a step (s)
 
 
 @dataclass
