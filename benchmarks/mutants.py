@@ -6,8 +6,8 @@ copy of the checkout without the caches of TARL. The fault is caught if a test f
 than without the fault. A test that also fails without the fault catches nothing. A fault that no test reaches is not
 caught. The tests of the file that is named after the module run first, then the other tests, in both cases from fast
 to slow, until the next test would exceed `--budget`. Slower tests might still catch a fault that survives these, so
-the share is a lower bound. The script prints the share of caught faults with its exact 95 % interval, and the
-surviving faults.
+the share is a lower bound. Tests with a pytest.ini of their own run by themselves. The script prints the share of
+caught faults with its exact 95 % interval, and the surviving faults.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from py_compile import PycInvalidationMode
@@ -122,13 +122,12 @@ def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) 
 def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
     """Run the tests once under coverage."""
     with tempfile.TemporaryDirectory() as folder:
-        settings, data, times = Path(folder) / "rc", Path(folder) / "data", Path(folder) / "times.json"
+        settings, data = Path(folder) / "rc", Path(folder) / "data"
         settings.write_text(SETTINGS.format(source=copy / package, data=data))
         (Path(folder) / "test_times.py").write_text(TIMES)
         surroundings = {
             **environment(copy),
             "COVERAGE_PROCESS_START": str(settings),
-            "TEST_TIMES": str(times),
         }
         surroundings["PYTHONPATH"] += os.pathsep + folder
         own = [sys.executable, "-m", "coverage"]
@@ -144,11 +143,16 @@ def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
             "-p",
             "no:cacheprovider",
         ]
-        subprocess.run([*run, *tests], cwd=copy, env=surroundings, check=False, stdout=sys.stderr)
+        seconds: dict[str, float] = {}
+        for arguments in apart(copy, with_own_settings(copy, tests)):
+            times = Path(folder) / "times.json"
+            with_times = {**surroundings, "TEST_TIMES": str(times)}
+            subprocess.run([*run, *arguments], cwd=copy, env=with_times, check=False, stdout=sys.stderr)
+            seconds |= json.loads(times.read_text())
         subprocess.run(
             [*own, "combine", f"--rcfile={settings}", "-q"], cwd=copy, env=surroundings, check=True
         )
-        return from_coverage(data, copy, json.loads(times.read_text()))
+        return from_coverage(data, copy, seconds)
 
 
 TIMES = """
@@ -167,6 +171,27 @@ def pytest_runtest_setup(item):
     if (current := coverage.Coverage.current()) is not None:
         current.switch_context(item.nodeid)
 """
+
+
+def with_own_settings(copy: Path, tests: Iterable[str]) -> list[str]:
+    """Return the tests and the folders below them that have a pytest.ini of their own."""
+    inner = {
+        ini.parent.relative_to(copy).as_posix()
+        for test in tests
+        for ini in (copy / test).rglob("*/pytest.ini")
+    }
+    return [*tests, *sorted(inner)]
+
+
+def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
+    """Return the arguments of pytest, one list for each pytest.ini that applies to some of the tests."""
+    runs: dict[str, list[str]] = {}
+    for test in tests:
+        file = Path(test.partition("::")[0])
+        above = (folder / "pytest.ini" for folder in (file, *file.parents))
+        ini = next((one.as_posix() for one in above if (copy / one).is_file()), "")
+        runs.setdefault(ini, ["-c", ini, "--rootdir", "."] if ini else []).append(test)
+    return list(runs.values())
 
 
 def sample(
@@ -197,9 +222,12 @@ def precompiled(copy: Path) -> None:
 
 def collected(copy: Path, tests: Sequence[str]) -> None:
     """Compile the tests of the copy by collecting them, without running any."""
-    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider"]
     surroundings = {**environment(copy), "PYTHONDONTWRITEBYTECODE": ""}
-    subprocess.run(command, cwd=copy, env=surroundings, check=False, stdout=subprocess.DEVNULL)
+    for arguments in apart(copy, tests):
+        subprocess.run(
+            [*command, *arguments], cwd=copy, env=surroundings, check=False, stdout=subprocess.DEVNULL
+        )
 
 
 def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, float]) -> Outcome:
@@ -228,8 +256,16 @@ def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, 
 def tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
     """Return pytest's exit status, and the test that failed first; no test if pytest itself failed.
 
-    Raise TimeoutExpired if the tests exceed the limit in seconds.
+    Raise TimeoutExpired if the tests of one pytest.ini exceed the limit in seconds.
     """
+    for arguments in apart(copy, tests):
+        status, failed = _tested(copy, arguments, limit)
+        if status:
+            return status, failed
+    return 0, ""
+
+
+def _tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header"]
     with subprocess.Popen(
         [*command, *tests],

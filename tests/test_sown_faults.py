@@ -128,3 +128,21 @@ def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
     assert reached.within(100.0, reversed([*order, "tests/test_half.py::failed"]), "package/half.py") == order
     assert reached.within(6.0, order, "package/half.py") == order[:2]
     assert reached.within(0.1, order, "package/half.py") == order[:1]
+
+
+def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
+    mutants: Any, sown: Any, tmp_path: Path
+) -> None:
+    file = tmp_path / "half.py"
+    file.write_text("def half(x):\n    return x / 2\n")
+    own = tmp_path / "tests" / "own"
+    own.mkdir(parents=True)
+    (own / "pytest.ini").write_text("[pytest]\naddopts = -p no:cacheprovider\n")
+    (tmp_path / "pyproject.toml").write_text('[tool.pytest.ini_options]\naddopts = "--ignore=tests/own"\n')
+    (own / "test_own.py").write_text("from half import half\ndef test_half(): assert half(4) == 2\n")
+    (tmp_path / "tests" / "test_other.py").write_text("def test_other(): pass\n")
+    names = ["tests/test_other.py::test_other", "tests/own/test_own.py::test_half"]
+    assert mutants.with_own_settings(tmp_path, ["tests"]) == ["tests", "tests/own"]
+    (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
+    assert mutants.tried(fault, tmp_path, names, dict.fromkeys(names, 1.0)).word == "caught"
+    assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0)).word == "survived"
