@@ -29,13 +29,14 @@ from py_compile import PycInvalidationMode
 from reached_lines import Reached, from_coverage, read
 from scipy.stats import beta
 from sown_faults import Fault, faults
+from warm_pytest import Runner, warm
 
 ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-BUDGET = 120.0  # budget of tests per fault (s), as measured without the fault
-PATIENCE = 60.0  # time that the tests may take beyond three times their duration without the fault (s)
+BUDGET = 120.0  # CPU seconds of tests per fault, as measured without the fault
+PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -82,7 +83,7 @@ def main() -> None:
         type=float,
         default=BUDGET,
         metavar="S",
-        help=f"seconds of tests per fault (default {BUDGET:g})",
+        help=f"CPU seconds of tests per fault (default {BUDGET:g})",
     )
     given = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
@@ -94,21 +95,22 @@ def main() -> None:
         chosen = sample(copy, given.package, set(given.only), given.each, given.seed, given.count)
         proven: dict[str, str] = json.loads(EQUIVALENT.read_text())
         outcomes = []
-        for fault in chosen:
-            if fault.name in proven:
-                print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
-                continue
-            tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
-            outcomes.append(tried(fault, copy, tests, reached.seconds))
-            print(
-                f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
-                flush=True,
-            )
+        with warm(copy, environment(copy)) as runner:
+            for fault in chosen:
+                if fault.name in proven:
+                    print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
+                    continue
+                tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
+                outcomes.append(tried(fault, copy, tests, reached.seconds, runner))
+                print(
+                    f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
+                    flush=True,
+                )
     report(outcomes)
 
 
 def known(keep: Sequence[Path], copy: Path, package: str, tests: Sequence[str]) -> Reached:
-    """Return which tests reach which lines: measure this, or read it from the files."""
+    """Return which tests reach which lines; measure it, or read it from the files."""
     if not keep:
         return measured(copy, package, tests)
     reached = Reached()
@@ -158,10 +160,14 @@ def measured(copy: Path, package: str, tests: Sequence[str]) -> Reached:
 TIMES = """
 import json, os
 from pathlib import Path
-passed, owner = {}, os.getpid()
+import pytest
+passed, owner, begun = {}, os.getpid(), {}
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_call(item):
+    begun[item.nodeid] = sum(os.times()[:4])
 def pytest_runtest_logreport(report):
-    if report.when == "call" and report.passed:
-        passed[report.nodeid] = report.duration
+    if report.when == "call" and report.passed and report.nodeid in begun:
+        passed[report.nodeid] = sum(os.times()[:4]) - begun[report.nodeid]
 def pytest_unconfigure():
     if os.getpid() == owner and not os.environ.get("PYTEST_CURRENT_TEST"):
         Path(os.environ["TEST_TIMES"]).write_text(json.dumps(passed))
@@ -197,7 +203,7 @@ def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
 def sample(
     copy: Path, package: str, only: set[str], each: int, seed: int, count: int | None = None
 ) -> list[Fault]:
-    """Choose `each` faults per package, or `count` in total; files are weighted by their number of possible faults."""
+    """Choose `each` faults per package, or `count` in all. Files are weighted by their number of possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
@@ -214,7 +220,7 @@ def sample(
 def precompiled(copy: Path) -> None:
     """Compile the sources of the copy.
 
-    Python compares the hash of a source with the compiled file, so it never misses a fault.
+    Python compares the digest of a source with the compiled one, so it never misses a fault.
     """
     for package in ("pytest_tarl", "tarl_lint"):
         compileall.compile_dir(copy / package, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
@@ -230,65 +236,56 @@ def collected(copy: Path, tests: Sequence[str]) -> None:
         )
 
 
-def tried(fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, float]) -> Outcome:
-    """Insert a fault, run the tests that reach it, and remove it."""
+def tried(
+    fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, float], runner: Runner
+) -> Outcome:
+    """Insert a fault, run the tests that reach it, and remove it.
+
+    It is caught if the test that failed, or all tests after a timeout, pass without the fault within the same time.
+    """
     if not tests:
         return Outcome(fault, "unreached", 0)
     file = copy / fault.path
     text = file.read_bytes()
     file.write_bytes(fault.sown(text))
     limit = PATIENCE + 3 * sum(seconds[test] for test in tests)
+    word, suspects = "caught", tests
     try:
-        status, failed = tested(copy, tests, limit)
+        status, failed = tested(copy, tests, limit, runner)
     except subprocess.TimeoutExpired:
-        return Outcome(fault, "timeout", len(tests))
+        word = "timeout"
+    else:
+        if not status:
+            return Outcome(fault, "survived", len(tests))
+        suspects = [failed] if failed else tests
     finally:
         file.write_bytes(text)
-    if not status:
-        return Outcome(fault, "survived", len(tests))
     try:
-        sound = tested(copy, [failed] if failed else tests, limit)[0] == 0
+        sound = tested(copy, suspects, limit, runner)[0] == 0
     except subprocess.TimeoutExpired:
         sound = False
-    return Outcome(fault, "caught" if sound else "unclear", len(tests))
+    return Outcome(fault, word if sound else "unclear", len(tests))
 
 
-def tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
-    """Return pytest's exit status, and the test that failed first; no test if pytest itself failed.
+def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tuple[int, str]:
+    """Return pytest's exit status and the test that failed first; no test if pytest itself failed.
 
-    Raise TimeoutExpired if the tests of one pytest.ini exceed the limit in seconds.
+    Raises TimeoutExpired if the tests of one pytest.ini exceed the limit in seconds.
     """
     for arguments in apart(copy, tests):
-        status, failed = _tested(copy, arguments, limit)
-        if status:
-            return status, failed
-    return 0, ""
-
-
-def _tested(copy: Path, tests: Sequence[str], limit: float) -> tuple[int, str]:
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header"]
-    with subprocess.Popen(
-        [*command, *tests],
-        cwd=copy,
-        env=environment(copy),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    ) as running:
         try:
-            told, _ = running.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            os.killpg(running.pid, 9)
-            raise
+            status, told = runner(
+                ["-q", "-x", "-rfE", "-p", "no:cacheprovider", "--no-header", *arguments], limit
+            )
         finally:
             for cache in copy.rglob(".tarl"):
                 shutil.rmtree(cache, ignore_errors=True)
-    named = (line.split(" ", 1)[1] for line in told.splitlines() if line.startswith(("FAILED ", "ERROR ")))
-    first = next(named, "")
-    failed = [test for test in tests if first == test or first.startswith(f"{test} - ")]
-    return running.returncode, max(failed, key=len, default="")
+        if status:
+            lines = (line.split(" ", 1) for line in told.splitlines())
+            first = next((line[1] for line in lines if line[0] in ("FAILED", "ERROR") and line[1:]), "")
+            failed = [test for test in tests if first == test or first.startswith(f"{test} - ")]
+            return status, max(failed, key=len, default="")
+    return 0, ""
 
 
 def environment(copy: Path) -> dict[str, str]:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 @dataclass
 class Reached:
-    """The tests that reach each line (one bit per test), and the duration of each passing test in seconds."""
+    """The tests by line, one bit per test, and the CPU seconds that each passing test takes."""
 
     tests: list[str] = field(default_factory=list)
     lines: dict[tuple[str, int], int] = field(default_factory=dict)
@@ -27,9 +27,9 @@ class Reached:
         return sorted({name for number, name in enumerate(self.tests) if bits >> number & 1})
 
     def within(self, budget: float, tests: Iterable[str], module: str) -> list[str]:
-        """Return passing tests that together take at most `budget` seconds, but at least one test.
+        """Return passing tests that together take at most `budget` CPU seconds, but at least one test.
 
-        Tests in the file that is named after the module come first, then the others; both groups go from fast to slow.
+        Tests of the file that is named after the module come first, then the others, both from fast to slow.
         """
         own = f"test_{Path(module).stem}.py"
 

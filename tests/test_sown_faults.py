@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -88,16 +89,22 @@ TESTS = {
 }
 
 
+@pytest.fixture
+def runner(mutants: Any, tmp_path: Path) -> Iterator[Any]:
+    with mutants.warm(tmp_path, mutants.environment(tmp_path), ()) as found:
+        yield found
+
+
 @pytest.mark.parametrize(("tests", "word"), TESTS.items(), ids=range(len(TESTS)))
 def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
-    mutants: Any, sown: Any, tmp_path: Path, tests: str, word: str
+    mutants: Any, sown: Any, tmp_path: Path, runner: Any, tests: str, word: str
 ) -> None:
     file = tmp_path / "half.py"
     file.write_text("def half(x):\n    return x / 2\n")
     (tmp_path / "test_half.py").write_text(tests)
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
     name = "test_half.py::test_half" if "test_half()" in tests else "test_half.py"
-    outcome = mutants.tried(fault, tmp_path, [name], {name: 1.0})
+    outcome = mutants.tried(fault, tmp_path, [name], {name: 1.0}, runner)
     assert outcome.word == word
     assert file.read_text() == "def half(x):\n    return x / 2\n"
 
@@ -105,8 +112,8 @@ def test_only_a_test_that_passes_without_the_fault_can_catch_the_fault(
 def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
     mutants: Any, sown: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def tested(_copy: Path, tests: list[str], limit: float) -> tuple[int, str]:
-        if "*" in file.read_text():
+    def tested(_copy: Path, tests: list[str], limit: float, _runner: object) -> tuple[int, str]:
+        if "*" in file.read_text() and fails:
             return 1, tests[0]
         raise subprocess.TimeoutExpired(tests, limit)
 
@@ -114,7 +121,21 @@ def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
     file = tmp_path / "half.py"
     file.write_text("def half(x):\n    return x / 2\n")
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
-    assert mutants.tried(fault, tmp_path, ["test_half.py"], {"test_half.py": 1.0}).word == "unclear"
+    for fails in (True, False):  # noqa: B007 - read by `tested`
+        word = mutants.tried(fault, tmp_path, ["test_half.py"], {"test_half.py": 1.0}, None).word
+        assert word == "unclear"
+
+
+def test_tests_that_end_only_without_the_fault_catch_it(
+    mutants: Any, sown: Any, tmp_path: Path, runner: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mutants, "PATIENCE", 3.0)
+    file = tmp_path / "half.py"
+    file.write_text("def half(x):\n    while x > 1: x -= 1\n    return x\n")
+    (tmp_path / "test_half.py").write_text("from half import half\ndef test_half(): half(4)\n")
+    (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "-=" or one.was == "-")
+    name = "test_half.py::test_half"
+    assert mutants.tried(fault, tmp_path, [name], {name: 0.1}, runner).word == "timeout"
 
 
 def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
@@ -131,7 +152,7 @@ def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
 
 
 def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
-    mutants: Any, sown: Any, tmp_path: Path
+    mutants: Any, sown: Any, tmp_path: Path, runner: Any
 ) -> None:
     file = tmp_path / "half.py"
     file.write_text("def half(x):\n    return x / 2\n")
@@ -144,5 +165,5 @@ def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
     names = ["tests/test_other.py::test_other", "tests/own/test_own.py::test_half"]
     assert mutants.with_own_settings(tmp_path, ["tests"]) == ["tests", "tests/own"]
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
-    assert mutants.tried(fault, tmp_path, names, dict.fromkeys(names, 1.0)).word == "caught"
-    assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0)).word == "survived"
+    assert mutants.tried(fault, tmp_path, names, dict.fromkeys(names, 1.0), runner).word == "caught"
+    assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0), runner).word == "survived"
