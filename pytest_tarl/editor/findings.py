@@ -22,11 +22,10 @@ def diagnostics(result: Result, places: Places) -> dict[str, list[types.Diagnost
     for finding in result.findings:
         found.setdefault(finding.span.path, []).append(_diagnostic(finding, places))
     for error in result.errors:
-        start = types.Position(max(error.line - 1, 0), 0)
-        end = places.end_of_line(error.path, error.line)
+        start, end = types.Position(error.line - 1, 0), places.end_of_line(error.path, error.line)
         found.setdefault(error.path, []).append(
             types.Diagnostic(
-                types.Range(start, end if end.line == start.line else start),
+                types.Range(start, end),
                 error.message,
                 severity=types.DiagnosticSeverity.Error,
                 source=SOURCE,

@@ -60,7 +60,7 @@ class Script:
 
 @dataclass(frozen=True)
 class SourceError:
-    """The reason why a file cannot be analysed: a sentence and a line. `bug` marks an internal error."""
+    """The reason why a file cannot be analysed: a sentence and a line, from 1. `bug` marks an internal error."""
 
     path: str
     line: int
