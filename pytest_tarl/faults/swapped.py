@@ -6,7 +6,7 @@ from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.faults.fields import store
-from pytest_tarl.faults.topic import OFF_ON, Arrivals, Channel, TopicFault
+from pytest_tarl.faults.topic import OFF_ON, Arrivals, Channel, TopicFault, require_text
 from pytest_tarl.sensors import field_value
 
 if TYPE_CHECKING:
@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 
 
 def swapped(topic: str, first: str, second: str) -> TopicFault:
-    """Return a fault that is off or on; if it is on, it exchanges the values of two fields."""
+    """Return a fault that is off or on; if it is on, it exchanges the values of two fields.
+
+    Raise SettingsError for invalid arguments.
+    """
+    for what, value in (("topic", topic), ("field", first), ("field", second)):
+        require_text("swapped", what, value)
 
     def exchange(message: Any, _now: float) -> Arrivals:
         copy = deepcopy(message)

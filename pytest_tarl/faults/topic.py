@@ -63,8 +63,8 @@ def of_field(
     change: Callable[[float, np.random.Generator], Callable[[float], float]],
 ) -> TopicFault:
     """Return a fault that changes each number of a field separately. Raise SettingsError for invalid arguments."""
-    _text(kind, "topic", topic)
-    _text(kind, "field", field)
+    require_text(kind, "topic", topic)
+    require_text(kind, "field", field)
 
     def begin(size: float, draws: np.random.Generator) -> Channel:
         changed = change(size, draws)
@@ -77,7 +77,7 @@ def of_topic(
     kind: str, topic: str, extent: Span | Choice, begin: Callable[[float, np.random.Generator], Channel]
 ) -> TopicFault:
     """Return a fault of whole messages. Raise SettingsError for an invalid topic."""
-    _text(kind, "topic", topic)
+    require_text(kind, "topic", topic)
     return TopicFault(kind, topic, extent, begin)
 
 
@@ -116,7 +116,8 @@ def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
     return Span(0.0, largest, 0.0)
 
 
-def _text(kind: str, what: str, value: Any) -> None:
+def require_text(kind: str, what: str, value: Any) -> None:
+    """Raise SettingsError unless an argument is a text that is not empty; `what` is "topic" or "field"."""
     if not isinstance(value, str) or not value:
         raise SettingsError(
             f'faults.{kind}: give the {what} as text, for example "{"/odom" if what == "topic" else "data"}", got '
