@@ -71,6 +71,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="chooses the faults (default 0)")
     parser.add_argument("--tests", nargs="*", default=["tests"], help="tests to run (default: all)")
     parser.add_argument(
+        "--without-coverage",
+        action="store_true",
+        help="run all tests of the files named by --tests for each fault, instead of those that reach its line",
+    )
+    parser.add_argument(
         "--keep",
         type=Path,
         nargs="*",
@@ -90,7 +95,10 @@ def main() -> None:
         copy = Path(folder) / "copy"
         shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*LEFT_OUT))
         precompiled(copy)
-        reached = known(given.keep, copy, given.package, given.tests)
+        if given.without_coverage:
+            reached = Reached.of_files(given.tests)
+        else:
+            reached = known(given.keep, copy, given.package, given.tests)
         collected(copy, sorted({test.partition("::")[0] for test in reached.tests}))
         chosen = sample(copy, given.package, set(given.only), given.each, given.seed, given.count)
         proven: dict[str, str] = json.loads(EQUIVALENT.read_text())
@@ -283,7 +291,9 @@ def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tu
         if status:
             lines = (line.split(" ", 1) for line in told.splitlines())
             first = next((line[1] for line in lines if line[0] in ("FAILED", "ERROR") and line[1:]), "")
-            failed = [test for test in tests if first == test or first.startswith(f"{test} - ")]
+            failed = [
+                test for test in tests if first == test or first.startswith((f"{test} - ", f"{test}::"))
+            ]
             return status, max(failed, key=len, default="")
     return 0, ""
 

@@ -167,3 +167,15 @@ def test_tests_with_a_pytest_ini_of_their_own_run_by_themselves(
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "/")
     assert mutants.tried(fault, tmp_path, names, dict.fromkeys(names, 1.0), runner).word == "caught"
     assert mutants.tried(fault, tmp_path, names[:1], dict.fromkeys(names, 1.0), runner).word == "survived"
+
+
+def test_without_coverage_each_file_of_tests_runs_for_each_fault(
+    mutants: Any, tmp_path: Path, runner: Any
+) -> None:
+    (tmp_path / "test_a.py").write_text("def test_a(): pass\n")
+    (tmp_path / "test_half.py").write_text("def test_b(): assert 0\n")
+    files = ["test_half.py", "test_a.py"]
+    reached = mutants.Reached.of_files(files)
+    assert reached.at("half.py", [1]) == sorted(files)
+    assert reached.within(0.0, reached.at("half.py", [1]), "half.py") == ["test_half.py", "test_a.py"]
+    assert mutants.tested(tmp_path, files, 60.0, runner) == (1, "test_half.py")
