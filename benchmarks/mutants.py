@@ -36,7 +36,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # folders of tests that need a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
 BUDGET = 120.0  # CPU seconds of tests per fault, as measured without the fault
-PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault
+PATIENCE = 120.0  # seconds allowed beyond three times the CPU time of the tests without the fault; more on a loaded machine
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -84,6 +84,13 @@ def main() -> None:
         help="files to read the coverage from; a file that does not exist is written with the coverage of --tests",
     )
     parser.add_argument(
+        "--patience",
+        type=float,
+        default=PATIENCE,
+        metavar="S",
+        help=f"seconds beyond three times the CPU time of the tests until a timeout (default {PATIENCE:g})",
+    )
+    parser.add_argument(
         "--budget",
         type=float,
         default=BUDGET,
@@ -109,7 +116,7 @@ def main() -> None:
                     print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
                     continue
                 tests = reached.within(given.budget, reached.at(fault.path, fault.lines), fault.path)
-                outcomes.append(tried(fault, copy, tests, reached.seconds, runner))
+                outcomes.append(tried(fault, copy, tests, reached.seconds, runner, given.patience))
                 print(
                     f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
                     flush=True,
@@ -245,7 +252,12 @@ def collected(copy: Path, tests: Sequence[str]) -> None:
 
 
 def tried(
-    fault: Fault, copy: Path, tests: Sequence[str], seconds: Mapping[str, float], runner: Runner
+    fault: Fault,
+    copy: Path,
+    tests: Sequence[str],
+    seconds: Mapping[str, float],
+    runner: Runner,
+    patience: float = PATIENCE,
 ) -> Outcome:
     """Insert a fault, run the tests that reach it, and remove it.
 
@@ -256,7 +268,7 @@ def tried(
     file = copy / fault.path
     text = file.read_bytes()
     file.write_bytes(fault.sown(text))
-    limit = PATIENCE + 3 * sum(seconds[test] for test in tests)
+    limit = patience + 3 * sum(seconds[test] for test in tests)
     word, suspects = "caught", tests
     try:
         status, failed = tested(copy, tests, limit, runner)

@@ -127,15 +127,14 @@ def test_tests_that_never_end_even_without_the_fault_catch_no_faults(
 
 
 def test_tests_that_end_only_without_the_fault_catch_it(
-    mutants: Any, sown: Any, tmp_path: Path, runner: Any, monkeypatch: pytest.MonkeyPatch
+    mutants: Any, sown: Any, tmp_path: Path, runner: Any
 ) -> None:
-    monkeypatch.setattr(mutants, "PATIENCE", 3.0)
     file = tmp_path / "half.py"
     file.write_text("def half(x):\n    while x > 1: x -= 1\n    return x\n")
     (tmp_path / "test_half.py").write_text("from half import half\ndef test_half(): half(4)\n")
     (fault,) = (one for one in sown.faults(file, "half.py") if one.was == "-=" or one.was == "-")
     name = "test_half.py::test_half"
-    assert mutants.tried(fault, tmp_path, [name], {name: 0.1}, runner).word == "timeout"
+    assert mutants.tried(fault, tmp_path, [name], {name: 0.1}, runner, 5.0).word == "timeout"
 
 
 def test_the_tests_of_the_module_run_first(mutants: Any) -> None:
