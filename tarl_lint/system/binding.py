@@ -68,7 +68,7 @@ def command_line(node: LaunchedNode, launch: Launch, full_name: str) -> Mapping[
         if launch.ros2
         else f"__name:={full_name.rpartition('/')[2]}"
     )
-    remaps = [f"{old}:={new}" for old, new in node.remaps]
+    remaps = [pair for old, new in node.remaps if (pair := f"{old}:={new}") not in given]
     for_ros = ["--ros-args", "-r", own] if launch.ros2 else [*remaps, own, "__log:=node.log"]
     return {ARGUMENTS: (node.executable, *given, *for_ros)}
 

@@ -1,194 +1,278 @@
 """Evaluate constant Python expressions without executing code.
 
-A value is a constant, a list, tuple or dict of values, a `Library` (a name imported from another module), a function
-of the file itself, or a result of the models of library functions. A value that is not constant is an `Unknown`,
-never an error.
+A value is a constant, a list, tuple or dict of values, a `Library` (a name imported from another module), a function,
+class or object of the file itself, or a result of the models of library functions. A value that is not constant is an
+`Unknown`, never an error.
 """
 
 from __future__ import annotations
 
 import ast
-import math
-import operator
-import posixpath
-import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import functools
+from collections.abc import Mapping
+from pathlib import PurePosixPath
 from typing import Any, Final
 
-LARGEST: Final = 100_000  # limit on a computed value, in characters or elements
-_WIDTH: Final = re.compile(r"\d{4,}")  # a format width would make a huge string
-_BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
-}  # fmt: skip
-_COMPARE: Final[Mapping[type[ast.cmpop], Callable[[Any, Any], Any]]] = {
-    ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt,
-    ast.GtE: operator.ge, ast.In: lambda item, many: item in many, ast.NotIn: lambda item, many: item not in many,
-    ast.Is: operator.is_, ast.IsNot: operator.is_not,
-}  # fmt: skip
-_UNARY: Final[Mapping[type[ast.unaryop], Callable[[Any], Any]]] = {
-    ast.USub: operator.neg, ast.UAdd: operator.pos, ast.Not: operator.not_, ast.Invert: operator.invert,
-}  # fmt: skip
-_METHODS: Final[Mapping[type, frozenset[str]]] = {
-    str: frozenset(["format", "join", "split", "strip", "lstrip", "rstrip", "lower", "upper", "replace", "startswith",
-                    "endswith", "title", "capitalize"]),
-    list: frozenset(["append", "extend", "insert", "index", "count", "copy"]),
-    dict: frozenset(["get", "items", "keys", "values", "update", "copy", "setdefault"]),
-    tuple: frozenset(["index", "count"]),
-}  # fmt: skip
+from tarl_lint.workspace.python_library import (
+    BUILTINS,
+    COMPARE,
+    LIBRARIES,
+    METHODS,
+    UNARY,
+    binary,
+    formatted,
+    function,
+    is_builtin,
+    method,
+)
+from tarl_lint.workspace.python_values import (
+    Above,
+    Bound,
+    Class,
+    FilePath,
+    Function,
+    Library,
+    Made,
+    Method,
+    Namespace,
+    Scope,
+    SpentError,
+    Unknown,
+    items,
+    plain,
+)
 
+__all__ = ["Evaluator", "Library", "Unknown", "constant", "unknown"]
 
-@dataclass(frozen=True, slots=True)
-class Unknown:
-    """A value that is not constant: its line and its text."""
-
-    line: int
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Library:
-    """A name of another module: `os.path`, `launch_ros.actions.Node`."""
-
-    name: str
-
-
-def _range(*bounds: int) -> list[int]:
-    numbers = range(*bounds)
-    if len(numbers) > LARGEST:
-        raise ValueError("too many numbers")
-    return list(numbers)
-
-
-def _listed(function: Callable[..., Any]) -> Callable[..., list[Any]]:
-    return lambda *args: list(function(*args))
-
-
-BUILTINS: Final[Mapping[str, Any]] = {
-    "str": str, "int": int, "float": float, "bool": bool, "len": len, "list": list, "tuple": tuple, "dict": dict,
-    "range": _range, "min": min, "max": max, "abs": abs, "sum": sum, "round": round, "sorted": sorted, "any": any,
-    "all": all, "enumerate": _listed(enumerate), "zip": _listed(zip), "reversed": _listed(reversed), "repr": repr,
-}  # fmt: skip
-LIBRARIES: Final[Mapping[str, Any]] = {
-    "math.pi": math.pi, "math.e": math.e, "math.inf": math.inf, "math.sqrt": math.sqrt, "math.radians": math.radians,
-    "numpy.pi": math.pi, "numpy.inf": math.inf, "os.path.join": posixpath.join, "os.path.basename": posixpath.basename,
-    "os.path.dirname": posixpath.dirname, "os.sep": "/", "sys.maxsize": 2**63 - 1,
-}  # fmt: skip
+STEPS: Final = 300_000  # limit on the expressions and statements that are evaluated for one file
+_FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError)
 
 
 class Evaluator:
     """Evaluates the expressions of one file. `models` holds functions and values of libraries by full name."""
 
-    def __init__(self, models: Mapping[str, Any]) -> None:
+    def __init__(self, models: Mapping[str, Any], steps: int = STEPS) -> None:
         self.models = {**LIBRARIES, **models}
+        self.left = [steps]  # shared with the files that this one imports
 
-    def value(self, node: ast.expr, names: Mapping[str, Any]) -> Any:
-        """Return the value of an expression; `Unknown` if it is not constant."""
+    def spend(self, steps: int = 1) -> None:
+        """Count steps. Raises SpentError if the limit is reached."""
+        self.left[0] -= steps
+        if self.left[0] < 0:
+            raise SpentError("it has too many statements")
+
+    def value(self, node: ast.expr, names: Scope) -> Any:
+        """Return the value of an expression; `Unknown` if it is not constant. Raises SpentError."""
+        self.spend()
         visit = getattr(self, f"_{type(node).__name__.lower()}", None)
         if visit is None:
             return unknown(node)
         try:
             return visit(node, names)
-        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError):
+        except _FAILURES:
             return unknown(node)
 
-    def call(self, function: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return the value of a call. Subclasses handle functions of the file."""
-        if isinstance(function, Library) or not callable(function):
+    def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        """Return the value of a call. Subclasses handle functions and classes of the file."""
+        if not isinstance(called, Bound) and (isinstance(called, Unknown | Library) or not callable(called)):
             return unknown(node)
-        plain = function in BUILTINS.values() or function in LIBRARIES.values()
-        if plain and any(isinstance(one, Unknown | Library) for one in (*args, *keywords.values())):
-            return unknown(node)
-        return function(*args, **keywords)
+        if isinstance(called, Bound) or is_builtin(called):
+            args = [self._callable(one, node) for one in args]
+            keywords = {key: self._callable(one, node) for key, one in keywords.items()}
+        run = method if isinstance(called, Bound) else function
+        found = run(called, args, keywords)
+        if isinstance(found, str | list | tuple | dict):
+            self.spend(len(found) // 50)
+        return found
 
-    def _constant(self, node: ast.Constant, _: Mapping[str, Any]) -> Any:
+    def bind(self, target: ast.expr, value: Any, names: Scope) -> None:
+        """Assign a value to a name, an element, an attribute, or several of them."""
+        if isinstance(target, ast.Name):
+            names.store(target.id, value)
+        elif isinstance(target, ast.Tuple | ast.List):
+            self._unpack(target, items(value), names)
+        elif isinstance(target, ast.Subscript):
+            base, key = self.value(target.value, names), self.value(target.slice, names)
+            if (isinstance(base, dict) and plain(key, 100)) or (
+                isinstance(base, list) and isinstance(key, int)
+            ):
+                base[key] = value
+        elif isinstance(target, ast.Attribute):
+            base = self.value(target.value, names)
+            if isinstance(base, Made):
+                base.attributes[target.attr] = value
+            elif isinstance(base, Class):
+                base.names[target.attr] = value
+
+    def _unpack(self, target: ast.Tuple | ast.List, values: list[Any] | None, names: Scope) -> None:
+        starred = next((i for i, one in enumerate(target.elts) if isinstance(one, ast.Starred)), None)
+        wanted = len(target.elts)
+        if values is not None and starred is not None and len(values) >= wanted - 1:
+            end = len(values) - (wanted - starred - 1)
+            values = [*values[:starred], values[starred:end], *values[end:]]
+        if values is None or len(values) != wanted:
+            values = [unknown(target)] * wanted
+        for one, item in zip(target.elts, values, strict=True):
+            self.bind(one.value if isinstance(one, ast.Starred) else one, item, names)
+
+    def _callable(self, value: Any, node: ast.Call) -> Any:
+        """Return a function of the file in a form that built-in functions can call."""
+        if isinstance(value, Function | Method | Class | Bound):
+            return lambda *args, **keywords: self.call(value, list(args), keywords, node)
+        return value
+
+    def _constant(self, node: ast.Constant, _: Scope) -> Any:
         return node.value
 
-    def _name(self, node: ast.Name, names: Mapping[str, Any]) -> Any:
-        if node.id in names:
-            return names[node.id]
-        return BUILTINS.get(node.id, unknown(node))
+    def _name(self, node: ast.Name, names: Scope) -> Any:
+        found = names.find(node.id)
+        if found is not None:
+            return found[0]
+        return self.models.get(f"builtins.{node.id}", BUILTINS.get(node.id, unknown(node)))
 
-    def _attribute(self, node: ast.Attribute, names: Mapping[str, Any]) -> Any:
-        base = self.value(node.value, names)
+    def _namedexpr(self, node: ast.NamedExpr, names: Scope) -> Any:
+        value = self.value(node.value, names)
+        names.outside().store(node.target.id, value)
+        return value
+
+    def _attribute(self, node: ast.Attribute, names: Scope) -> Any:
+        found = self.attribute(self.value(node.value, names), node.attr, node)
+        return unknown(node) if found is None else found[0]
+
+    def attribute(self, base: Any, name: str, node: ast.AST) -> tuple[Any] | None:
+        """Return an attribute of a value in a tuple; None if it is not known."""
         if isinstance(base, Library):
-            name = f"{base.name}.{node.attr}"
-            return self.models.get(name, Library(name))
-        if node.attr in _METHODS.get(type(base), ()):
-            return getattr(base, node.attr)
-        if getattr(type(base), "readable", None) is not None and node.attr in base.readable:
-            return getattr(base, node.attr)
-        return unknown(node)
+            full = f"{base.name}.{name}"
+            return (self.models.get(full, Library(full)),)
+        if isinstance(base, Namespace):
+            return (base.names[name],) if name in base.names else None
+        if isinstance(base, Made | Class | Above):
+            return self._of_class(base, name, node)
+        if name in METHODS.get(type(base), ()):
+            return (Bound(base, name),)
+        if isinstance(base, FilePath) and f"pathlib.Path.{name}" in self.models:
+            return (functools.partial(self.models[f"pathlib.Path.{name}"], base),)
+        if name in getattr(type(base), "readable", ()) or name in getattr(base, "readable", ()):
+            found = getattr(base, name)
+            return (FilePath(found) if isinstance(found, PurePosixPath) else found,)
+        return None
 
-    def _list(self, node: ast.List, names: Mapping[str, Any]) -> Any:
+    def _of_class(self, base: Made | Class | Above, name: str, node: ast.AST) -> tuple[Any] | None:
+        if isinstance(base, Made) and name in base.attributes:
+            return (base.attributes[name],)
+        if isinstance(base, Above):
+            above = [one.find(name) for one in base.owner.bases if isinstance(one, Class)]
+            found = next((one for one in above if one is not None), None)
+            instance = base.of
+        else:
+            found = (base if isinstance(base, Class) else base.kind).find(name)
+            instance = None if isinstance(base, Class) else base
+        if found is None:
+            return None
+        value, owner = found
+        if isinstance(value, Function):
+            if value.kind == "classmethod":
+                return (Method(value, instance.kind if isinstance(instance, Made) else base, owner),)
+            if instance is not None and value.kind != "staticmethod":
+                bound = Method(value, instance, owner)
+                call = ast.Call(ast.Name(name, ast.Load()), [], [])
+                if value.kind == "property":
+                    return (self.call(bound, [], {}, ast.copy_location(call, node)),)
+                return (bound,)
+        return (value,)
+
+    def _list(self, node: ast.List, names: Scope) -> Any:
         return self._elements(node.elts, names)
 
-    def _tuple(self, node: ast.Tuple, names: Mapping[str, Any]) -> Any:
+    def _tuple(self, node: ast.Tuple, names: Scope) -> Any:
         return tuple(self._elements(node.elts, names))
 
-    def _set(self, node: ast.Set, names: Mapping[str, Any]) -> Any:
-        return self._elements(node.elts, names)
+    def _set(self, node: ast.Set, names: Scope) -> Any:
+        return BUILTINS["set"](self._elements(node.elts, names))
 
-    def _elements(self, nodes: list[ast.expr], names: Mapping[str, Any]) -> list[Any]:
+    def _elements(self, nodes: list[ast.expr], names: Scope) -> list[Any]:
         found: list[Any] = []
         for node in nodes:
             if isinstance(node, ast.Starred):
-                inner = self.value(node.value, names)
-                found += inner if isinstance(inner, list | tuple) else [unknown(node)]
+                inner = items(self.value(node.value, names))
+                found += inner if inner is not None else [unknown(node.value)]
+                self.spend(len(inner or ()))
             else:
                 found.append(self.value(node, names))
         return found
 
-    def _dict(self, node: ast.Dict, names: Mapping[str, Any]) -> Any:
+    def _dict(self, node: ast.Dict, names: Scope) -> Any:
         found: dict[Any, Any] = {}
         for key, item in zip(node.keys, node.values, strict=True):
             value = self.value(item, names)
             if key is None:
                 found.update(value if isinstance(value, dict) else {})
+                self.spend(len(value) if isinstance(value, dict) else 0)
             else:
-                found[self.value(key, names)] = value
+                found[self._key(self.value(key, names))] = value
         return found
 
-    def _joinedstr(self, node: ast.JoinedStr, names: Mapping[str, Any]) -> Any:
-        parts = []
-        for part in node.values:
-            value = self.value(part.value if isinstance(part, ast.FormattedValue) else part, names)
-            shaped = isinstance(part, ast.FormattedValue) and (part.format_spec or part.conversion > 0)
-            if shaped or not isinstance(value, str | int | float | bool):
-                return unknown(node)
-            parts.append(str(value))
+    def _key(self, value: Any) -> Any:
+        if isinstance(value, list | tuple) and not plain(value, 100):
+            return Unknown(0, "a key")
+        return value
+
+    def _joinedstr(self, node: ast.JoinedStr, names: Scope) -> Any:
+        parts = [
+            self._formatted(one, names) if isinstance(one, ast.FormattedValue) else self.value(one, names)
+            for one in node.values
+        ]
+        self.spend(sum(map(len, parts)) // 50)
         return "".join(parts)
 
-    def _binop(self, node: ast.BinOp, names: Mapping[str, Any]) -> Any:
+    def _formatted(self, node: ast.FormattedValue, names: Scope) -> str:
+        spec = self.value(node.format_spec, names) if node.format_spec is not None else ""
+        value = self.value(node.value, names)
+        if not isinstance(spec, str):
+            raise ValueError("not a constant")
+        return formatted(value, spec, node.conversion)
+
+    def _binop(self, node: ast.BinOp, names: Scope) -> Any:
         left, right = self.value(node.left, names), self.value(node.right, names)
-        if any(isinstance(one, Unknown | Library) for one in (left, right)) or type(node.op) not in _BINARY:
-            return unknown(node)
-        if isinstance(node.op, ast.Mult) and not (_number(left) and _number(right)):
-            size = max((len(one) for one in (left, right) if not _number(one)), default=0)
-            times = left if _number(left) else right
-            if not _number(times) or size * max(times, 0) > LARGEST:
-                return unknown(node)
-        if isinstance(node.op, ast.Mod) and isinstance(left, str):
-            return unknown(node) if _WIDTH.search(left) or _holds_unknown(right) else left % right
-        return _BINARY[type(node.op)](left, right)
+        return self.operated(type(node.op), left, right)
 
-    def _unaryop(self, node: ast.UnaryOp, names: Mapping[str, Any]) -> Any:
+    def operated(self, kind: type[ast.operator], left: Any, right: Any) -> Any:
+        """Return the result of an operator. Raises ValueError if it is not constant."""
+        if any(isinstance(one, Unknown | Library) for one in (left, right)):
+            raise ValueError("not a constant")
+        found = binary(kind, left, right)
+        if isinstance(found, str | list | tuple | dict):
+            self.spend(len(found) // 50)
+        return FilePath(found) if isinstance(found, PurePosixPath) else found
+
+    def _unaryop(self, node: ast.UnaryOp, names: Scope) -> Any:
         value = self.value(node.operand, names)
-        return unknown(node) if isinstance(value, Unknown | Library) else _UNARY[type(node.op)](value)
+        return unknown(node) if isinstance(value, Unknown | Library) else UNARY[type(node.op)](value)
 
-    def _compare(self, node: ast.Compare, names: Mapping[str, Any]) -> Any:
+    def _compare(self, node: ast.Compare, names: Scope) -> Any:
         left = self.value(node.left, names)
         for kind, other in zip(node.ops, node.comparators, strict=True):
             right = self.value(other, names)
-            if _holds_unknown(left) or _holds_unknown(right):
+            holds = self._compared(type(kind), left, right)
+            if isinstance(holds, Unknown):
                 return unknown(node)
-            if not _COMPARE[type(kind)](left, right):
+            if not holds:
                 return False
             left = right
         return True
 
-    def _boolop(self, node: ast.BoolOp, names: Mapping[str, Any]) -> Any:
+    def _compared(self, kind: type[ast.cmpop], left: Any, right: Any) -> Any:
+        if any(isinstance(one, Unknown | Library) for one in (left, right)):
+            return MAYBE
+        if kind in (ast.Is, ast.IsNot) or isinstance(left, Made | Class) or isinstance(right, Made | Class):
+            same = left is right
+            return same if kind in (ast.Is, ast.Eq) else not same if kind in (ast.IsNot, ast.NotEq) else MAYBE
+        many = items(right) if kind in (ast.In, ast.NotIn) and not isinstance(right, str) else None
+        if not plain(left) or not plain(right if many is None else many):
+            return MAYBE
+        return COMPARE[kind](left, right if many is None else many)
+
+    def _boolop(self, node: ast.BoolOp, names: Scope) -> Any:
         value: Any = None
         for operand in node.values:
             value = self.value(operand, names)
@@ -198,61 +282,74 @@ class Evaluator:
                 return value
         return value
 
-    def _ifexp(self, node: ast.IfExp, names: Mapping[str, Any]) -> Any:
+    def _ifexp(self, node: ast.IfExp, names: Scope) -> Any:
         test = self.value(node.test, names)
         if isinstance(test, Unknown | Library):
             return unknown(node)
         return self.value(node.body if test else node.orelse, names)
 
-    def _subscript(self, node: ast.Subscript, names: Mapping[str, Any]) -> Any:
+    def _subscript(self, node: ast.Subscript, names: Scope) -> Any:
         base = self.value(node.value, names)
+        if isinstance(base, Made) and base.kind.unpacked:
+            base = tuple(items(base) or ())
+        if isinstance(base, Class) and base.is_enumeration():
+            base = base.names
+        if type(base).__name__ == "_PathParents":
+            base = [FilePath(one) for one in base]
         if isinstance(node.slice, ast.Slice):
-            ends = [None if n is None else self.value(n, names) for n in (node.slice.lower, node.slice.upper)]
-            return base[slice(*ends)] if isinstance(base, str | list | tuple) else unknown(node)
-        return (
-            base[self.value(node.slice, names)]
-            if isinstance(base, str | list | tuple | dict)
-            else unknown(node)
-        )
+            if not isinstance(base, str | list | tuple):
+                return unknown(node)
+            parts = (node.slice.lower, node.slice.upper, node.slice.step)
+            found = base[slice(*(None if one is None else self.value(one, names) for one in parts))]
+            self.spend(len(found) // 50)
+            return found
+        key = self._key(self.value(node.slice, names))
+        return base[key] if isinstance(base, str | list | tuple | dict) else unknown(node)
 
-    def _listcomp(self, node: ast.ListComp, names: Mapping[str, Any]) -> Any:
-        return self._comprehended(node.elt, node.generators, names) if node.generators else unknown(node)
+    def _listcomp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp, names: Scope) -> Any:
+        return [self.value(node.elt, inner) for inner in self._loops(node.generators, names)]
 
     _generatorexp = _listcomp
 
-    def _comprehended(
-        self, element: ast.expr, loops: list[ast.comprehension], names: Mapping[str, Any]
-    ) -> Any:
+    def _setcomp(self, node: ast.SetComp, names: Scope) -> Any:
+        return BUILTINS["set"](self._listcomp(node, names))
+
+    def _dictcomp(self, node: ast.DictComp, names: Scope) -> Any:
+        return {
+            self._key(self.value(node.key, inner)): self.value(node.value, inner)
+            for inner in self._loops(node.generators, names)
+        }
+
+    def _loops(self, loops: list[ast.comprehension], names: Scope) -> Any:
+        """Yield the names inside a comprehension. Raises ValueError if a list or test is not constant."""
         loop, *rest = loops
-        items = self.value(loop.iter, names)
-        if not isinstance(items, list | tuple | dict) or not isinstance(loop.target, ast.Name):
-            return unknown(element)
-        found: list[Any] = []
-        for item in items:
-            inner = {**names, loop.target.id: item}
+        values = items(self.value(loop.iter, names))
+        if values is None:
+            raise ValueError("unknown elements")
+        for item in values:
+            self.spend()
+            inner = Scope({}, names, inner=True)
+            self.bind(loop.target, item, inner)
             tests = [self.value(test, inner) for test in loop.ifs]
             if any(isinstance(test, Unknown | Library) for test in tests):
-                return unknown(element)
+                raise ValueError("unknown test")
             if all(tests):
-                found += self._comprehended(element, rest, inner) if rest else [self.value(element, inner)]
-        return found
+                yield from self._loops(rest, inner) if rest else (inner,)
 
-    def _call(self, node: ast.Call, names: Mapping[str, Any]) -> Any:
-        function = self.value(node.func, names)
+    def _call(self, node: ast.Call, names: Scope) -> Any:
+        called = self.value(node.func, names)
         args = self._elements(node.args, names)
         keywords: dict[str, Any] = {}
         for keyword in node.keywords:
             value = self.value(keyword.value, names)
-            if keyword.arg is None:
-                keywords.update(value if isinstance(value, dict) else {})
-            else:
+            if keyword.arg is not None:
                 keywords[keyword.arg] = value
-        text = getattr(function, "__self__", None)
-        if isinstance(text, str) and (
-            _WIDTH.search(text) or _holds_unknown(args) or _holds_unknown(keywords)
-        ):
-            return unknown(node)
-        return self.call(function, args, keywords, node)
+            elif isinstance(value, dict):
+                keywords.update({key: one for key, one in value.items() if isinstance(key, str)})
+        return self.call(called, args, keywords, node)
+
+
+MAYBE: Final = Unknown(0, "a comparison")
 
 
 def unknown(node: ast.AST) -> Unknown:
@@ -260,13 +357,12 @@ def unknown(node: ast.AST) -> Unknown:
     return Unknown(getattr(node, "lineno", 0), ast.unparse(node)[:80])
 
 
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float)
-
-
-def _holds_unknown(value: Any) -> bool:
-    if isinstance(value, list | tuple):
-        return any(map(_holds_unknown, value))
-    if isinstance(value, dict):
-        return any(map(_holds_unknown, value.values()))
-    return isinstance(value, Unknown | Library)
+def constant(text: str, names: Mapping[str, Any] | None = None) -> Any:
+    """Return the value of a Python expression; `Unknown` if it is not constant. Raises ValueError if it is none."""
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+        return Evaluator({}).value(tree.body, Scope(dict(names or {})))
+    except (SyntaxError, MemoryError):
+        raise ValueError(f"{text[:80]} is not a Python expression") from None
+    except (RecursionError, SpentError):
+        return Unknown(0, text[:80])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -20,7 +21,10 @@ from tarl_lint.workspace.launch_values import (
 )
 
 _IGNORED: Final = frozenset(["executable", "set_env", "unset_env", "append_env", "reset_env", "log", "log_info",
-                             "shutdown", "keep", "env", "param", "remap", "ros_timer"])  # fmt: skip
+                             "shutdown", "keep", "env", "param", "remap"])  # fmt: skip
+
+_QUOTED: Final = re.compile(r"""(["'])((?:\\.|(?!\1)[^\\])*)\1""", re.DOTALL)
+_ESCAPED: Final = re.compile(r"""\\(["'])""")
 
 
 @dataclass
@@ -75,6 +79,7 @@ def _node(entity: Entity) -> dict[str, Any]:
         "name": get("name"),
         "namespace": get("namespace"),
         "arguments": get("args"),
+        "ros_arguments": get("ros_args"),
         "remappings": [(one.get("from"), one.get("to")) for one in entity.all("remap")],
         "parameters": [_parameter(one) for one in entity.all("param")],
         "components": [
@@ -91,6 +96,7 @@ _MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
     "let": ("set", lambda e: {"name": e.get("name"), "value": e.get("value")}),
     "group": ("group", _group),
     "timer": ("group", _group),
+    "ros_timer": ("group", _group),
     "include": ("include", _include),
     "push_ros_namespace": _NAMESPACE,
     "push_namespace": _NAMESPACE,
@@ -156,7 +162,7 @@ def _substitution(inside: str) -> Any:
     name, _, rest = inside.strip().partition(" ")
     rest = rest.strip()
     if name == "eval":
-        plain = rest[1:-1] if len(rest) > 1 and rest[0] == rest[-1] and rest[0] in "'\"" else rest
+        plain = next(_words(rest), "") if rest[:1] in ("'", '"') else rest
         return Expression((substitutions(plain),))
     words = [substitutions(word) for word in _words(rest)]
     first = words[0] if words else ""
@@ -188,9 +194,10 @@ def _words(text: str) -> Iterator[str]:
             place += 1
             continue
         start = place
-        if text[place] in "'\"" and (closing := text.find(text[place], place + 1)) > 0:
-            yield text[place + 1 : closing]
-            place = closing + 1
+        quoted = _QUOTED.match(text, place)
+        if quoted is not None:
+            yield _ESCAPED.sub(r"\1", quoted[2])
+            place = quoted.end()
             continue
         while place < len(text) and not text[place].isspace():
             end = _end(text, place) if text.startswith("$(", place) else place

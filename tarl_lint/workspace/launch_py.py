@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
@@ -21,7 +22,8 @@ from tarl_lint.workspace.launch_values import (
     Package,
 )
 from tarl_lint.workspace.model import Problem, Workspace
-from tarl_lint.workspace.statements import Function, Interpreter
+from tarl_lint.workspace.python_values import FilePath, Function, Method, bounded
+from tarl_lint.workspace.statements import Interpreter
 
 _ACTIONS: Final = {
     "launch.LaunchDescription": ("group", "actions"),
@@ -55,7 +57,7 @@ class _File:
 
     def __init__(self, path: Path, workspace: Workspace) -> None:
         self.path, self.workspace = path, workspace
-        self.file = Interpreter(path, self._models())
+        self.file = Interpreter(path, self._models(), self._module)
 
     def actions(self, problems: list[Problem]) -> Any:
         """Return the launch description.
@@ -69,6 +71,18 @@ class _File:
             return description
         self.file.problem(0, "generate_launch_description returns nothing that can be followed")
         return ()
+
+    def _module(self, name: str) -> Path | None:
+        """Return the file of a module that a package of the workspace installs, or that is beside the launch file."""
+        first, *rest = name.split(".")
+        homes = [one.path for each in self.workspace.packages for one in each.modules if one.name == first]
+        beside = self.path.parent / first
+        for home in (*homes, beside, beside.with_suffix(".py")):
+            base = home.joinpath(*rest)
+            for place in (base if home.suffix == ".py" else base.with_suffix(".py"), base / "__init__.py"):
+                if place.is_file() and place.suffix == ".py" and place != self.path:
+                    return place
+        return None
 
     def _models(self) -> dict[str, Any]:
         models: dict[str, Any] = {name: self._action(*made) for name, made in _ACTIONS.items()}
@@ -92,6 +106,7 @@ class _File:
                 value, wanted=False, name=name),
             **_substitutions(),
             **self._packages(),
+            **launch_reads.models(self.workspace),
         }  # fmt: skip
         repeated = {}
         for name, model in models.items():
@@ -108,9 +123,13 @@ class _File:
         }
         for module in ("ament_index_python", "ament_index_python.packages"):
             models[f"{module}.get_package_share_directory"] = self._folder
-            models[f"{module}.get_package_share_path"] = self._folder
+            models[f"{module}.get_package_share_path"] = self._path
         models["launch_ros.substitutions.FindPackagePrefix"] = lambda name: OnRobot(f"find-pkg-prefix {name}")
         return models
+
+    def _path(self, package: Any, *_: Any) -> Any:
+        folder = self._folder(package)
+        return FilePath(folder) if isinstance(folder, str) else folder
 
     def _action(self, kind: str, *names: str) -> Callable[..., Action]:
         def make(*values: Any, **keywords: Any) -> Action:
@@ -142,7 +161,7 @@ class _File:
         def made(context: Context) -> Any:
             given = args if isinstance(args, list | tuple) else ()
             stated = named if isinstance(named, dict) else {}
-            if not isinstance(function, Function):
+            if not isinstance(function, Function | Method):
                 return Unknown(line, "OpaqueFunction")
             return self.file.entered(function, [context, *given], dict(stated))
 
@@ -179,6 +198,8 @@ def _substitutions() -> dict[str, Any]:
         f"{module}.AndSubstitution": lambda *values: Logic("and", values),
         f"{module}.OrSubstitution": lambda *values: Logic("or", values),
         f"{module}.IfElseSubstitution": _choice,
+        "launch.utilities.perform_substitutions": lambda context, value: context.perform_substitution(value),
+        "launch.utilities.normalize_to_list_of_substitutions": lambda value: value,
         "nav2_common.launch.LaunchConfigAsBool": _as_bool,
         "nav2_common.launch.RewrittenYaml": _rewritten,
         "launch_ros.parameter_descriptions.ParameterValue": _value,
@@ -214,12 +235,19 @@ def _value(value: Any, value_type: Any = None, **_: Any) -> Quoted:
 
 
 def _parts(value: Any) -> tuple[Any, ...]:
-    return tuple(map(_hashed, value)) if isinstance(value, list | tuple) else (value,)
+    whole = _hashed(value)
+    return whole if isinstance(whole, tuple) else (whole,)
 
 
 def _hashed(value: Any) -> Any:
-    """Return a hashable form of a value."""
-    return tuple(map(_hashed, value)) if isinstance(value, list | tuple) else value
+    """Return a hashable form of a value. Raises ValueError if it has too many elements."""
+    if not bounded(value):
+        raise ValueError("too many values")
+    return _tuples(value)
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(map(_tuples, value)) if isinstance(value, list | tuple) else value
 
 
 def actions_of_python(path: Path, workspace: Workspace, problems: list[Problem]) -> Any:

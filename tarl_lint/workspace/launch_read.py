@@ -17,6 +17,7 @@ from tarl_lint.workspace.launch_run import Runner
 from tarl_lint.workspace.launch_values import Context
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.python_values import SpentError
 
 _YAML: Final = (".yaml", ".yml")
 _OF_ROS2: Final = re.compile(
@@ -35,8 +36,10 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
     """
     try:
         return _launch(path, workspace, dict(arguments or {}))
-    except RecursionError:
-        return Launch(path, problems=(Problem(path, 0, "it nests too deeply, or contains itself"),))
+    except (RecursionError, SpentError):
+        return Launch(
+            path, problems=(Problem(path, 0, "it nests too deeply, contains itself, or has too many parts"),)
+        )
 
 
 def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Launch:

@@ -5,16 +5,20 @@ The actions come from Python, XML or YAML. None of them is executed.
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, ItemsView, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
+from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_values import Context, Substitution, performed, symbolic, truth
 from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.python_values import FilePath
+from tarl_lint.workspace.ros_arguments import first_of_each
 from tarl_lint.workspace.ros_names import joined
 
 LARGEST: Final = 1_000_000  # limit on a YAML file, bytes
@@ -29,11 +33,18 @@ class Action:
     kind: str
     line: int
     values: dict[str, Any] = field(default_factory=dict)
-    readable: frozenset[str] = frozenset({"add_action"})
+    readable: frozenset[str] = frozenset({"add_action", "add_entity", "entities"})
 
     def add_action(self, action: Any) -> None:
         """Add to a launch description or group."""
-        self.values.setdefault("actions", []).append(action)
+        self.entities.append(action)
+
+    add_entity = add_action
+
+    @property
+    def entities(self) -> Any:
+        """Return the actions of a launch description or group."""
+        return self.values.setdefault("actions", [])
 
 
 @dataclass(frozen=True)
@@ -43,6 +54,12 @@ class Condition:
     value: Any
     wanted: bool = True
     name: Any = None
+    readable: ClassVar = frozenset({"evaluate"})
+
+    def evaluate(self, context: Any) -> Any:
+        """Return whether the condition holds, for the function of an OpaqueFunction; Unknown if that is unknown."""
+        holds = truth(performed(self.value, context)) if self.name is None else None
+        return Unknown(0, "a condition") if holds is None else holds is self.wanted
 
 
 @dataclass(frozen=True)
@@ -64,7 +81,7 @@ class Runner:
     nodes: list[LaunchedNode] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # declared names
-    depth: int = 0
+    including: list[object] = field(default_factory=list)  # files around an action, with their arguments
     seen: int = 0
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:
@@ -155,18 +172,20 @@ class Runner:
         if symbolic(name) or not name:
             self._problem(context, action.line, f"the included file {name or '?'} is not in the workspace")
             return
-        if self.depth >= DEEPEST:
-            self._problem(context, action.line, f"{Path(name).name}: files include each other")
-            return
         for key, value in _items(action.values.get("arguments")):
             context.configurations[performed(key, context)] = performed(value, context)
+        here = (Path(name), frozenset(context.configurations.items()))
+        if here in self.including or len(self.including) >= DEEPEST:
+            said = "it includes itself" if here in self.including else "files include each other"
+            self._problem(context, action.line, f"{Path(name).name}: {said}")
+            return
         before, context.file = context.file, Path(name)
-        self.depth += 1
+        self.including.append(here)
         try:
             actions = self.opened(context.file, context, self.problems)
             self.run(actions, context, condition)
         finally:
-            self.depth -= 1
+            self.including.pop()
             context.file = before
 
     def _node(self, action: Action, context: Context, condition: str) -> None:
@@ -197,21 +216,30 @@ class Runner:
             if symbolic(found[key]):
                 reason = f"the {key} of a node is known on the robot only: {found[key]}"
                 self._problem(context, line, reason)
-        settings = (*context.settings, *self._settings(values.get("parameters"), context, line))
+        arguments = _command(values, context)
+        given = ros_arguments.ros2(arguments)
+        stated = (*({name: Quoted(value)} for name, value in _private(given)), *given.files)
+        settings = (*context.settings, *self._settings(stated, context, line),
+                    *self._settings(values.get("parameters"), context, line))  # fmt: skip
+        name = found["name"] or given.name
+        namespace = joined(context.namespace, performed(values.get("namespace"), context) or given.namespace)
+        own = name or found["executable"].rpartition("::")[2]
+        inherited = first_of_each(context.remaps, namespace, own)
+        remaps = (*context.remaps, *given.remaps, *_pairs(values.get("remappings"), context))
         self.nodes.append(
             LaunchedNode(
                 found["package"],
                 found["executable"],
-                found["name"],
-                joined(context.namespace, performed(values.get("namespace"), context)),
+                name,
+                namespace,
                 context.file,
                 line,
-                (*context.remaps, *_pairs(values.get("remappings"), context)),
+                first_of_each(remaps, namespace, own),
                 settings,
-                " ".join(performed(one, context) for one in _listed(values.get("arguments"))),
+                arguments,
                 kind,
                 condition,
-                len(context.remaps),
+                len(inherited),
             )
         )
 
@@ -236,6 +264,7 @@ class Runner:
         self, values: Mapping[Any, Any], context: Context, line: int, above: str
     ) -> Iterator[Setting]:
         for key, value in values.items():
+            context.spend()
             name = f"{above}{performed(key, context)}"
             if isinstance(value, dict):
                 yield from self._stated(value, context, line, f"{name}.")
@@ -265,6 +294,8 @@ def _setting(name: str, value: Any, context: Context) -> Setting | None:
         return stated if kind == "str" else replace(stated, value=None, yaml=text)
     if isinstance(value, bool | int | float | str):
         return Setting(name, context.file, value)
+    if isinstance(value, FilePath):
+        return Setting(name, context.file, str(value))
     if isinstance(value, list | tuple):
         plain = all(isinstance(one, bool | int | float) for one in value)
         words = len(value) > 1 and all(isinstance(one, str) for one in value)
@@ -274,6 +305,21 @@ def _setting(name: str, value: Any, context: Context) -> Setting | None:
         return None
     text = performed(value, context)  # ROS 2 parses the text of substitutions as YAML
     return None if symbolic(text) else Setting(name, context.file, yaml=text)
+
+
+def _command(values: Mapping[str, Any], context: Context) -> str:
+    """Return the arguments of a node; those of a list are quoted."""
+    texts = []
+    listed = isinstance(values.get("arguments"), list | tuple)
+    for one in _listed(values.get("arguments")):
+        text = performed(one, context)
+        texts.append(shlex.quote(text) if listed and " " in text else text)
+    more = [performed(one, context) for one in _listed(values.get("ros_arguments"))]
+    return " ".join([*texts, *(["--ros-args", *more] if more else [])])
+
+
+def _private(given: ros_arguments.Given) -> Iterator[tuple[str, str]]:
+    return ((name.removeprefix("~"), value) for name, value in given.parameters)
 
 
 def _pairs(remaps: Any, context: Context) -> Iterator[tuple[str, str]]:

@@ -5,20 +5,25 @@ A text known only on the robot stays symbolic: it contains what it depends on as
 
 from __future__ import annotations
 
-import ast
 import posixpath
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.workspace.expressions import Evaluator, Library, Unknown
+from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.python_library import LIBRARIES
+from tarl_lint.workspace.python_values import FilePath, SpentError
 
 TRUE: Final = frozenset({"true", "1"})
 FALSE: Final = frozenset({"false", "0"})
 DEEPEST: Final = 50  # limit on nested values
 LONGEST: Final = 100_000  # limit on a text, characters
+WORK: Final = 300_000  # limit on the substitutions that are replaced for one launch file
+# names that expressions may use: those of `math`, with and without the module
+_NAMES: Final = {"math": Library("math"), **{name.removeprefix("math."): value for name, value in LIBRARIES.items()
+                                             if name.startswith("math.")}}  # fmt: skip
 
 
 @dataclass
@@ -33,7 +38,15 @@ class Context:
     settings: tuple[Setting, ...] = ()  # parameters of all following nodes
     # names of the launch configurations that were read; shared by all groups
     asked: set[str] = field(default_factory=set)
+    # substitutions that may still be replaced; shared by all groups
+    left: list[int] = field(default_factory=lambda: [WORK])
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
+
+    def spend(self) -> None:
+        """Count a substitution. Raises SpentError if there were too many."""
+        self.left[0] -= 1
+        if self.left[0] < 0:
+            raise SpentError("it has too many substitutions")
 
     @property
     def launch_configurations(self) -> dict[str, Any]:
@@ -54,6 +67,7 @@ class Context:
             self.remaps,
             self.settings,
             self.asked,
+            self.left,
         )
 
 
@@ -110,10 +124,9 @@ class Expression(Substitution):
         """Return the value as text."""
         whole = "".join(performed(part, context, depth) for part in self.parts)
         try:
-            tree = ast.parse(whole.strip(), mode="eval")
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            value = constant(whole, _NAMES)
+        except ValueError:
             return f"$(eval {whole})"
-        value = Evaluator({}).value(tree.body, {})
         return f"$(eval {whole})" if isinstance(value, Unknown | Library) else str(value)
 
 
@@ -206,6 +219,7 @@ class OnRobot(Substitution):
 
 def performed(value: Any, context: Context, depth: int = 0) -> str:
     """Return the text of a value, with substitutions replaced or symbolic."""
+    context.spend()
     if depth > DEEPEST:
         return "$(too deep)"
     if isinstance(value, Substitution):
@@ -214,7 +228,7 @@ def performed(value: Any, context: Context, depth: int = 0) -> str:
         return "".join(performed(one, context, depth + 1) for one in value)[:LONGEST]
     if isinstance(value, Unknown):
         return f"$({value.text})"
-    if isinstance(value, str | int | float | bool):
+    if isinstance(value, str | int | float | bool | FilePath):
         return str(value)
     return "$(unknown)" if value is not None else ""
 

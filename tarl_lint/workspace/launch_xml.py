@@ -12,6 +12,7 @@ from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.launch_documents import LINE, xml_root
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.ros_arguments import ros1
 from tarl_lint.workspace.ros_names import joined
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
@@ -28,7 +29,7 @@ class _Place:
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters of all following nodes
-    depth: int = 0
+    including: tuple[object, ...] = ()  # the files around, with their arguments, outermost first
     condition: str = ""  # enclosing condition that is known only on the robot
 
 
@@ -46,8 +47,14 @@ class _Reader:
         root = xml_root(path, self.problems)
         if root is not None:
             scope = Scope(self.workspace, path, dict(arguments))
-            here = _Place(scope) if place is None else replace(place, scope=scope, depth=place.depth + 1)
-            self.elements(root, here)
+            here = (path, frozenset(arguments.items()))
+            if place is None:
+                self.elements(root, _Place(scope, including=(here,)))
+            elif here in place.including or len(place.including) > DEEPEST:
+                said = "it includes itself" if here in place.including else "files include each other"
+                raise SymbolicError(f"{path.name}: {said}")
+            else:
+                self.elements(root, replace(place, scope=scope, including=(*place.including, here)))
 
     def elements(self, parent: Iterable[Element], place: _Place) -> None:
         """Read the elements of a launch file or group, in order."""
@@ -86,7 +93,7 @@ class _Reader:
 
     def _argument(self, element: Element, place: _Place) -> _Place:
         name = element.get("name", "")
-        if not place.depth and "value" not in element.attrib:
+        if len(place.including) == 1 and "value" not in element.attrib:
             self.arguments.add(name)
         if name in place.scope.arguments and "value" not in element.attrib:
             return place  # set by the including file
@@ -101,10 +108,8 @@ class _Reader:
 
     def _include(self, element: Element, place: _Place) -> None:
         path = Path(place.scope.text(element.get("file", "")))
-        if place.depth >= DEEPEST or not path.is_file():
-            raise SymbolicError(
-                f"{path.name} does not exist" if place.depth < DEEPEST else "files include each other"
-            )
+        if not path.is_file():
+            raise SymbolicError(f"{path.name} does not exist")
         given: dict[str, str | None] = {}
         if element.get("pass_all_args", "").lower() in ("true", "1"):
             given = dict(place.scope.arguments)
@@ -135,8 +140,11 @@ class _Reader:
                 if one.tag == "param" and "$(" not in one.get("name", ""):
                     unset = _parameter("~", one.get("name", "").lstrip("/"))
                     settings.append(Setting(unset, place.scope.file, unknown=True))
-        namespace = joined(place.namespace, self._name(element, "ns", place))
         arguments = self._name(element, "args", place)
+        given = ros1(arguments)
+        settings += [Setting(one, place.scope.file, yaml=value) for one, value in given.parameters]
+        namespace = joined(place.namespace, given.namespace or self._name(element, "ns", place))
+        own = inner.remaps[len(place.remaps) :]
         line = int(element.get(LINE, "0"))
         self.nodes.append(
             LaunchedNode(
@@ -146,7 +154,7 @@ class _Reader:
                 namespace,
                 place.scope.file,
                 line,
-                inner.remaps,
+                (*place.remaps, *given.remaps, *own),
                 tuple(settings),
                 arguments,
                 condition=place.condition,
@@ -214,7 +222,9 @@ class _Reader:
             raise SymbolicError(f"{path.name}: {reason}") from None
 
     def _problem(self, element: Element, place: _Place, reason: str) -> None:
-        self.problems.append(Problem(place.scope.file, int(element.get(LINE, "0")), reason))
+        problem = Problem(place.scope.file, int(element.get(LINE, "0")), reason)
+        if problem not in self.problems:
+            self.problems.append(problem)
 
 
 def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:

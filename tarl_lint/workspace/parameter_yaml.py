@@ -9,8 +9,10 @@ from typing import Any, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
+from tarl_lint.workspace.python_values import bounded
 
 DEEPEST: Final = 50  # levels of nested parameters; a YAML mapping may contain itself
+MOST: Final = 300_000  # limit on the values of a YAML text
 SECTION: Final = "ros__parameters"
 
 
@@ -37,9 +39,12 @@ def _parsed(text: str) -> Any:
     import yaml
 
     try:
-        return yaml.safe_load(text)
+        found = yaml.safe_load(text)
     except (yaml.YAMLError, RecursionError) as problem:
         raise UnreadableError(f"it is not YAML: {' '.join(str(problem).split())}") from None
+    if not bounded(found, MOST):
+        raise UnreadableError("it has too many values")  # a few aliases can stand for billions
+    return found
 
 
 def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]]]:
@@ -60,12 +65,9 @@ def sections(parsed: Any, above: str = "") -> Iterator[tuple[str, dict[Any, Any]
 
 
 def matches(pattern: str, node: str) -> bool:
-    """Return whether a section is for the node with the absolute name `node`; a bare name matches in any namespace."""
-    wanted = pattern.strip("/")
-    if wanted == node.rpartition("/")[2]:
-        return True
+    """Return whether a section is for the node with the absolute name `node`. `gate` is for `/gate` only."""
     parts = ["(/[^/]+)*" if part == "**" else "/[^/]+" if part == "*" else "/" + re.escape(part)
-             for part in wanted.split("/")]  # fmt: skip
+             for part in pattern.strip("/").split("/")]  # fmt: skip
     return re.fullmatch("".join(parts), node) is not None
 
 

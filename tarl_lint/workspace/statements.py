@@ -1,4 +1,4 @@
-"""Interpret the constant statements of a file: assignments, loops, functions, and `if` with known tests.
+"""Interpret the constant statements of a file: assignments, loops, functions, classes, and `if` with known tests.
 
 Neither the file nor its imports are executed; the caller supplies models of library functions.
 """
@@ -6,18 +6,36 @@ Neither the file nor its imports are executed; the caller supplies models of lib
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
-from tarl_lint.workspace.expressions import Evaluator, Library, Unknown, unknown
+from tarl_lint.workspace.expressions import Evaluator, unknown
 from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.python_values import (
+    DATA,
+    TUPLES,
+    Above,
+    Class,
+    Field,
+    Function,
+    Library,
+    Made,
+    Method,
+    Namespace,
+    Scope,
+    SpentError,
+    Unknown,
+    items,
+)
 
-BUDGET: Final = 50_000  # limit on interpreted statements per file
+__all__ = ["Function", "Interpreter", "parsed"]
+
 DEEPEST: Final = 30  # limit on nested calls of the file's own functions
 LARGEST: Final = 1_000_000  # bytes, limit on a file
+_OWN: Final = "__class__"  # the class of a method, for `super()`
+_PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
 
 
 class _Returned(Exception):  # noqa: N818 - control flow, never an error
@@ -30,192 +48,432 @@ class _Left(Exception):  # noqa: N818 - `break` or `continue`
         self.whole = whole
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
-    """A function of the file."""
-
-    node: ast.FunctionDef
-    names: dict[str, Any]
+class _Raised(Exception):  # noqa: N818 - a `raise` of the file
+    def __init__(self, line: int) -> None:
+        self.line = line
 
 
 class Interpreter(Evaluator):
-    """Interprets one file. `models` holds functions and values of libraries by full name; collects `problems`."""
+    """Interprets one file. `models` holds functions and values of libraries by full name; collects `problems`.
 
-    def __init__(self, file: Path, models: Mapping[str, Any]) -> None:
-        super().__init__(models)
+    `found` returns the file of an imported module that is to be interpreted too, or None.
+    """
+
+    def __init__(
+        self,
+        file: Path,
+        models: Mapping[str, Any],
+        found: Callable[[str], Path | None] = lambda _: None,
+    ) -> None:
+        super().__init__({**models, "functools.partial": self._partial})
         self.file = file
         self.names: dict[str, Any] = {"__file__": str(file), "__name__": "__main__"}
         self.problems: list[Problem] = []
-        self.line = 0  # line of the current call
-        self._budget = BUDGET
+        self.line = 0  # line of the current call in this file
+        self._found = found
+        self._imported: dict[Path, Namespace] = {}
         self._depth = 0
+        self._yielded: list[list[Any]] = []
+        self._files = [file]  # the files of the functions that are being interpreted
 
     def run(self) -> dict[str, Any]:
         """Interpret the file and return its global names."""
         tree = parsed(self.file, self.problems)
-        try:
-            self._body(tree.body if tree is not None else (), self.names)
-        except (_Returned, _Left, RecursionError):
-            self.problem(0, "it was read in part: it has too many statements, or nests too deeply")
+        self._module(tree.body if tree is not None else (), self.names)
         return self.names
+
+    def _module(self, body: Iterable[ast.stmt], names: dict[str, Any]) -> None:
+        try:
+            self._body(body, Scope(names))
+        except _Raised as raised:
+            self.problem(raised.line, "it raises an exception here; what follows is not read")
+        except (_Returned, _Left, RecursionError, SpentError):
+            self.problem(0, _PARTLY)
 
     def called(self, name: str, *args: Any) -> Any:
         """Call a function of the file and return its value; `Unknown` if there is no such function."""
         function = self.names.get(name)
-        if not isinstance(function, Function):
-            return Unknown(0, name)
-        return self._enter(function, list(args), {})
+        return self.entered(function, list(args), {}) if isinstance(function, Function) else Unknown(0, name)
 
-    def call(self, function: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return the value of a call of one of the file's functions or of a model."""
-        if isinstance(function, Function):
-            return self._enter(function, args, keywords) if self._depth < DEEPEST else unknown(node)
-        before, self.line = self.line, node.lineno
+    def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        """Return the value of a call of one of the file's functions or classes, or of a model."""
+        if isinstance(called, Function | Method | Class):
+            if self._depth >= DEEPEST:
+                return unknown(node)
+            if isinstance(called, Class):
+                return self._made(called, args, keywords, node)
+            first = [called.first] if isinstance(called, Method) else []
+            function = called.function if isinstance(called, Method) else called
+            owner = called.owner if isinstance(called, Method) else None
+            return self._enter(function, [*first, *args], keywords, owner)
+        before = self.line
+        if self._files[-1] == self.file:
+            self.line = node.lineno
         try:
-            return super().call(function, args, keywords, node)
+            return super().call(called, args, keywords, node)
         finally:
             self.line = before
 
-    def entered(self, function: Function, args: list[Any], keywords: dict[str, Any]) -> Any:
+    def entered(self, function: Any, args: list[Any], keywords: dict[str, Any]) -> Any:
         """Interpret a function of the file and return its value; `Unknown` if it cannot be interpreted."""
+        line, name = (function.node.lineno, function.node.name) if isinstance(function, Function) else (0, "")
+        call = ast.Call(ast.Name(name or "a function", ast.Load()), [], [], lineno=line)
         try:
-            return self._enter(function, args, keywords)
-        except (_Left, RecursionError):
-            return Unknown(function.node.lineno, function.node.name)
+            return self.call(function, args, keywords, call)
+        except _Raised as raised:
+            self.problem(raised.line, f"{name or 'a function'} raises an exception here")
+        except (RecursionError, SpentError):
+            self.problem(line, _PARTLY)
+        return Unknown(line, name)
 
     def problem(self, line: int, reason: str) -> None:
-        """Record a problem."""
-        self.problems.append(Problem(self.file, line, reason))
+        """Record a problem, once."""
+        one = Problem(self._files[-1], line, reason)
+        if one not in self.problems:
+            self.problems.append(one)
 
-    def _lambda(self, node: ast.Lambda, names: Mapping[str, Any]) -> Any:
+    def _partial(self, function: Any, *args: Any, **keywords: Any) -> Any:
+        call = ast.Call(ast.Name("partial", ast.Load()), [], [], lineno=self.line)
+        return lambda *more, **others: self.call(function, [*args, *more], {**keywords, **others}, call)
+
+    def _name(self, node: ast.Name, names: Scope) -> Any:
+        if node.id == "super" and names.find(_OWN) is not None:
+            return lambda *_: self._above(names)
+        return super()._name(node, names)
+
+    def _above(self, names: Scope) -> Any:
+        owner = names.find(_OWN)
+        first = next(iter(names.outside().names.values()), None)
+        return Above(first, owner[0]) if owner is not None else Unknown(0, "super()")
+
+    def _lambda(self, node: ast.Lambda, names: Scope) -> Any:
         body: list[ast.stmt] = [ast.copy_location(ast.Return(node.body), node.body)]
         made = ast.FunctionDef(name="lambda", args=node.args, body=body, decorator_list=[])
-        return Function(ast.copy_location(made, node), dict(names))
+        return self._function(ast.copy_location(made, node), names)
 
-    def _enter(self, function: Function, args: list[Any], keywords: dict[str, Any]) -> Any:
-        parameters = function.node.args
-        names = [one.arg for one in (*parameters.posonlyargs, *parameters.args)]
-        inside = {**function.names, **dict.fromkeys(names, Unknown(function.node.lineno, "an argument"))}
-        first = len(names) - len(parameters.defaults)
-        for name, default in zip(names[first:], parameters.defaults, strict=True):
-            inside[name] = self.value(default, function.names)
-        inside |= {**dict(zip(names, args, strict=False)), **keywords}
+    def _yield(self, node: ast.Yield, names: Scope) -> Any:
+        self._yielded[-1].append(None if node.value is None else self.value(node.value, names))
+
+    def _yieldfrom(self, node: ast.YieldFrom, names: Scope) -> Any:
+        self._yielded[-1] += self._elements([ast.Starred(node.value)], names)
+
+    def _function(self, node: ast.FunctionDef, names: Scope) -> Function:
+        spec = node.args
+        positional = [*spec.posonlyargs, *spec.args]
+        last = positional[len(positional) - len(spec.defaults) :]
+        pairs = [*zip(last, spec.defaults, strict=True), *zip(spec.kwonlyargs, spec.kw_defaults, strict=True)]
+        defaults = {one.arg: self.value(default, names) for one, default in pairs if default is not None}
+        kinds = [one.id for one in node.decorator_list if isinstance(one, ast.Name)]
+        kind = next((one for one in kinds if one in ("staticmethod", "classmethod", "property")), "")
+        return Function(node, names, defaults, self._files[-1], kind, _yields(node))
+
+    def _enter(
+        self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
+    ) -> Any:
+        inside = Scope(_arguments(function, args, keywords), function.scope)
+        if owner is not None:
+            inside.names[_OWN] = owner
         self._depth += 1
+        self._files.append(function.file)
+        self._yielded.append([])
+        returned: Any = None
         try:
             self._body(function.node.body, inside)
-        except _Returned as returned:
-            return returned.value
+        except _Returned as found:
+            returned = found.value
+        except _Left:
+            pass
         finally:
             self._depth -= 1
-        return None
+            self._files.pop()
+            yielded = self._yielded.pop()
+        return yielded if function.generates else returned
 
-    def _body(self, statements: Iterable[ast.stmt], names: dict[str, Any]) -> None:
+    def _made(self, kind: Class, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        """Return a new object of a class of the file."""
+        if kind.is_enumeration():
+            same = [one for one in kind.members() if [one.attributes["value"]] == args]
+            return same[0] if same else unknown(node)
+        made, fields = Made(kind, {}), kind.all_fields()
+        start = kind.find("__init__")
+        if start is not None and isinstance(start[0], Function):
+            self._enter(start[0], [made, *args], keywords, start[1])
+        elif fields is not None:
+            given = {**dict(zip(fields, args, strict=False)), **keywords}
+            for name in fields:
+                made.attributes[name] = given[name] if name in given else self._default(kind, name, node)
+            after = kind.find("__post_init__")
+            if after is not None and isinstance(after[0], Function):
+                self._enter(after[0], [made], {}, after[1])
+        return made
+
+    def _default(self, kind: Class, name: str, node: ast.Call) -> Any:
+        found = kind.find(name)
+        value = found[0] if found is not None else unknown(node)
+        if isinstance(value, Field):
+            return value.default if value.factory is None else self.call(value.factory, [], {}, node)
+        return value
+
+    def _body(self, statements: Iterable[ast.stmt], names: Scope) -> None:
         for statement in statements:
-            self._budget -= 1
-            if self._budget < 0:
-                raise _Returned(Unknown(statement.lineno, "too many statements"))
+            self.spend()
             run = getattr(self, f"_do_{type(statement).__name__.lower()}", None)
             if run is not None:
                 run(statement, names)
 
-    def _do_expr(self, statement: ast.Expr, names: dict[str, Any]) -> None:
+    def _do_expr(self, statement: ast.Expr, names: Scope) -> None:
         self.value(statement.value, names)
 
-    def _do_assign(self, statement: ast.Assign, names: dict[str, Any]) -> None:
+    def _do_assign(self, statement: ast.Assign, names: Scope) -> None:
         value = self.value(statement.value, names)
         for target in statement.targets:
-            self._bind(target, value, names)
+            self.bind(target, value, names)
 
-    def _do_annassign(self, statement: ast.AnnAssign, names: dict[str, Any]) -> None:
+    def _do_annassign(self, statement: ast.AnnAssign, names: Scope) -> None:
         if statement.value is not None:
-            self._bind(statement.target, self.value(statement.value, names), names)
+            self.bind(statement.target, self.value(statement.value, names), names)
 
-    def _do_augassign(self, statement: ast.AugAssign, names: dict[str, Any]) -> None:
-        if isinstance(statement.target, ast.Name):
-            both = ast.BinOp(ast.Name(statement.target.id, ast.Load()), statement.op, statement.value)
-            names[statement.target.id] = self.value(
-                ast.fix_missing_locations(ast.copy_location(both, statement)), names
-            )
+    def _do_augassign(self, statement: ast.AugAssign, names: Scope) -> None:
+        target = statement.target
+        before, added = self.value(_read(target), names), self.value(statement.value, names)
+        try:
+            if isinstance(before, list) and isinstance(statement.op, ast.Add):
+                more = items(added)
+                before += [unknown(statement.value)] if more is None else more
+                self.spend(len(more or ()) // 50)
+                return
+            self.bind(target, self.operated(type(statement.op), before, added), names)
+        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError):
+            self.bind(target, unknown(statement), names)
 
-    def _bind(self, target: ast.expr, value: Any, names: dict[str, Any]) -> None:
-        if isinstance(target, ast.Name):
-            names[target.id] = value
-        elif isinstance(target, ast.Tuple | ast.List):
-            fits = isinstance(value, list | tuple) and len(value) == len(target.elts)
-            for one, item in zip(
-                target.elts, value if fits else [unknown(target)] * len(target.elts), strict=True
-            ):
-                self._bind(one, item, names)
-        elif isinstance(target, ast.Subscript):
-            base, key = self.value(target.value, names), self.value(target.slice, names)
-            if isinstance(base, dict) and isinstance(key, str | int):
-                base[key] = value
+    def _do_delete(self, statement: ast.Delete, names: Scope) -> None:
+        for target in statement.targets:
+            if isinstance(target, ast.Subscript):
+                base, key = self.value(target.value, names), self.value(target.slice, names)
+                if isinstance(base, dict) and isinstance(key, str | int):
+                    base.pop(key, None)
 
-    def _do_if(self, statement: ast.If, names: dict[str, Any]) -> None:
+    def _do_global(self, statement: ast.Global, names: Scope) -> None:
+        names.elsewhere.update(dict.fromkeys(statement.names, names.module()))
+
+    def _do_nonlocal(self, statement: ast.Nonlocal, names: Scope) -> None:
+        for name in statement.names:
+            scope = names.around
+            while scope is not None and name not in scope.names:
+                scope = scope.around
+            if scope is not None:
+                names.elsewhere[name] = scope
+
+    def _do_if(self, statement: ast.If, names: Scope) -> None:
         test = self.value(statement.test, names)
         if isinstance(test, Unknown | Library):
+            leaves = isinstance(statement.body[-1], ast.Raise)
+            kept, dropped = (statement.orelse, ()) if leaves else (statement.body, statement.orelse)
+            also = "; its `else` is not read" if dropped else ""
             self.problem(
-                statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant"
+                statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant{also}"
             )
-            self._body(statement.body, names)  # if the test is unknown, keep the node instead of losing it
+            self._body(kept, names)  # keep the node instead of losing it
         else:
             self._body(statement.body if test else statement.orelse, names)
 
-    def _do_for(self, statement: ast.For, names: dict[str, Any]) -> None:
-        items = self.value(statement.iter, names)
-        if not isinstance(items, list | tuple | dict | str) and type(items).__name__ not in ("dict_items", "dict_keys",
-                                                                                            "dict_values"):  # fmt: skip
+    def _do_for(self, statement: ast.For, names: Scope) -> None:
+        values = items(self.value(statement.iter, names))
+        if values is None:
             self.problem(
                 statement.lineno, f"the loop over `{ast.unparse(statement.iter)[:60]}` is not constant"
             )
             return
-        for item in list(items):
-            self._bind(statement.target, item, names)
-            try:
-                self._body(statement.body, names)
-            except _Left as left:
-                if left.whole:
-                    return
+        for item in values:
+            self.spend()
+            self.bind(statement.target, item, names)
+            if self._stops(statement.body, names):
+                return
+        self._body(statement.orelse, names)
 
-    def _do_break(self, _: ast.Break, __: dict[str, Any]) -> None:
+    def _do_while(self, statement: ast.While, names: Scope) -> None:
+        while True:
+            test = self.value(statement.test, names)
+            if isinstance(test, Unknown | Library):
+                reason = f"the condition `{ast.unparse(statement.test)[:60]}` of a loop is not constant"
+                self.problem(statement.lineno, reason)
+                return
+            if not test:
+                break
+            if self._stops(statement.body, names):
+                return
+        self._body(statement.orelse, names)
+
+    def _stops(self, body: list[ast.stmt], names: Scope) -> bool:
+        """Interpret the body of a loop once, and return whether it ends with `break`."""
+        try:
+            self._body(body, names)
+        except _Left as left:
+            return left.whole
+        return False
+
+    def _do_break(self, _: ast.Break, __: Scope) -> None:
         raise _Left(whole=True)
 
-    def _do_continue(self, _: ast.Continue, __: dict[str, Any]) -> None:
+    def _do_continue(self, _: ast.Continue, __: Scope) -> None:
         raise _Left(whole=False)
 
-    def _do_with(self, statement: ast.With, names: dict[str, Any]) -> None:
+    def _do_match(self, statement: ast.Match, names: Scope) -> None:
+        subject = self.value(statement.subject, names)
+        for case in statement.cases:
+            fits = self._fits(case.pattern, subject, names)
+            if fits and case.guard is not None:
+                fits = self.value(case.guard, names)
+            if isinstance(fits, Unknown | Library):
+                self.problem(
+                    case.pattern.lineno, f"the case `{ast.unparse(case.pattern)[:60]}` is not constant"
+                )
+            elif fits:
+                self._body(case.body, names)
+                return
+
+    def _fits(self, pattern: ast.pattern, subject: Any, names: Scope) -> Any:
+        if isinstance(pattern, ast.MatchAs):
+            fits = True if pattern.pattern is None else self._fits(pattern.pattern, subject, names)
+            if fits is True and pattern.name is not None:
+                names.store(pattern.name, subject)
+            return fits
+        if isinstance(pattern, ast.MatchOr):
+            found = [self._fits(one, subject, names) for one in pattern.patterns]
+            return next((one for one in found if one is True), next((one for one in found if one), False))
+        if isinstance(subject, Unknown | Library):
+            return Unknown(pattern.lineno, "the subject")
+        if isinstance(pattern, ast.MatchValue):
+            return self._compared(ast.Eq, subject, self.value(pattern.value, names))
+        if isinstance(pattern, ast.MatchSingleton):
+            return subject is pattern.value
+        return Unknown(pattern.lineno, "a pattern")
+
+    def _do_with(self, statement: ast.With, names: Scope) -> None:
         for item in statement.items:
+            value = self.value(item.context_expr, names)
             if item.optional_vars is not None:
-                self._bind(item.optional_vars, self.value(item.context_expr, names), names)
+                self.bind(item.optional_vars, value, names)
         self._body(statement.body, names)
 
-    def _do_try(self, statement: ast.Try, names: dict[str, Any]) -> None:
-        self._body([*statement.body, *statement.orelse, *statement.finalbody], names)
+    def _do_try(self, statement: ast.Try, names: Scope) -> None:
+        try:
+            self._body(statement.body, names)
+            self._body(statement.orelse, names)
+        except _Raised as raised:
+            if not statement.handlers:
+                raise
+            handler = statement.handlers[0]
+            if handler.name is not None:
+                names.store(handler.name, Unknown(raised.line, "an exception"))
+            self._body(handler.body, names)
+        finally:
+            self._body(statement.finalbody, names)
 
-    def _do_return(self, statement: ast.Return, names: dict[str, Any]) -> None:
+    def _do_raise(self, statement: ast.Raise, _: Scope) -> None:
+        raise _Raised(statement.lineno)
+
+    def _do_return(self, statement: ast.Return, names: Scope) -> None:
         raise _Returned(None if statement.value is None else self.value(statement.value, names))
 
-    def _do_functiondef(self, statement: ast.FunctionDef, names: dict[str, Any]) -> None:
-        names[statement.name] = Function(statement, names)
+    def _do_functiondef(self, statement: ast.FunctionDef, names: Scope) -> None:
+        names.store(statement.name, self._function(statement, names))
 
-    def _do_import(self, statement: ast.Import, names: dict[str, Any]) -> None:
+    def _do_classdef(self, statement: ast.ClassDef, names: Scope) -> None:
+        bases = tuple(self.value(one, names) for one in statement.bases)
+        inside = Scope({}, names)
+        self._body(statement.body, inside)
+        libraries = {one.name for one in bases if isinstance(one, Library)}
+        decorators = [one.func if isinstance(one, ast.Call) else one for one in statement.decorator_list]
+        data = {
+            one.name for one in (self.value(each, names) for each in decorators) if isinstance(one, Library)
+        }
+        stated = tuple(one.target.id for one in statement.body
+                       if isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name))  # fmt: skip
+        fields = stated if DATA in data or TUPLES in libraries else None
+        made = Class(statement.name, bases, inside.names, fields, TUPLES in libraries)
+        if made.is_enumeration():
+            for name, value in list(inside.names.items()):
+                if not isinstance(value, Function):
+                    inside.names[name] = Made(made, {"name": name, "value": value})
+        names.store(statement.name, made)
+
+    def _do_import(self, statement: ast.Import, names: Scope) -> None:
         for alias in statement.names:
             bound = alias.asname or alias.name.partition(".")[0]
-            names[bound] = Library(alias.name if alias.asname else bound)
+            whole = alias.name if alias.asname else bound
+            names.store(bound, self._import(whole) or Library(whole))
 
-    def _do_importfrom(self, statement: ast.ImportFrom, names: dict[str, Any]) -> None:
+    def _do_importfrom(self, statement: ast.ImportFrom, names: Scope) -> None:
+        module = statement.module or ""
+        read = self._import(module)
         for alias in statement.names:
-            name = f"{statement.module}.{alias.name}"
+            name = f"{module}.{alias.name}"
             if alias.name == "*":
-                prefix = f"{statement.module}."
-                inside = {
-                    key.removeprefix(prefix): one
-                    for key, one in self.models.items()
-                    if key.startswith(prefix)
-                }
-                names.update({key: one for key, one in inside.items() if "." not in key})
+                known = read.names if read is not None else _below(module, self.models)
+                for key, one in known.items():
+                    names.store(key, one)
+            elif name in self.models:
+                names.store(alias.asname or alias.name, self.models[name])
+            elif read is not None and alias.name in read.names:
+                names.store(alias.asname or alias.name, read.names[alias.name])
             else:
-                names[alias.asname or alias.name] = self.models.get(name, Library(name))
+                names.store(alias.asname or alias.name, self._import(name) or Library(name))
+
+    def _import(self, module: str) -> Namespace | None:
+        """Return an imported module that is interpreted too; None if it is not."""
+        file = self._found(module)
+        if file is None:
+            return None
+        if file not in self._imported:
+            names = {"__file__": str(file), "__name__": module}
+            self._imported[file] = Namespace(names)
+            self._files.append(file)
+            try:
+                tree = parsed(file, self.problems)
+                self._module(tree.body if tree is not None else (), names)
+            finally:
+                self._files.pop()
+        return self._imported[file]
+
+
+def _arguments(function: Function, args: list[Any], keywords: dict[str, Any]) -> dict[str, Any]:
+    """Return the names inside a function when it is called."""
+    spec, line = function.node.args, function.node.lineno
+    positional = [one.arg for one in (*spec.posonlyargs, *spec.args)]
+    stated = [*positional, *(one.arg for one in spec.kwonlyargs)]
+    inside = {name: function.defaults.get(name, Unknown(line, "an argument")) for name in stated}
+    inside |= dict(zip(positional, args, strict=False))
+    inside |= {name: value for name, value in keywords.items() if name in stated}
+    if spec.vararg is not None:
+        inside[spec.vararg.arg] = tuple(args[len(positional) :])
+    if spec.kwarg is not None:
+        inside[spec.kwarg.arg] = {name: value for name, value in keywords.items() if name not in stated}
+    return inside
+
+
+def _yields(node: ast.AST) -> bool:
+    """Return whether a function has `yield` itself."""
+    pending = list(ast.iter_child_nodes(node))
+    while pending:
+        one = pending.pop()
+        if isinstance(one, ast.Yield | ast.YieldFrom):
+            return True
+        if not isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            pending += ast.iter_child_nodes(one)
+    return False
+
+
+def _read(target: ast.expr) -> ast.expr:
+    """Return the target of an assignment as an expression that is read."""
+    return ast.copy_location(ast.parse(ast.unparse(target), mode="eval").body, target)
+
+
+def _below(module: str, models: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what `from module import *` binds."""
+    prefix = f"{module}."
+    inside = {key.removeprefix(prefix): one for key, one in models.items() if key.startswith(prefix)}
+    return {key: one for key, one in inside.items() if "." not in key}
 
 
 def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:

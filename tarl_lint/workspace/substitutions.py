@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import math
 import re
@@ -11,11 +10,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.workspace.expressions import Evaluator, Library, Unknown
+from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Scalar
 from tarl_lint.workspace.model import Workspace
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
+LONGEST: Final = 100_000  # limit on a text, characters
 _TRUTH: Final = {"true": True, "false": False}
 
 
@@ -35,7 +35,10 @@ class Scope:
         """Return a text with its substitutions replaced. Raises SymbolicError if a substitution has no value."""
         if text.startswith("$(eval ") and text.endswith(")"):
             return str(self._evaluated(text[len("$(eval ") : -1]))
-        return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
+        replaced = _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
+        if len(replaced) > LONGEST:
+            raise SymbolicError("the text is too long")
+        return replaced
 
     def symbolic(self, text: str) -> tuple[str, list[str]]:
         """Return a text with parts known only on the robot as `$(arg robot)`, and the reasons for them."""
@@ -77,15 +80,14 @@ class Scope:
         return value
 
     def _evaluated(self, expression: str) -> Any:
-        try:
-            tree = ast.parse(expression.strip(), mode="eval")
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            raise SymbolicError(f"$(eval {expression}) is not a Python expression") from None
         names: dict[str, Any] = {key: scalar(one) for key, one in self.arguments.items() if one is not None}
         names |= {"true": True, "false": False, "pi": math.pi, "e": math.e, "find": self._found}
         names |= {"arg": lambda name: scalar(self._argument(name)), "optenv": _otherwise}
         names["dirname"] = lambda: str(self.file.parent)
-        value = Evaluator({}).value(tree.body, names)
+        try:
+            value = constant(expression, names)
+        except ValueError:
+            raise SymbolicError(f"$(eval {expression}) is not a Python expression") from None
         if isinstance(value, Unknown | Library):
             raise SymbolicError(f"$(eval {expression}) is not constant")
         return value

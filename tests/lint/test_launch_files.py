@@ -9,6 +9,7 @@ import pytest
 
 from tarl_lint.workspace.launch_model import Launch
 from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.parameter_yaml import of_node
 from tarl_lint.workspace.read import read
 
 
@@ -104,7 +105,7 @@ def test_launch_arguments_override_defaults(tmp_path: Path) -> None:
     [
         ("<launch><node></launch>", "it is not XML"),
         ('<!DOCTYPE l [<!ENTITY a "b">]><launch/>', "it declares entities"),
-        ('<launch><include file="$(dirname)/bringup.launch"/></launch>', "files include each other"),
+        ('<launch><include file="$(dirname)/bringup.launch"/></launch>', "it includes itself"),
         ("<launch><param name='a' value='$(eval __import__(\"os\").getcwd())'/></launch>", "is not constant"),
     ],
 )
@@ -363,7 +364,7 @@ def test_names_known_only_on_the_robot_stay_symbolic(tmp_path: Path) -> None:
         ("x.launch.py", "def generate_launch_description():\n    return 1\n", "returns nothing that can be followed"),
         ("x.launch.py", "import os\nos.system('touch /tmp/executed')\n", "returns nothing that can be followed"),
         ("x.launch.xml", '<launch><let name="a" value="b"/><include file="$(dirname)/x.launch.xml"/></launch>',
-         "files include each other"),
+         "it includes itself"),
         ("x.launch.xml", '<launch><let name="a" value="b"/><include file="$(find-pkg-share nav)/x.xml"/></launch>',
          "the included file $(find-pkg-share nav)/x.xml is not in the workspace"),
     ],
@@ -388,6 +389,69 @@ def test_parameters_of_ros1_nodes_are_private_unless_yaml_gives_an_absolute_name
     assert settings(found) == [("~gui", "words"), ("/sources", "[a]"), ("~deep/list", "[b]"),
                                ("~", "{known: 1, home: $(env HOME)}")]  # fmt: skip
     assert [one.reason for one in found.problems] == ["<rosparam>: $(env HOME) is known on the robot only"]
+
+
+def test_arguments_of_ros1_nodes_remap_topics_and_set_parameters(tmp_path: Path) -> None:
+    text = """<launch><remap from="odom" to="/odometry"/><group ns="g">
+        <node pkg="arm_base" type="drive" name="drive" args="scan:=/front/scan --fast _rate:=5 __ns:=/other">
+        <remap from="cmd" to="/cmd_vel"/></node></group></launch>"""
+    (node,) = launched(tmp_path, text).nodes
+    assert node.remaps == (("odom", "/odometry"), ("scan", "/front/scan"), ("cmd", "/cmd_vel"))
+    assert node.inherited == 1
+    assert node.namespace == "/other"
+    assert [(one.name, one.yaml) for one in node.settings] == [("~rate", "5")]
+
+
+def test_the_first_remapping_of_a_name_counts_in_ros2(tmp_path: Path) -> None:
+    text = """<launch><set_remap from="/g/in" to="first"/>
+        <node pkg="arm_base" exec="drive" name="drive" namespace="g" ros_args="-r other:in:=x -r drive:out:=mine">
+        <remap from="in" to="second"/><remap from="out" to="late"/></node></launch>"""
+    (node,) = launched(tmp_path, text, "x.launch.xml").nodes
+    assert node.remaps == (("/g/in", "first"), ("out", "mine"))
+    assert node.inherited == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        (r"$(eval '\'$(var robot)\' == \'a\'')", True),
+        (r"$(eval '\'$(var robot)\' == \'b\'')", False),
+        ("$(eval 'pi > 3 and math.floor(2.5) == 2')", True),
+    ],
+)
+def test_expressions_in_quotes_are_evaluated(tmp_path: Path, text: str, kept: bool) -> None:
+    found = launched(
+        tmp_path,
+        f"""<launch><arg name="robot" default="a"/><node pkg="p" exec="e" if="{text}"/></launch>""",
+        "x.launch.xml",
+    )
+    assert not found.problems
+    assert bool(found.nodes) is kept
+
+
+def test_sections_of_parameter_files_match_nodes_as_rclpy_matches_them() -> None:
+    yaml = pytest.importorskip("yaml")
+    names = (
+        "talker",
+        "/talker",
+        "ns/talker",
+        "/ns/talker",
+        "/**",
+        "/**/talker",
+        "/*/talker",
+        "/ns/*",
+        "/*",
+        "**",
+    )
+    lines = "".join(f"{name!r}:\n  ros__parameters: {{{name!r}: 1}}\n" for name in names)
+    parsed = yaml.safe_load(lines + "ns:\n  talker:\n    ros__parameters: {nested: 1}\n")
+    everywhere = {"/**", "**", "/**/talker"}
+    assert set(of_node(parsed, "/talker")) == {"talker", "/talker", "/*", *everywhere}
+    assert set(of_node(parsed, "/ns/talker")) == {
+        *("ns/talker", "/ns/talker", "/*/talker", "/ns/*", "nested"),
+        *everywhere,
+    }
+    assert set(of_node(parsed, "/a/ns/talker")) == everywhere
 
 
 def test_substitutions_of_navigation_2_are_interpreted(tmp_path: Path) -> None:

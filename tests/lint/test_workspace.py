@@ -77,6 +77,60 @@ def test_constant_values_are_those_that_python_computes(tmp_path: Path) -> None:
         assert names[name] == real[name], name
 
 
+MORE = """
+import functools, itertools, math, os.path
+from collections import namedtuple
+pairs = [f"{a!r}{b:03d}" for a, b in zip("xy", range(2)) if b is not None]
+table = {key: value for key, (value, _) in {"a": (1, 2), "b": (3, 4)}.items()}
+first, *middle, last = sorted([3, 1, 2, 5], key=lambda one: -one)
+chain = list(itertools.chain([1], (2,))) + [x * y for x, y in itertools.product([1, 2], [3])]
+Point = namedtuple("Point", "x y")
+x, y = Point(1, y=2)
+def many(*args, sep="-", **rest):
+    return sep.join(map(str, args)) + "".join(sorted(rest))
+text = many(1, 2, sep="+", b=0, a=0)
+class Base:
+    scale = 2
+    def __init__(self, value): self.value = value
+    def times(self): return self.value * self.scale
+class Derived(Base):
+    scale = 5
+    def times(self): return super().times() + 1
+number = Derived(3).times()
+def outer():
+    seen = 0
+    def inner():
+        nonlocal seen
+        seen += 2
+    inner(); inner()
+    return seen
+closed = outer()
+total = 0
+for i in range(3):
+    total += i
+else:
+    total += 100
+rows = [[0] * 2 for _ in range(2)]
+rows[1][0] += 7
+alias = rows
+alias += [[9]]
+path = os.path.splitext(os.path.normpath("/a/../b/c.yaml"))[0]
+kinds = [isinstance(one, (str, list)) for one in ("a", [1], 3)]
+merged = {**{"a": 1}, "b": 2} | {"c": 3}
+flat = sum([[1], [2, 3]], [])
+part = "key=value".partition("=")[2].zfill(8)
+"""
+
+
+def test_functions_classes_and_loops_are_interpreted_as_python_does(tmp_path: Path) -> None:
+    names = interpreted(tmp_path, MORE)
+    real: dict[str, Any] = {}
+    exec(MORE, real)
+    for name in ("pairs", "table", "first", "middle", "last", "chain", "x", "y", "text", "number", "closed", "total",
+                 "rows", "path", "kinds", "merged", "flat", "part"):  # fmt: skip
+        assert names[name] == real[name], name
+
+
 def test_non_constant_values_are_unknown_and_nothing_is_executed(tmp_path: Path) -> None:
     names = interpreted(
         tmp_path,

@@ -1,0 +1,100 @@
+"""What Python launch files read from files of the workspace: texts, YAML, JSON, and whether a file exists."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.launch_model import Setting
+from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.parameter_yaml import NoYamlError, content
+from tarl_lint.workspace.python_values import FilePath, Unknown, bounded, normal
+
+LARGEST: Final = 1_000_000  # limit on a file, bytes
+
+
+@dataclass(frozen=True)
+class OpenFile:
+    """The result of `open` for a file of the workspace."""
+
+    path: Path
+    readable: ClassVar = frozenset({"read", "close", "name"})
+
+    def read(self, *_: Any) -> Any:
+        """Return the text; Unknown if the file cannot be read."""
+        try:
+            return read_text(self.path, LARGEST)
+        except UnreadableError as reason:
+            return Unknown(0, f"{self.path.name}: {reason}")
+
+    def close(self) -> None:
+        """Do nothing."""
+
+    @property
+    def name(self) -> str:
+        """Return the path."""
+        return str(self.path)
+
+
+def models(workspace: Workspace) -> dict[str, Callable[..., Any]]:
+    """Return models of the functions that read files; they return Unknown for files outside of the workspace."""
+
+    def inside(path: Any) -> Path | None:
+        place = normal(str(path)) if isinstance(path, str | FilePath) else ""
+        return Path(place) if place.startswith("/") and Path(place).is_relative_to(workspace.root) else None
+
+    def opened(path: Any, mode: Any = "r", *_: Any, **__: Any) -> Any:
+        place = inside(path)
+        reads = mode in ("r", "rt", "rb")
+        return OpenFile(place) if place is not None and reads else Unknown(0, f"open({path!s:.60})")
+
+    def text(path: Any, *_: Any, **__: Any) -> Any:
+        one = opened(path)
+        return one.read() if isinstance(one, OpenFile) else one
+
+    def test(kind: str) -> Callable[[Any], Any]:
+        def tested(path: Any) -> Any:
+            place = inside(path)
+            return Unknown(0, f"{kind}({path!s:.60})") if place is None else bool(getattr(place, kind)())
+
+        return tested
+
+    return {
+        "builtins.open": opened, "io.open": opened, "codecs.open": opened,
+        "pathlib.Path.read_text": text, "pathlib.Path.open": opened,
+        **{f"pathlib.Path.{kind}": test(kind) for kind in ("exists", "is_file", "is_dir")},
+        "os.path.exists": test("exists"), "os.path.isfile": test("is_file"), "os.path.isdir": test("is_dir"),
+        **{f"yaml.{name}": _yaml for name in ("safe_load", "load", "full_load", "unsafe_load")},
+        "json.load": _json, "json.loads": _json,
+    }  # fmt: skip
+
+
+def _text(source: Any) -> str | None:
+    found = source.read() if isinstance(source, OpenFile) else source
+    return found if isinstance(found, str) else None
+
+
+def _yaml(source: Any, *_: Any, **__: Any) -> Any:
+    text = _text(source)
+    if text is None:
+        return Unknown(0, "yaml.load")
+    try:
+        return _kept(content(Setting("", Path(), yaml=text)))
+    except (NoYamlError, UnreadableError):
+        return Unknown(0, "yaml.load")
+
+
+def _json(source: Any, *_: Any, **__: Any) -> Any:
+    text = _text(source)
+    try:
+        return Unknown(0, "json.load") if text is None else _kept(json.loads(text))
+    except (ValueError, RecursionError):
+        return Unknown(0, "json.load")
+
+
+def _kept(value: Any) -> Any:
+    return value if bounded(value) else Unknown(0, "a large file")

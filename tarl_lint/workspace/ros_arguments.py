@@ -1,0 +1,77 @@
+"""Remappings and parameters in the arguments of a launched node: `in:=scan _rate:=5`, `--ros-args -r in:=scan`."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tarl_lint.workspace.ros_names import resolved
+
+Pairs = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What the arguments of a node say to ROS. `parameters` are private names with YAML values."""
+
+    remaps: Pairs = ()
+    parameters: Pairs = ()
+    files: tuple[str, ...] = ()
+    name: str = ""
+    namespace: str = ""
+
+
+def ros1(arguments: str) -> Given:
+    """Return what the arguments of a ROS 1 node say: `topic:=other`, `_parameter:=value`, `__ns:=`."""
+    pairs = [
+        (old, new) for old, assigned, new in (one.partition(":=") for one in _words(arguments)) if assigned
+    ]
+    return Given(
+        tuple(one for one in pairs if not one[0].startswith("_")),
+        tuple((f"~{old[1:]}", new) for old, new in pairs if old.startswith("_") and not old.startswith("__")),
+        namespace=next((new for old, new in pairs if old == "__ns"), ""),
+    )
+
+
+def ros2(arguments: str) -> Given:
+    """Return what the arguments of a ROS 2 node say after `--ros-args`, up to `--`."""
+    remaps: list[tuple[str, str]] = []
+    parameters: list[tuple[str, str]] = []
+    files: list[str] = []
+    inside, option = False, ""
+    for word in _words(arguments):
+        if not inside or word in ("--", "--ros-args"):
+            inside, option = word == "--ros-args", ""
+        elif not option:
+            option = word if word.startswith("-") else ""
+        else:
+            left, _, right = word.partition(":=")
+            if option in ("-r", "--remap"):
+                remaps.append((left, right))
+            elif option in ("-p", "--param"):
+                parameters.append((f"~{left}", right))
+            elif option == "--params-file":
+                files.append(word)
+            option = ""
+    names = [new for old, new in remaps if old in ("__node", "__name")]
+    spaces = [new for old, new in remaps if old == "__ns"]
+    plain = tuple(one for one in remaps if not one[0].startswith("__"))
+    return Given(plain, tuple(parameters), tuple(files), "".join(names[:1]), "".join(spaces[:1]))
+
+
+def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) -> Pairs:
+    """Return the remappings that ROS 2 applies to a node: the first of each name, without those of other nodes."""
+    found: dict[str, tuple[str, str]] = {}
+    for old, new in remaps:
+        of, colon, name = old.rpartition(":")
+        if not colon or of in (node, f"{namespace.rstrip('/')}/{node}"):
+            found.setdefault(resolved(name, namespace, node), (name, new))
+    return tuple(found.values())
+
+
+def _words(arguments: str) -> list[str]:
+    try:
+        return shlex.split(arguments)
+    except ValueError:
+        return arguments.split()

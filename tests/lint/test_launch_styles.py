@@ -1,0 +1,291 @@
+"""Python launch files in the styles that people use: loops, comprehensions, classes, helper modules, files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode
+from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.read import read
+from tarl_lint.workspace.ros_names import joined
+
+HEAD = """
+import os
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition
+from launch.substitutions import *
+from launch_ros.actions import *
+from ament_index_python.packages import get_package_share_directory, get_package_share_path
+def talker(**given):
+    return Node(package="demo", executable="talker", **given)
+"""
+
+STYLES = {
+    "comprehension over pairs": (
+        """
+        robots = [("r1", 1.5), ("r2", 3.0)]
+        def generate_launch_description():
+            return LaunchDescription([talker(namespace=r, name=f"t{i:02d}", parameters=[{"rate": rate}])
+                                      for i, (r, rate) in enumerate(robots)])
+        """,
+        {"/r1/t00": {"~rate": 1.5}, "/r2/t01": {"~rate": 3.0}},
+    ),
+    "generator and conditional expression": (
+        """
+        sim = True
+        def nodes(prefix):
+            yield talker(name=prefix + "_a")
+            yield from [talker(name=prefix + "_b")]
+        def generate_launch_description():
+            return LaunchDescription([*nodes("x")] if sim else [])
+        """,
+        {"/x_a": {}, "/x_b": {}},
+    ),
+    "entities of another description": (
+        """
+        def part():
+            return LaunchDescription([talker(name="inner")])
+        def generate_launch_description():
+            ld = LaunchDescription()
+            for each in part().entities:
+                ld.add_action(each)
+            ld.add_entity(talker(name="outer"))
+            return ld
+        """,
+        {"/inner": {}, "/outer": {}},
+    ),
+    "class": (
+        """
+        class Configured:
+            NAME = "talker_x"
+            def __init__(self, rate):
+                self.rate = rate
+            @property
+            def full(self):
+                return self.NAME + "_1"
+            def node(self):
+                return talker(name=self.full, parameters=[{"rate": self.rate}])
+        class Faster(Configured):
+            def __init__(self):
+                super().__init__(9.0)
+        def generate_launch_description():
+            return LaunchDescription([Faster().node()])
+        """,
+        {"/talker_x_1": {"~rate": 9.0}},
+    ),
+    "data class and mapping": (
+        """
+        from dataclasses import dataclass, field
+        @dataclass
+        class Robot:
+            name: str
+            x: float = 0.5
+            tags: list = field(default_factory=list)
+        def generate_launch_description():
+            robots = [Robot("a", 1.0), Robot(name="b")]
+            where = {r.name: r.x for r in robots if not r.tags}
+            return LaunchDescription([talker(name=f"d_{k}", parameters=[{"v": v}]) for k, v in sorted(where.items())])
+        """,
+        {"/d_a": {"~v": 1.0}, "/d_b": {"~v": 0.5}},
+    ),
+    "enumeration": (
+        """
+        from enum import Enum
+        class Mode(Enum):
+            SLOW = "slow"
+            FAST = "fast"
+        def generate_launch_description():
+            return LaunchDescription([talker(name=mode.value) for mode in Mode] + [talker(name=Mode.FAST.name)])
+        """,
+        {"/slow": {}, "/fast": {}, "/FAST": {}},
+    ),
+    "while, lambda, map, match, walrus": (
+        """
+        def generate_launch_description():
+            i, nodes = 0, []
+            while i < 2:
+                nodes.append(talker(name="w{}".format(i)))
+                i += 1
+            make = lambda name, **more: talker(name=name, **more)
+            nodes += [make("l", namespace="/far")]
+            nodes.extend(map(lambda k: make("m" + k), ["a"]))
+            if (n := len(nodes)) > 3:
+                nodes.append(make(f"n{n}"))
+            match "m1":
+                case "m0" | "m1":
+                    nodes.append(make("matched"))
+                case _:
+                    nodes.append(make("other"))
+            return LaunchDescription(nodes)
+        """,
+        {"/w0": {}, "/w1": {}, "/far/l": {}, "/ma": {}, "/n4": {}, "/matched": {}},
+    ),
+    "partial, keyword-only arguments, star targets": (
+        """
+        from functools import partial
+        def made(name, *, rate=1.0, **more):
+            return talker(name=name, parameters=[{"rate": rate}, more])
+        def generate_launch_description():
+            first, *rest = ["one", "two", "three"]
+            quick = partial(made, rate=2.0)
+            return LaunchDescription([quick(first, extra="y"), *[made(each) for each in rest]])
+        """,
+        {"/one": {"~rate": 2.0, "~extra": "y"}, "/two": {"~rate": 1.0}, "/three": {"~rate": 1.0}},
+    ),
+    "global, try, raise": (
+        """
+        count = 0
+        def numbered():
+            global count
+            count += 1
+            return f"g{count}"
+        def generate_launch_description():
+            nodes = [talker(name=numbered()), talker(name=numbered())]
+            try:
+                raise ValueError("no")
+                nodes.append(talker(name="never"))
+            except ValueError:
+                nodes.append(talker(name="caught"))
+            return LaunchDescription(nodes)
+        """,
+        {"/g1": {}, "/g2": {}, "/caught": {}},
+    ),
+    "files of the workspace": (
+        """
+        import yaml
+        from pathlib import Path
+        def generate_launch_description():
+            share = get_package_share_path("demo")
+            with open(os.path.join(get_package_share_directory("demo"), "config", "gate.yaml")) as file:
+                rate = yaml.safe_load(file)["rate"]
+            here = Path(__file__).resolve().parents[1] / "config"
+            text, there = (share / "config" / "a.txt").read_text(), here.joinpath("b").exists()
+            return LaunchDescription([
+                talker(name="read", parameters=[{"rate": rate, "text": text, "there": there}])])
+        """,
+        {"/read": {"~rate": 4.5, "~text": "hello", "~there": False}},
+    ),
+    "function of an OpaqueFunction": (
+        """
+        from launch.utilities import perform_substitutions
+        def setup(context, suffix):
+            ns = perform_substitutions(context, [LaunchConfiguration("ns")])
+            robots = LaunchConfiguration("robots").perform(context).split(",")
+            nodes = [talker(namespace=os.path.join(ns, each.strip()), name="t" + suffix) for each in robots]
+            if IfCondition(LaunchConfiguration("sim")).evaluate(context):
+                nodes.append(talker(name="simulated"))
+            return [GroupAction(nodes)]
+        def generate_launch_description():
+            return LaunchDescription([
+                DeclareLaunchArgument("ns", default_value="fleet"),
+                DeclareLaunchArgument("robots", default_value="a, b"),
+                DeclareLaunchArgument("sim", default_value="true"), OpaqueFunction(function=setup, args=["_x"])])
+        """,
+        {"/fleet/a/t_x": {}, "/fleet/b/t_x": {}, "/simulated": {}},
+    ),
+    "module of the package": (
+        """
+        from demo.nodes import made, NAMES
+        def generate_launch_description():
+            return LaunchDescription([made(name) for name in NAMES])
+        """,
+        {"/h1": {}, "/h2": {}},
+    ),
+    "module beside the launch file": (
+        """
+        import helper
+        def generate_launch_description():
+            return LaunchDescription([talker(name=helper.name_of(3))])
+        """,
+        {"/n3": {}},
+    ),
+    "arguments for ROS": (
+        """
+        def generate_launch_description():
+            return LaunchDescription([talker(name="n", arguments=["--ros-args", "-p", "rate:=9.5"],
+                                             ros_arguments=["-r", "in:=inn"], remappings=[("in", "later")])])
+        """,
+        {"/n": {"~rate": 9.5}},
+    ),
+}  # fmt: skip
+
+
+def launched(tmp_path: Path, text: str) -> Launch:
+    """Return a launch file in a package with helper modules and files."""
+    pytest.importorskip("yaml")
+    files = {
+        "package.xml": "<package><name>demo</name><export><build_type>ament_python</build_type></export></package>",
+        "setup.py": "from setuptools import setup\nsetup(packages=['demo'])\n",
+        "demo/__init__.py": "",
+        "demo/nodes.py": "from launch_ros.actions import Node\nNAMES = ['h1', 'h2']\n"
+        "def made(name):\n    return Node(package='demo', executable='talker', name=name)\n",
+        "launch/helper.py": "def name_of(number):\n    return f'n{number}'\n",
+        "config/gate.yaml": "rate: 4.5\n",
+        "config/a.txt": "hello",
+        "launch/x.launch.py": HEAD + dedent(text),
+    }
+    for name, content in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(content)
+    return read_launch(tmp_path / "launch" / "x.launch.py", read(tmp_path))
+
+
+def private(node: LaunchedNode) -> dict[str, object]:
+    import yaml
+
+    return {one.name: one.value if one.yaml is None else yaml.safe_load(one.yaml) for one in node.settings}
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_nodes_of_python_launch_files_are_found_in_many_styles(tmp_path: Path, style: str) -> None:
+    text, expected = STYLES[style]
+    found = launched(tmp_path, text)
+    assert not found.problems
+    assert {joined(one.namespace, one.name): private(one) for one in found.nodes} == expected
+
+
+def test_arguments_of_a_node_remap_its_topics(tmp_path: Path) -> None:
+    (node,) = launched(tmp_path, STYLES["arguments for ROS"][0]).nodes
+    assert node.remaps == (("in", "inn"),)
+
+
+def test_the_line_of_a_node_is_in_the_launch_file(tmp_path: Path) -> None:
+    found = launched(tmp_path, STYLES["module of the package"][0])
+    lines = (HEAD + dedent(STYLES["module of the package"][0])).splitlines()
+    assert all("made(name)" in lines[one.line - 1] for one in found.nodes)
+
+
+def test_files_outside_the_workspace_are_not_read(tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text("secret")
+    text = f"""
+        def generate_launch_description():
+            with open("{tmp_path}/secret.txt") as file:
+                text = file.read()
+            return LaunchDescription([talker(name="n", parameters=[{{"text": text}}])])
+        """
+    (tmp_path / "inside").mkdir()
+    found = launched(tmp_path / "inside", text)
+    assert "secret" not in repr(found.nodes)
+    assert [one.reason for one in found.problems] == ["the parameter text is not constant"]
+
+
+def test_a_branch_that_is_not_read_is_reported(tmp_path: Path) -> None:
+    text = """
+        def generate_launch_description():
+            if not os.path.exists("/etc/robot"):
+                raise RuntimeError("no robot")
+            if "SIM" in os.environ:
+                return LaunchDescription([talker(name="sim")])
+            else:
+                return LaunchDescription([talker(name="real")])
+        """
+    found = launched(tmp_path, text)
+    assert [one.name for one in found.nodes] == ["sim"]
+    assert [one.reason.partition("is not constant")[2] for one in found.problems] == [
+        "",
+        "; its `else` is not read",
+    ]
