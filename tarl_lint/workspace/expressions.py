@@ -45,7 +45,7 @@ from tarl_lint.workspace.python_values import (
 __all__ = ["Evaluator", "Library", "Unknown", "constant", "unknown"]
 
 STEPS: Final = 300_000  # limit on the expressions and statements that are evaluated for one file
-_FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError)
+_FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, StopIteration)
 
 
 class Evaluator:
@@ -84,6 +84,10 @@ class Evaluator:
         if isinstance(found, str | list | tuple | dict):
             self.spend(len(found) // 50)
         return found
+
+    def imported(self, module: str) -> Namespace | None:  # noqa: ARG002 - for subclasses
+        """Return an imported module that is interpreted too; None if it is not."""
+        return None
 
     def bind(self, target: ast.expr, value: Any, names: Scope) -> None:
         """Assign a value to a name, an element, an attribute, or several of them."""
@@ -145,7 +149,8 @@ class Evaluator:
             full = f"{base.name}.{name}"
             return (self.models.get(full, Library(full)),)
         if isinstance(base, Namespace):
-            return (base.names[name],) if name in base.names else None
+            inner = base.names[name] if name in base.names else self.imported(f"{base.module}.{name}")
+            return None if inner is None else (inner,)
         if isinstance(base, Made | Class | Above):
             return self._of_class(base, name, node)
         if name in METHODS.get(type(base), ()):
@@ -264,7 +269,9 @@ class Evaluator:
     def _compared(self, kind: type[ast.cmpop], left: Any, right: Any) -> Any:
         if any(isinstance(one, Unknown | Library) for one in (left, right)):
             return MAYBE
-        if kind in (ast.Is, ast.IsNot) or isinstance(left, Made | Class) or isinstance(right, Made | Class):
+        if kind in (ast.Is, ast.IsNot) or any(
+            isinstance(one, Made | Class) or callable(one) for one in (left, right)
+        ):
             same = left is right
             return same if kind in (ast.Is, ast.Eq) else not same if kind in (ast.IsNot, ast.NotEq) else MAYBE
         many = items(right) if kind in (ast.In, ast.NotIn) and not isinstance(right, str) else None

@@ -94,7 +94,8 @@ def method(bound: Bound, args: list[Any], keywords: dict[str, Any]) -> Any:
     elif isinstance(of, list) and name in ("append", "insert", "extend"):
         added = items(args[0]) if name == "extend" else [0]
         if added is None:
-            name, args, added = "append", [Unknown(0, "unknown elements")], [0]
+            given = args[0] if isinstance(args[0], Unknown) else Unknown(0, "unknown elements")
+            name, args, added = "append", [given], [0]
         _limited(len(of) + len(added))
     elif isinstance(of, dict):
         if name == "update":
@@ -192,18 +193,34 @@ def _dict(*args: Any, **keywords: Any) -> dict[Any, Any]:
 
 
 def _isinstance(value: Any, kinds: Any) -> bool:
-    wanted = kinds if isinstance(kinds, tuple | list) else (kinds,)
-    types = {BUILTINS["str"]: str, BUILTINS["int"]: int, BUILTINS["float"]: float, BUILTINS["bool"]: bool,
-             _list: list, _tuple: tuple, _dict: dict}  # fmt: skip
-    for one in wanted:
+    for one in kinds if isinstance(kinds, tuple | list) else (kinds,):
         if isinstance(one, Class):
             if isinstance(value, Made) and value.kind.is_a(one):
                 return True
-        elif one not in types:
-            raise ValueError("unknown class")
-        elif isinstance(value, types[one]):
+        elif isinstance(value, next(kind for kind, made in _types() if made is one)):
             return True
     return False
+
+
+def _type(value: Any) -> Any:
+    """Return the class of a value, in the form that its name has in interpreted files."""
+    return (
+        value.kind
+        if isinstance(value, Made)
+        else next(made for kind, made in _types() if type(value) is kind)
+    )
+
+
+def _types() -> Iterable[tuple[type, Any]]:
+    return (
+        (str, str),
+        (int, int),
+        (float, float),
+        (bool, bool),
+        (list, _list),
+        (tuple, _tuple),
+        (dict, _dict),
+    )
 
 
 def _list(values: Any = ()) -> list[Any]:
@@ -278,7 +295,7 @@ STRUCTURE: Final[Mapping[str, Any]] = {
     "filter": _filter, "isinstance": _isinstance, "sorted": _sorted, "sum": _sum,
     "enumerate": lambda values, start=0: list(enumerate(_elements(values), start)),
     "zip": lambda *values, **_: list(zip(*map(_elements, values), strict=False)),
-    "reversed": lambda one: _elements(one)[::-1], "iter": _list,
+    "type": _type, "reversed": lambda one: _elements(one)[::-1], "iter": _list,
     "itertools.chain": _chain, "itertools.chain.from_iterable": lambda values: _chain(*_elements(values)),
     "itertools.product": _product, "copy.deepcopy": _copied, "copy.copy": _copied,
     "collections.OrderedDict": _dict, "dataclasses.field": lambda default=None, default_factory=None, **_: Field(

@@ -161,8 +161,9 @@ class Bound:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Namespace:
-    """An imported module of the workspace."""
+    """An imported module of the workspace, by its full name."""
 
+    module: str
     names: dict[str, Any]
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Final
 
 from tarl_lint.workspace.ros_names import resolved
 
+_NAME: Final = re.compile(r"[~/]?[A-Za-z$][\w$() ]*(/[\w$() ]+)*/?")  # `$(arg robot)` may be part of it
+_SYMBOLIC: Final = re.compile(r"\$\([^()]*\)")
 Pairs = tuple[tuple[str, str], ...]
 
 
@@ -28,7 +32,7 @@ def ros1(arguments: str) -> Given:
         (old, new) for old, assigned, new in (one.partition(":=") for one in _words(arguments)) if assigned
     ]
     return Given(
-        tuple(one for one in pairs if not one[0].startswith("_")),
+        tuple(one for one in pairs if all(map(_is_name, one))),
         tuple((f"~{old[1:]}", new) for old, new in pairs if old.startswith("_") and not old.startswith("__")),
         namespace=next((new for old, new in pairs if old == "__ns"), ""),
     )
@@ -70,8 +74,15 @@ def first_of_each(remaps: Iterable[tuple[str, str]], namespace: str, node: str) 
     return tuple(found.values())
 
 
+def _is_name(text: str) -> bool:
+    """Return whether a text can be the name of a topic; nodes also get values in this form, as in `debug:=false`."""
+    return _NAME.fullmatch(text) is not None and text not in ("true", "false", "True", "False")
+
+
 def _words(arguments: str) -> list[str]:
+    whole = _SYMBOLIC.sub(lambda found: found[0].replace(" ", "\0"), arguments)
     try:
-        return shlex.split(arguments)
+        words = shlex.split(whole)
     except ValueError:
-        return arguments.split()
+        words = whole.split()
+    return [one.replace("\0", " ") for one in words]

@@ -97,22 +97,25 @@ class Interpreter(Evaluator):
 
     def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         """Return the value of a call of one of the file's functions or classes, or of a model."""
-        if isinstance(called, Function | Method | Class):
-            if self._depth >= DEEPEST:
-                return unknown(node)
-            if isinstance(called, Class):
-                return self._made(called, args, keywords, node)
-            first = [called.first] if isinstance(called, Method) else []
-            function = called.function if isinstance(called, Method) else called
-            owner = called.owner if isinstance(called, Method) else None
-            return self._enter(function, [*first, *args], keywords, owner)
         before = self.line
         if self._files[-1] == self.file:
             self.line = node.lineno
         try:
+            if isinstance(called, Function | Method | Class):
+                return self._run(called, args, keywords, node)
             return super().call(called, args, keywords, node)
         finally:
             self.line = before
+
+    def _run(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        """Return the value of a call of one of the file's functions or classes."""
+        if self._depth >= DEEPEST:
+            return unknown(node)
+        if isinstance(called, Class):
+            return self._made(called, args, keywords, node)
+        if isinstance(called, Method):
+            return self._enter(called.function, [called.first, *args], keywords, called.owner)
+        return self._enter(called, args, keywords)
 
     def entered(self, function: Any, args: list[Any], keywords: dict[str, Any]) -> Any:
         """Interpret a function of the file and return its value; `Unknown` if it cannot be interpreted."""
@@ -402,11 +405,11 @@ class Interpreter(Evaluator):
         for alias in statement.names:
             bound = alias.asname or alias.name.partition(".")[0]
             whole = alias.name if alias.asname else bound
-            names.store(bound, self._import(whole) or Library(whole))
+            names.store(bound, self.imported(whole) or Library(whole))
 
     def _do_importfrom(self, statement: ast.ImportFrom, names: Scope) -> None:
         module = statement.module or ""
-        read = self._import(module)
+        read = self.imported(module)
         for alias in statement.names:
             name = f"{module}.{alias.name}"
             if alias.name == "*":
@@ -418,16 +421,16 @@ class Interpreter(Evaluator):
             elif read is not None and alias.name in read.names:
                 names.store(alias.asname or alias.name, read.names[alias.name])
             else:
-                names.store(alias.asname or alias.name, self._import(name) or Library(name))
+                names.store(alias.asname or alias.name, self.imported(name) or Library(name))
 
-    def _import(self, module: str) -> Namespace | None:
+    def imported(self, module: str) -> Namespace | None:
         """Return an imported module that is interpreted too; None if it is not."""
         file = self._found(module)
         if file is None:
             return None
         if file not in self._imported:
             names = {"__file__": str(file), "__name__": module}
-            self._imported[file] = Namespace(names)
+            self._imported[file] = Namespace(module, names)
             self._files.append(file)
             try:
                 tree = parsed(file, self.problems)

@@ -393,10 +393,11 @@ def test_parameters_of_ros1_nodes_are_private_unless_yaml_gives_an_absolute_name
 
 def test_arguments_of_ros1_nodes_remap_topics_and_set_parameters(tmp_path: Path) -> None:
     text = """<launch><remap from="odom" to="/odometry"/><group ns="g">
-        <node pkg="arm_base" type="drive" name="drive" args="scan:=/front/scan --fast _rate:=5 __ns:=/other">
+        <node pkg="arm_base" type="drive" name="drive"
+        args="scan:=/$(env A)/scan --fast debug:=true out:=a-b.txt _rate:=5 __ns:=/other">
         <remap from="cmd" to="/cmd_vel"/></node></group></launch>"""
     (node,) = launched(tmp_path, text).nodes
-    assert node.remaps == (("odom", "/odometry"), ("scan", "/front/scan"), ("cmd", "/cmd_vel"))
+    assert node.remaps == (("odom", "/odometry"), ("scan", "/$(env A)/scan"), ("cmd", "/cmd_vel"))
     assert node.inherited == 1
     assert node.namespace == "/other"
     assert [(one.name, one.yaml) for one in node.settings] == [("~rate", "5")]

@@ -248,6 +248,20 @@ def test_nodes_of_python_launch_files_are_found_in_many_styles(tmp_path: Path, s
     assert {joined(one.namespace, one.name): private(one) for one in found.nodes} == expected
 
 
+def test_a_submodule_of_an_imported_package_is_read(tmp_path: Path) -> None:
+    text = """
+        import demo.nodes
+        def setup(context):
+            kind = "list" if type(demo.nodes.NAMES) == list else "other"
+            return [demo.nodes.made(kind)]
+        def generate_launch_description():
+            return LaunchDescription([OpaqueFunction(function=setup)])
+        """
+    (node,) = launched(tmp_path, text).nodes
+    assert node.name == "list"
+    assert "demo.nodes.made(kind)" in (HEAD + dedent(text)).splitlines()[node.line - 1]
+
+
 def test_arguments_of_a_node_remap_its_topics(tmp_path: Path) -> None:
     (node,) = launched(tmp_path, STYLES["arguments for ROS"][0]).nodes
     assert node.remaps == (("in", "inn"),)
