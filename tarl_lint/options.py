@@ -125,9 +125,28 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+class _Once(argparse.Action):
+    """An option that may be given once, since its last value would silently replace the others."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option: str | None = None,
+    ) -> None:
+        """Store the value."""
+        if getattr(namespace, self.dest) is not None:
+            parser.error(
+                f"{option} is given twice: run tarl-lint for each launch file, or for all with {option} all"
+            )
+        setattr(namespace, self.dest, values)
+
+
 def _add_system(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--launch",
+        action=_Once,
         metavar="FILE",
         help="analyse the nodes of a launch file as one system, its arguments as NAME:=VALUE; all: each launch file",
     )

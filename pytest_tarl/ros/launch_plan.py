@@ -17,7 +17,7 @@ from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.folders import workspace_root
 from tarl_lint.workspace.hidden_packages import problems as hidden
-from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
+from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file, unknown_argument
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
@@ -167,12 +167,9 @@ def _text(value: object) -> str:
 
 
 def _check_arguments(launch: Launch, names: Iterable[str]) -> None:
-    for name in names:
-        if name not in launch.arguments:
-            close = difflib.get_close_matches(name, launch.arguments, 1)
-            known = f"it has {', '.join(launch.arguments)}" if launch.arguments else "it has none"
-            hint = f"did you mean {close[0]!r}?" if close else f"{known}."
-            raise SettingsError(f"tarl.launch: {launch.file.name} has no argument {name!r}; {hint}")
+    problem = unknown_argument(launch, names)
+    if problem:
+        raise SettingsError(f"tarl.launch: {problem}")
 
 
 def _launched(launch: Launch, node: LaunchedNode, workspace: Workspace) -> Launched:

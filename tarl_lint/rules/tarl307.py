@@ -4,6 +4,10 @@ The value has no effect, and the node uses its default. Often the parameter was 
 warning. For example, one filter used two unsuitable defaults, because the names in its parameter file did not match
 those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
+In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not for `/robot/gate`, so a node that is
+started in a namespace gets none of the values. This is reported if the node has the name of the section, and no other
+section of the file gives it these parameters.
+
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program reads
 parameters only by literal names. A parameter that a group sets for all its nodes is reported if none of them has it.
 """
@@ -11,7 +15,7 @@ parameters only by literal names. A parameter that a group sets for all its node
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_node
@@ -48,6 +52,26 @@ INVALID: Final = (
     rospy.Subscriber("odom", Odometry, on_odom)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch.xml
+    <launch>
+      <node pkg="robot" exec="keeper.py" name="keeper" namespace="cart">
+        <param from="$(find-pkg-share robot)/config/keeper.yaml"/>
+      </node>
+    </launch>
+    --- config/keeper.yaml
+    keeper:
+      ros__parameters:
+        gain: 0.8
+    --- scripts/keeper.py
+    import rclpy
+    from rclpy.node import Node
+
+    rclpy.init()
+    node = Node("keeper")
+    gain = node.declare_parameter("gain", 0.5).value
+    rclpy.spin(node)
+    """,
 )
 
 VALID: Final = (
@@ -75,6 +99,29 @@ VALID: Final = (
     rospy.Subscriber("odom", Odometry, on_odom)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch.xml
+    <launch>
+      <node pkg="robot" exec="keeper.py" name="keeper" namespace="cart">
+        <param from="$(find-pkg-share robot)/config/keeper.yaml"/>
+      </node>
+    </launch>
+    --- config/keeper.yaml
+    keeper:
+      ros__parameters:
+        gain: 0.8
+    /cart/keeper:
+      ros__parameters:
+        gain: 0.9
+    --- scripts/keeper.py
+    import rclpy
+    from rclpy.node import Node
+
+    rclpy.init()
+    node = Node("keeper")
+    gain = node.declare_parameter("gain", 0.5).value
+    rclpy.spin(node)
+    """,
 )
 
 _OF_ROS: Final = frozenset(
@@ -95,6 +142,28 @@ def findings(system: System) -> Iterator[Finding]:
                 first = instances[0]
                 message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
                 yield at_node(CODE, first, message, name)
+        yield from _elsewhere(setting, instances)
+
+
+def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
+    """Yield a hazard for each section that has the name of a node, but not its namespace."""
+    named = list(sections(_parsed(setting)))
+    for pattern, values in named:
+        if is_wildcard(pattern) or any(matches(pattern, one.name) for one in instances):
+            continue
+        own = pattern.strip("/").rpartition("/")[2]
+        meant = next(
+            (one for one in instances if one.name.rpartition("/")[2] == own and "$(" not in one.name), None
+        )
+        if meant is None:
+            continue
+        given = {name for other, more in named if matches(other, meant.name) for name in dotted(more)}
+        lost = sorted(dotted(values).keys() - given)
+        if lost:
+            shown = f"{', '.join(lost[:3])}{' …' if len(lost) > 3 else ''}"
+            message = (f"{meant.name} does not get {shown}: the section {pattern} of {setting.file.name} is for "
+                       f"/{pattern.strip('/')}; name it {meant.name} or /**/{own}")  # fmt: skip
+            yield at_node(CODE, meant, message, f"{pattern} in {setting.file.name}")
 
 
 def _lacks(instance: Instance, name: str) -> bool:
@@ -106,16 +175,21 @@ def _lacks(instance: Instance, name: str) -> bool:
     return parts.isdisjoint(interface.words)
 
 
+def _parsed(setting: Setting) -> Any:
+    """Return the parsed YAML of a setting; None if it has none, or if it cannot be read."""
+    try:
+        return content(setting)
+    except (NoYamlError, UnreadableError):
+        return None  # the report mentions the problem
+
+
 def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
     """Yield the names of the parameters that a setting gives to one node only."""
     above = setting.name.lstrip("~").strip("/")
     if setting.yaml is None or above:
         yield above
         return
-    try:
-        parsed = content(setting)
-    except (NoYamlError, UnreadableError):
-        return  # the report mentions the problem
+    parsed = _parsed(setting)
     named = list(sections(parsed))
     if not named and isinstance(parsed, dict):
         yield from map(str, parsed)

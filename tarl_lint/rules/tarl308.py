@@ -4,8 +4,11 @@ The remapping has no effect, so the two ends that it was meant to connect stay s
 published on `cmd_vel_mux/output` and the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
 robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
 
+A remapping from `/cmd_vel` matches nothing either if the node uses `cmd_vel` in a namespace: its topic is then
+`/robot/cmd_vel`.
+
 A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant
-topic names, and contains no string that ends in the remapped name. A remapping of a group is reported only if it
+topic names, and contains no other string that ends in the remapped name. A remapping of a group is reported only if it
 matches nothing in any of the group's nodes.
 """
 
@@ -23,6 +26,30 @@ CODE: Final = "TARL308"
 SUMMARY: Final = "a remapping matches no name that the node uses"
 
 INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper" ns="cart">
+        <remap from="/cmd_vel" to="/wheels/cmd_vel"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
     """
     --- launch/robot.launch
     <launch>
@@ -136,18 +163,29 @@ def findings(system: System) -> Iterator[Finding]:
     for (old, new, _), instances in carriers.items():
         if all(_unmatched(instance, old) for instance in instances):
             first = instances[0]
-            used = sorted(
-                {name for role in get_args(Role) for _, end in first.ends(role) for name in end.names}
-            )
-            known = f"; it uses {', '.join(used[:4])}{' …' if len(used) > 4 else ''}" if used else ""
+            known = _used_instead(first, old)
             message = f"{first.name} uses no name {old}, so renaming it to {new} has no effect{known}"
             yield at_node(CODE, first, message, old)
+
+
+def _used_instead(instance: Instance, old: str) -> str:
+    """Return the end of the message: the name that was probably meant, or else the names that the node uses."""
+    used = sorted({name for role in get_args(Role) for _, end in instance.ends(role) for name in end.names})
+    own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
+    near = [name for name in used if _last(name) == _last(old)]
+    if near:
+        return f"; it uses {near[0]}, which is {resolved(near[0], namespace, own)} here"
+    return f"; it uses {', '.join(used[:4])}{' …' if len(used) > 4 else ''}" if used else ""
+
+
+def _last(name: str) -> str:
+    return name.strip("~/").rpartition("/")[2]
 
 
 def _unmatched(instance: Instance, old: str) -> bool:
     """Return whether a node certainly uses no such name."""
     interface = instance.interface
-    last = old.strip("~/").rpartition("/")[2]
+    last = _last(old)
     if (
         interface is None
         or not interface.whole
@@ -158,6 +196,7 @@ def _unmatched(instance: Instance, old: str) -> bool:
     ):
         return False
     own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
-    used = {resolved(name, namespace, own) for end in interface.endpoints for name in end.names}
-    said = any(word.strip("~/").rpartition("/")[2] == last for word in interface.words)
+    names = {name for end in interface.endpoints for name in end.names}
+    used = {resolved(name, namespace, own) for name in names}
+    said = any(_last(word) == last for word in interface.words - names)
     return not said and resolved(old, namespace, own) not in used

@@ -33,7 +33,7 @@ from tarl_lint.system.interfaces import interface
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
 from tarl_lint.workspace.hidden_packages import folders_with, named_by
-from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file
+from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file, unknown_argument
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.model import Workspace
@@ -74,6 +74,9 @@ def request(launch: str | None, paths: Sequence[Path], origin: str | None, targe
     plain = tuple(path for path in paths if ":=" not in str(path))
     if pairs and (launch is None or launch == ALL):
         raise UsageError(f"{''.join(pairs[0])} is an argument of a launch file: name the file with --launch.")
+    assigned = next((path for path in plain if "=" in str(path) and not path.exists()), None)
+    if assigned is not None:
+        raise UsageError(f"{assigned}: no such folder. Arguments of a launch file are written NAME:=VALUE.")
     if len(plain) > 1:
         raise UsageError(f"--launch takes one folder of a workspace, not {len(plain)} paths.")
     given = tuple((name, value) for name, _, value in pairs)
@@ -150,7 +153,12 @@ def systems(
 
 def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
     if asked.launch not in ("", ALL):
-        yield read_launch(_launch_file(asked.launch, workspace), workspace, dict(asked.arguments))
+        given = dict(asked.arguments)
+        launch = read_launch(_launch_file(asked.launch, workspace), workspace, given)
+        problem = unknown_argument(launch, given)
+        if problem and launch.nodes:  # a file that could not be read has no known arguments
+            raise UsageError(problem)
+        yield launch
         return
     files = [file for package in workspace.packages for file in package.launch_files]
     if asked.launch == ALL and not files:

@@ -12,6 +12,7 @@ from tarl_lint.system.chains import chains, slashed
 from tarl_lint.system.model import Chain, Hop, Instance, Role, System
 
 HEADINGS: Final = ("node", "program", "subscribes", "publishes")
+SHOWN: Final = 4  # limit on similar topics
 WIDEST: Final = 44  # columns of a list of topics
 
 _ROLES: Final[tuple[Role, Role]] = ("subscribes", "publishes")
@@ -56,7 +57,10 @@ def _nothing(system: System, origin: str, target: str) -> str:
     known |= {name for one in system.instances for name in one.touched}
     missing = [slashed(one) for one in (origin, target) if one and slashed(one) not in known]
     if missing:
-        return f"No node that was read uses {' or '.join(missing)}."
+        last = {one.rpartition("/")[2] for one in missing}
+        close = sorted(name for name in known if name.rpartition("/")[2] in last)
+        meant = f" Did you mean {' or '.join(close[:SHOWN])}?" if close else ""
+        return f"No node that was read uses {' or '.join(missing)}.{meant}"
     ends = [f"{word} {slashed(one)}" for word, one in (("from", origin), ("to", target)) if one]
     return f"Nothing flows {' '.join(ends)}."
 

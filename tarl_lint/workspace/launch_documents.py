@@ -80,8 +80,10 @@ def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
         problems.append(Problem(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
         return []
     launch = next((value for key, value in _pairs(root) if key.value == "launch"), None)
-    left = [MOST]
-    return _named(launch, left) if launch is not None else []
+    if launch is None:
+        problems.append(Problem(path, 0, "it is not a launch file: it has no `launch:`"))
+        return []
+    return _named(launch, [MOST])
 
 
 def _pairs(node: Any) -> list[tuple[Any, Any]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import posixpath
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Setting
@@ -51,7 +51,7 @@ class Context:
     @property
     def launch_configurations(self) -> dict[str, Any]:
         """Return the launch configurations for the function of an OpaqueFunction."""
-        return {name: known(text) for name, text in self.configurations.items()}
+        return _Configurations(self.asked, {name: known(text) for name, text in self.configurations.items()})
 
     def perform_substitution(self, value: Any) -> Any:
         """Return the text of a substitution for the function of an OpaqueFunction; Unknown if it is symbolic."""
@@ -69,6 +69,29 @@ class Context:
             self.asked,
             self.left,
         )
+
+
+class _Configurations(dict[str, Any]):
+    """Launch configurations that record which of them are read."""
+
+    readable: ClassVar = frozenset({"get", "items", "keys", "values"})
+
+    def __init__(self, asked: set[str], values: dict[str, Any]) -> None:
+        super().__init__(values)
+        self._asked = asked
+
+    def __getitem__(self, name: str) -> Any:
+        self._asked.add(name)
+        return super().__getitem__(name)
+
+    def __contains__(self, name: object) -> bool:
+        self._asked.add(str(name))
+        return super().__contains__(name)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return a value, or the default."""
+        self._asked.add(name)
+        return super().get(name, default)
 
 
 class Substitution:

@@ -104,7 +104,7 @@ def _is_launch_file(path: Path) -> bool:
     """Return whether a file in a folder `launch` is a launch file despite an unusual ending."""
     if path.suffix == ".xml":
         return _mentions(path, b"<launch")
-    return path.name.endswith("_launch.py")
+    return path.suffix == ".py" and _mentions(path, b"def generate_launch_description(")
 
 
 def _mentions(path: Path, word: bytes) -> bool:

@@ -262,6 +262,26 @@ def test_a_submodule_of_an_imported_package_is_read(tmp_path: Path) -> None:
     assert "demo.nodes.made(kind)" in (HEAD + dedent(text)).splitlines()[node.line - 1]
 
 
+def test_arguments_that_a_function_reads_are_known(tmp_path: Path) -> None:
+    text = """
+        def setup(context):
+            configured = context.launch_configurations
+            return [talker(name=configured.get("first", "a") + configured["second"])]
+        def generate_launch_description():
+            return LaunchDescription([SetLaunchConfiguration("second", "b"), OpaqueFunction(function=setup)])
+        """
+    found = launched(tmp_path, text)
+    assert found.arguments == ("first", "second")
+    assert [one.name for one in found.nodes] == ["ab"]
+
+
+def test_a_python_file_without_the_usual_ending_is_a_launch_file_if_it_says_so(tmp_path: Path) -> None:
+    launched(tmp_path, STYLES["generator and conditional expression"][0])
+    (tmp_path / "launch/robot.py").write_text("def generate_launch_description():\n    pass\n")
+    (package,) = read(tmp_path).packages
+    assert [one.name for one in package.launch_files] == ["robot.py", "x.launch.py"]
+
+
 def test_arguments_of_a_node_remap_its_topics(tmp_path: Path) -> None:
     (node,) = launched(tmp_path, STYLES["arguments for ROS"][0]).nodes
     assert node.remaps == (("in", "inn"),)

@@ -259,6 +259,11 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
             "--format sarif cannot show launch files: use one of text, json,",
         ),
         (["--launch", "all", "missing"], "missing: no such folder."),
+        (
+            ["--launch", "all", "robot=a"],
+            "robot=a: no such folder. Arguments of a launch file are written NAME:=VALUE.",
+        ),
+        (["--launch", "a.launch", "--launch", "b.launch"], "--launch is given twice"),
     ],
 )
 def test_user_mistakes_give_sentences(workspace, capsys, arguments, message):
@@ -284,6 +289,30 @@ def test_a_launch_file_is_found_by_its_name_in_the_workspace(capsys, monkeypatch
     code, _, err = run(capsys, "--launch", "a.launch")
     assert code == 2
     assert "a.launch is a launch file of several packages: name one of one/a.launch, two/a.launch." in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["bringup.launch.py", "robt:=a"], "bringup.launch.py has no argument 'robt'; did you mean 'robot'?"),
+        (["cart.launch", "x:=a"], "cart.launch has no argument 'x'; it has cart, gain."),
+        (
+            ["scout_navigation"],
+            "scout_navigation is a package: name one of its launch files, bringup.launch.py.",
+        ),
+    ],
+)
+def test_a_wrong_launch_argument_or_name_is_an_error(capsys, monkeypatch, arguments, message):
+    monkeypatch.chdir(EXAMPLE)
+    code, out, err = run(capsys, "--launch", *arguments)
+    assert (code, out) == (2, "")
+    assert message in err
+
+
+def test_a_topic_that_no_node_uses_gets_the_names_that_end_like_it(capsys, monkeypatch):
+    monkeypatch.chdir(EXAMPLE)
+    _, out, _ = run(capsys, "--launch", "bringup.launch.py", "--from", "scan")
+    assert "No node that was read uses /scan. Did you mean /scout/rear/scan?" in out
 
 
 def test_every_format_is_offered():
