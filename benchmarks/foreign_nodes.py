@@ -1,6 +1,7 @@
 """Run every node script of checked-out repositories in the in-process ROS, without any adaptation.
 
-    python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--counted N --seed N] [--keep SCRATCH] [--json FILE]
+    python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--names FILE] [--counted N --seed N]
+                                       [--keep SCRATCH] [--json FILE]
 
 Each FOLDER contains checkouts, one folder per repository. The checkouts are copied to a scratch folder. Each script
 gets a minimal simulation test, which starts the script and then publishes messages on the topics that it subscribes to,
@@ -196,6 +197,7 @@ def main() -> None:
         "folders", type=Path, nargs="+", help="folders of checkouts, one folder per repository"
     )
     parser.add_argument("--only", default="", help="run the scripts whose path contains this")
+    parser.add_argument("--names", type=Path, help="file of script names, one a line; run only these")
     parser.add_argument("--counted", type=int, help="run scripts in random order until this many are counted")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random order")
     parser.add_argument("--keep", type=Path, help="scratch folder to keep, with the generated tests")
@@ -207,6 +209,9 @@ def main() -> None:
         scratch.mkdir(parents=True, exist_ok=True)
         found = [one for copy in checkouts(options.folders, scratch) for one in scripts(copy)]
         chosen = [one for one in found if options.only in one.name]
+        if options.names is not None:
+            named = set(options.names.read_text().split("\n"))
+            chosen = [one for one in chosen if one.name in named]
         if options.counted is not None:
             random.Random(options.seed).shuffle(chosen)
         began = time.perf_counter()

@@ -28,6 +28,7 @@ DISTRIBUTED = frozenset(  # packages of `ros-noetic-desktop-full`, `ros-humble-d
 )  # fmt: skip
 MADE_BY = re.compile(r"\brospy\.init_node\s*\(|\brclpy\.(create_node|spin)\b|\(\s*(rclpy\.node\.)?Node\s*\)")
 ENTRY = re.compile(r"['\"]\s*[\w.-]+\s*=\s*([\w.]+)\s*:\s*(\w+)\s*['\"]")
+INSTALLED = re.compile(r"^[ \t]*[\w.-]+\s*=\s*([\w.]+)\s*:\s*(\w+)", re.MULTILINE)
 SKIPPED = frozenset({"launch", "test", "tests", "build", "install", "devel", "tarl_tests"})
 
 
@@ -80,10 +81,14 @@ def _first_line(path: Path) -> bytes:
 
 
 def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
-    """Yield file and function of each console script in `setup.py` and `setup.cfg`."""
+    """Yield file and function of each console script in `setup.py`, `setup.cfg` and an unpacked wheel."""
     for setup in [*repository.rglob("setup.py"), *repository.rglob("setup.cfg")]:
         for module, function in ENTRY.findall(setup.read_text("utf-8", errors="replace")):
             yield setup.parent.joinpath(*module.split(".")).with_suffix(".py"), function
+    for listed in repository.rglob("*.dist-info/entry_points.txt"):
+        console = listed.read_text("utf-8").partition("[console_scripts]")[2].partition("\n[")[0]
+        for module, function in INSTALLED.findall(console):
+            yield listed.parent.parent.joinpath(*module.split(".")).with_suffix(".py"), function
 
 
 def script(repository: Path, path: Path, entry: str | None) -> Script | None:

@@ -76,6 +76,12 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "dynamic_reconfigure.client": "dynamic_reconfigure.client",
     "dynamic_reconfigure.encoding": "dynamic_reconfigure.encoding",
     "dynamic_reconfigure.server": "dynamic_reconfigure.server",
+    "diagnostic_updater": "diagnostic_updater",
+    "laser_geometry": "laser_geometry",
+    "laser_geometry.laser_geometry": "laser_geometry",
+    "tf2_sensor_msgs": "tf2_sensor_msgs",
+    "tf2_sensor_msgs.tf2_sensor_msgs": "tf2_sensor_msgs",
+    "angles": "angles",
     "ament_index_python": "packages",
     "ament_index_python.packages": "packages",
     "rospkg": "packages",
@@ -140,8 +146,9 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
 TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
-            "interactive_markers", "rosidl_runtime_py")  # fmt: skip
-MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
+            "interactive_markers", "rosidl_runtime_py", "diagnostic_updater", "laser_geometry",
+            "tf2_sensor_msgs")  # fmt: skip
+MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 STANDALONE = (
     "cv_bridge",
@@ -149,4 +156,5 @@ STANDALONE = (
     "rospkg",
     "ament_index_python",
     "urdf_parser_py",
+    "angles",
 )  # if installed, the real package takes precedence, because it works without a running ROS

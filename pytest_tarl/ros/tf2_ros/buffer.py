@@ -32,6 +32,11 @@ class TransformRegistration:
         """Return the transformation of a type. Raise TypeException if there is none."""
         if key in self._converters:
             return self._converters[key]
+        if key.__name__ == "PointCloud2":
+            transform: Callable[[Any, Any], Any] = import_module(
+                "pytest_tarl.ros.tf2_sensor_msgs"
+            ).do_transform_cloud
+            return transform
         geometry = import_module("pytest_tarl.ros.tf2_geometry_msgs")
         found: Callable[[Any, Any], Any] | None = geometry.TRANSFORMERS.get(key.__name__)
         if found is None:

@@ -1,0 +1,39 @@
+"""ROS's angles: differences of angles on the circle, in radians."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pytest_tarl.ros.missing import refuse
+
+__all__ = ["normalize_angle", "normalize_angle_positive", "shortest_angular_distance", "two_pi_complement"]
+
+_TURN = 2 * math.pi
+
+
+def normalize_angle_positive(angle: float) -> float:
+    """Return the angle between 0 and 2π."""
+    return angle % _TURN
+
+
+def normalize_angle(angle: float) -> float:
+    """Return the angle between −π and π."""
+    positive = angle % _TURN
+    return positive - _TURN if positive > math.pi else positive
+
+
+def shortest_angular_distance(from_angle: float, to_angle: float) -> float:
+    """Return the angle between −π and π that leads from one angle to the other."""
+    return normalize_angle(to_angle - from_angle)
+
+
+def two_pi_complement(angle: float) -> float:
+    """Return the angle that leads to the same place in the other direction."""
+    within = math.fmod(angle, _TURN) if abs(angle) > _TURN else angle
+    return _TURN - abs(within) if within < 0 else abs(within) - _TURN if within > 0 else _TURN
+
+
+def __getattr__(name: str) -> Any:
+    """Raise for a name that the stand-in lacks."""
+    raise refuse("angles", name)

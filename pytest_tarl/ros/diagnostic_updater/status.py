@@ -1,0 +1,65 @@
+"""A DiagnosticStatus with the methods that diagnostic tasks call."""
+
+# ruff: noqa: N802 (names are those of diagnostic_updater)
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from pytest_tarl.ros.messages import class_of
+from pytest_tarl.ros.messages.definitions import Kind
+
+
+def number(level: Any) -> int:
+    """Return a level as a number; ROS 2 has one byte for it."""
+    return level[0] if isinstance(level, bytes) else int(level)
+
+
+class _Filling:
+    """Methods that a status gets in addition to the fields of its message."""
+
+    level: Any
+    message: str
+    values: list[Any]
+    _kind: Kind
+
+    def summary(self, *args: Any) -> None:
+        """Set level and message, or copy them from another status."""
+        if len(args) == 1:
+            self.level, self.message = args[0].level, args[0].message
+        elif len(args) == 2:
+            self.level, self.message = args[0], str(args[1])
+
+    def clearSummary(self) -> None:
+        """Set level OK without a message."""
+        self.set_level(0, "")
+
+    def mergeSummary(self, *args: Any) -> None:
+        """Merge level and message, or those of another status: the higher level, and the messages of equal rank."""
+        level, text = (args[0].level, args[0].message) if len(args) == 1 else args
+        if (number(level) > 0) == (number(self.level) > 0):
+            self.message = f"{self.message}; {text}" if self.message else text
+        elif number(level) > number(self.level):
+            self.message = text
+        if number(level) > number(self.level):
+            self.level = level
+
+    def add(self, key: str, val: object) -> None:
+        """Append a value as text."""
+        pair: Any = class_of(self._kind, "diagnostic_msgs/KeyValue")
+        self.values.append(pair(key=key, value=str(val)))
+
+    def set_level(self, level: int, text: str) -> None:
+        """Set level and message; the level is a number in both generations."""
+        self.summary(level if self._kind == "ros1" else bytes([level]), text)
+
+
+def wrapper_of(kind: Kind) -> Any:
+    """Return `DiagnosticStatusWrapper`, a subclass of the generation's DiagnosticStatus."""
+    return _wrapper(kind, class_of(kind, "diagnostic_msgs/DiagnosticStatus"))
+
+
+@lru_cache(maxsize=8)
+def _wrapper(kind: Kind, message: type[Any]) -> type[Any]:
+    return type("DiagnosticStatusWrapper", (_Filling, message), {"_kind": kind})
