@@ -5,6 +5,7 @@ The packages under test and their tests are imported in each run, never before. 
 
 from __future__ import annotations
 
+import argparse
 import gc
 import json
 import os
@@ -106,8 +107,11 @@ def warm(
 
 def main() -> None:
     """Read requests from standard input until it ends: arguments as JSON, limit in seconds, file for the output."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("libraries", nargs="*", help="modules to import beforehand")
+    libraries = parser.parse_args().libraries
     sys.path[0] = ""  # as `python -m pytest` does
-    for name in sys.argv[1:]:
+    for name in libraries:
         with suppress(ImportError):
             import_module(name)
     gc.freeze()
