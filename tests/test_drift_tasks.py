@@ -24,6 +24,7 @@ JUDGING = (
     "drift_judging_7",
     "drift_judging_8",
     "drift_judging_9",
+    "drift_judging_10",
     "drift_structure",
 )
 TASKS = sorted(
@@ -173,6 +174,17 @@ KINDS = {  # kinds of defects in the tasks of each set
         "structure",
         "two constants",
     ],
+    "drift_judging_10": [
+        "helper",
+        "narrow window",
+        "one constant",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "two constants",
+    ],
 }
 
 
@@ -220,6 +232,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_7",
         "drift_judging_8",
         "drift_judging_9",
+        "drift_judging_10",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
