@@ -1,1 +1,1 @@
-"""Search for a mutation and its guard, and test whether the repair holds."""
+"""Search for a mutation and its guard, and run the acceptance test of the repair."""

@@ -1,14 +1,15 @@
-"""Test whether a repair holds: one group-sequential test per candidate, on seeds that the search never used.
+"""Acceptance test of a repair: one group-sequential test per candidate, on seeds that the search never used.
 
-In both the drifted and the designed world the test must show that
+In both the drifted and the designed world, the test must show that
 
-- the mean total reward is at most the margin δ below the unrepaired program's mean in the designed world, and
-- the failure rate is at most five percentage points higher than there.
+- the repaired program's mean total reward is at most the margin δ below that of the unrepaired program in the designed
+  world, and
+- its failure rate is at most five percentage points higher than the recorded one.
 
 The loss of one mission is capped at the reward of a designed mission, because failures are counted separately. Each
 mission is paired with the unrepaired program's mission of the same seed in the designed world. The means are tested by
-betting (learning/betting.py). The size of the bets is chosen on separate seeds before the test. Episodes on these first
-seeds can refuse the candidate but not accept it.
+betting (learning/betting.py). The size of the bets is chosen before the test, from episodes on separate seeds. These
+episodes can refuse the candidate but not accept it.
 """
 
 from __future__ import annotations
@@ -23,21 +24,20 @@ from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
-SCREEN = 8  # number of episodes before the test, from which the bet is chosen
-EARLY = (8, 16, 32)  # looks (numbers of episodes after which the test is evaluated) that can only refuse
-LOOKS = tuple(range(60, 201, 20))  # looks (see EARLY) that can refuse or accept
+SCREEN = 8  # number of episodes before the test, from which the bet size is chosen
+EARLY = (8, 16, 32)  # early looks: numbers of episodes after which the test can only refuse
+LOOKS = tuple(range(60, 201, 20))  # looks: numbers of episodes after which the test can refuse or accept
 SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
-# share of the risk α spent on the first candidate; each later test spends a third of the risk of the test
-# before it
+# share of the risk α that the first test spends; each later test spends a third of the one before it
 SHARE = 2 / 3
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One episode: total reward, whether the test passed, the verdicts of its formulas, its steps and their rewards."""
+    """The outcome of an episode: total reward, whether the test passed, formula verdicts, steps, rewards by step."""
 
     total: float
     passed: bool
@@ -48,7 +48,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The recorded missions of the designed world, the standard for repairs; `margin` is δ, in reward per episode.
+    """The recorded missions of the designed world, to which repairs are compared; `margin` is δ in reward per episode.
 
     `lowest` and `highest` are the declared bounds of a mission's total reward, in both worlds.
     """
@@ -73,10 +73,10 @@ class Reference:
     def least(self) -> float:
         """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
 
-        The bound is the difference of the worst mission, declared or recorded, but no further than 20 margins below 0.
-        A margin of 5 % of the designed reward makes 20 margins the whole reward of a designed mission. Failures can be
-        clipped because a separate test counts them. Without the clip, one costly failure would hide a small loss from a
-        test of 200 episodes, and correct repairs would be refused.
+        The bound is the lowest difference that the declared limits and the recorded totals allow, but at least -20
+        margins. With a margin of 5 % of the designed reward, 20 margins are the whole reward of a designed mission.
+        Failures can be clipped because a separate test counts them. Without the clip, one costly failure would prevent
+        a test of 200 episodes from showing that the loss is small, and correct repairs would be refused.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
@@ -88,7 +88,7 @@ def unforeseen(wanted: Sequence[object]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """Run a program by seed; `foresee` receives the seeds that follow if the test continues."""
+    """A program in a world, run by seed; `foresee` receives the seeds that come next if the test continues."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -96,7 +96,7 @@ class World:
 
 @dataclass
 class Designed:
-    """The unrepaired program in the designed world; each seed runs once and serves both worlds of a candidate."""
+    """The unrepaired program in the designed world; each seed runs only once and serves both tests of a candidate."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
@@ -134,7 +134,7 @@ class Acceptance:
 
 
 def risk_of(alpha: float, before: int) -> float:
-    """Return the risk of the test after `before` earlier ones; over all tests the risks sum to at most α."""
+    """Return the risk that a test may spend after `before` earlier tests; the risks of all tests sum to at most α."""
     return alpha * SHARE * (1.0 - SHARE) ** before
 
 
@@ -169,8 +169,7 @@ def accept(
 def _ended(
     worlds: Sequence[_World], designed: Designed, reason: Reason, tested: bool, seeds: Sequence[int]
 ) -> Acceptance:
-    # Report all missions of a refused candidate; of an accepted candidate, report only the missions of the
-    # test.
+    # A refused candidate reports all its missions, an accepted one only those of the test.
     seen = [tuple([*world.first, *world.seen] if reason else world.seen) for world in worlds]
     begin = 0 if reason else SCREEN
     used = tuple(seeds[begin : begin + len(seen[0])])
@@ -201,7 +200,7 @@ class _World:
     bet: Bet | None = None
 
     def screened(self, seeds: Sequence[int]) -> Reason:
-        """Run the first seeds, which can only refuse, and choose the bet from them."""
+        """Run the first seeds, which can only refuse the candidate, and choose the bet size from them."""
         self.first = self._run(seeds)
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
@@ -210,7 +209,7 @@ class _World:
         return self._hopeless(self.first, differences, LOOKS[-1])
 
     def tested(self, seeds: Sequence[int]) -> Reason:
-        """Run the test; return the reason for a refusal, "" if accepted."""
+        """Run the test; return the reason to refuse the candidate, or "" if it is accepted."""
         numbers = dict(zip(LOOKS, self._numbers(), strict=True))
         for look in (*EARLY, *LOOKS):
             self.seen += self._run(seeds[len(self.seen) : look])
@@ -222,7 +221,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Return whether this look shows that missions succeed and lose no more than the margin."""
+        """Return whether this look shows that enough missions pass and that they lose no more than the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:
@@ -230,7 +229,7 @@ class _World:
         return self.bet.wealth(differences) >= -log(self.risk)
 
     def _hopeless(self, outcomes: Sequence[Outcome], differences: Sequence[float], left: int) -> Reason:
-        """Return the reason why the test can no longer accept, "" if it can."""
+        """Return the reason why the test can no longer accept the candidate, or "" if it still can."""
         if self._failed(outcomes) > self._numbers()[-1]:
             return self._often
         if self.bet is None or not self.bet.hopeless(differences, left, self.risk):

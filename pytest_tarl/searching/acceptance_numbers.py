@@ -1,9 +1,9 @@
 """Acceptance numbers: for each look, the largest number of failures that still shows a tolerable failure rate.
 
 A look evaluates the test after a fixed number of missions. A single look gives the bound of Clopper and Pearson: 0
-failures in 59 missions show, with 95 % confidence, a rate below 5 %. Several looks share the risk of accepting wrongly.
-The risk of each look is exact: the distribution of the failure count is propagated from look to look, without the
-counts that were already accepted.
+failures in 59 missions show, with 95 % confidence, a failure rate below 5 %. Several looks share the risk of accepting
+wrongly. The risk of each look is exact: the distribution of the failure count is propagated from look to look, without
+the counts that were already accepted.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from math import comb, sqrt
 
 import numpy as np
 
-NEVER = -1  # no number of failures suffices at this look
+NEVER = -1  # the candidate cannot be accepted at this look, even without a failure
 
 
 @lru_cache(maxsize=64)
 def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) -> tuple[int, ...]:
-    """Return the acceptance number of each look, `NEVER` where no number suffices.
+    """Return the acceptance number of each look, or `NEVER` for a look that cannot accept.
 
     A program that fails with probability `tolerated` or more is accepted with probability at most `risk` over all
     looks. After n of N missions, risk × √(n/N) may be spent, so early looks get more than a proportional share.

@@ -26,8 +26,8 @@ from pytest_tarl.searching.search import (
 )
 from tarl_lint.model import Operand
 
-UNMOVED = 0.02  # a factor this close to 1 leaves the constant unchanged
-MOST_IDLE = 200  # consecutive proposals without a new episode, after which the search ends
+UNMOVED = 0.02  # maximum difference of a factor from 1 at which the constant stays unchanged
+MOST_IDLE = 200  # number of consecutive proposals without a new episode after which the search ends
 MOST_AT_ONCE = 1000
 
 
@@ -85,7 +85,7 @@ def factory(name: str, folders: Sequence[Path]) -> Factory:
 
 
 class Asking:
-    """A search by plug-in optimisers, one for each guard, which take turns. Faults of the plug-in raise SearchError."""
+    """A search by plug-in optimisers, one per guard, which take turns. An error of the plug-in raises SearchError."""
 
     def __init__(
         self,
@@ -124,7 +124,7 @@ class Asking:
             turn += 1
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, the gain of its operands in the best confirmed candidate."""
+        """Return, for each site, the best gain of each operand among the confirmed candidates."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for candidate in self._found:
             gain = self.trials.gain(candidate, self.goal.pairs)
@@ -181,7 +181,10 @@ class Asking:
         return Candidate(tuple(mutation for mutation in moved if mutation is not None), guard)
 
     def _gained(self, candidate: Candidate, pair: Pair) -> tuple[float, bool]:
-        """Run a candidate; if it cannot be written into the source, give it the gain of the worst episode."""
+        """Run a candidate; return its gain and whether it reached the goal.
+
+        A candidate that cannot be written into the source gets the total reward of the worst episode.
+        """
         if not candidate.mutations:
             return 0.0, False
         try:

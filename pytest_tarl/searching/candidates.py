@@ -18,7 +18,8 @@ from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
 COVERED = 0.95  # a guard that holds in this share of the drifted steps counts as holding everywhere
-ENTIRELY = 0.999  # share of drifted steps from which on a search under a guard is as good as without it
+# a guard that holds in this share of the drifted steps makes no difference in the drifted world
+ENTIRELY = 0.999
 # bonus in the merit of a guard that never holds in the designed world, as a share of the change
 HARMLESS = 0.25
 CONDITION = 0.1  # cost of a second condition in the merit of a guard, as a share of the change
@@ -54,7 +55,7 @@ class Evidence:
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
-    """Return the guards worth simulating, by number of conditions, then by the share of designed steps under them."""
+    """Return the guards worth simulating, sorted by number of conditions, then by share of designed steps covered."""
     region = evidence.region
     proposals = [
         ALWAYS,
@@ -79,11 +80,11 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
     """Return the guards to search under: `ALWAYS`, and those that hold where much changed and rarely elsewhere.
 
-    A guard's merit is the share of the change under it minus the share of designed steps under it (Youden's J). A guard
-    that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually comes
-    second. It comes first if no guard has much merit, because the drift is everywhere. It also comes first if the best
-    guard holds wherever the drifted robot went. Such a guard says nothing about places that only a repaired robot
-    reaches.
+    A guard's merit is the share of the change where it holds minus the share of designed steps where it holds (Youden's
+    J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually
+    comes second. It comes first if no guard has much merit, because the drift then seems to be everywhere. It also
+    comes first if the best guard holds wherever the drifted robot went. Such a guard says nothing about places that
+    only a repaired robot reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 
@@ -100,7 +101,7 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
     if covered >= ENTIRELY:
         return (
             ALWAYS,
-        )  # drifted episodes cannot tell the guard from `ALWAYS`; acceptance tries the guard, too
+        )  # drifted episodes cannot distinguish the guard from `ALWAYS`; the acceptance test tries the guard, too
     if covered >= COVERED:
         return (ALWAYS, best[0])  # the test in the designed world decides whether the guard is needed
     return (best[0], ALWAYS, *best[1:])
@@ -138,7 +139,7 @@ def _holding(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> NDArray[
 def _within(conjunct: Conjunct, index: int) -> bool:
     low, high = conjunct.sensor.interval(index, index)
     slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
-    if conjunct.low > conjunct.high:  # an angle whose interval crosses the end of the range
+    if conjunct.low > conjunct.high:  # an interval of angles that crosses the end of the range
         return conjunct.low <= low + slack or high - slack <= conjunct.high
     return conjunct.low <= low + slack and high - slack <= conjunct.high
 

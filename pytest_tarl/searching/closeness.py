@@ -1,8 +1,8 @@
-"""Decide which of several repairs fixes the cause: its missions follow the designed ones from start to end.
+"""Decide which of several repairs fixes the cause: the one whose missions follow the designed ones from start to end.
 
-For example, the heating elements of a kiln are weak. A larger constant for the heat loss of the walls keeps a hot kiln
-at its temperature. Only the right constant for the power also makes the kiln heat up as designed. Both repairs earn the
-same total, but at different times.
+For example, the heating elements of a kiln have become weak. A larger constant for the heat loss through the walls
+keeps a hot kiln at its temperature. Only the right constant for the heating power also makes the kiln heat up as
+designed. Both repairs earn the same total, but at different times.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-EXACT = 0.01  # maximum deviation (see `course`) of a mission that counts as going as designed
+EXACT = 0.01  # maximum deviation (see `course`) of a candidate that is not compared with rivals
 CLOSER = 0.6  # a rival is preferred if its deviation is at most this share of the candidate's deviation
-COMPARED = 3  # number of missions on which two candidates that hold are compared
-# exponents for the factor found, because the first factor that holds is often larger than needed
+COMPARED = 3  # number of missions on which two candidates that pass are compared
+# exponents of the factor found: the first factor that passes is often larger than needed
 POWERS = (1.0, 0.7)
-RIVALS = 8  # maximum number of runs of rival constants per candidate
+RIVALS = 8  # maximum number of episodes for rival constants
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield other named constants of the function, with the factor found, its reciprocal, then weaker factors.
+    """Yield the function's other named constants with the reciprocal and the factor found, then with weaker factors.
 
-    The reciprocal is for constants that are divisors. Constants that never changed a mission are left out. So are
+    The reciprocal suits constants that are divisors. Constants that never changed a mission are left out. So are
     constants on another scale than `found`, for which the factor has no meaning.
     """
     at = found.operands[0].site

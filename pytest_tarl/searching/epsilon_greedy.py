@@ -30,8 +30,8 @@ class EpsilonGreedy:
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3  # number of sites to search: the ones ranked first by the slices
-    CONFIRMED = 3  # best mutations to confirm at the end
+    SITES = 3  # number of sites to search: those that the slices rank first
+    CONFIRMED = 3  # number of best mutations to confirm at the end
     EPISODES = 200
 
     @classmethod
@@ -76,7 +76,7 @@ class EpsilonGreedy:
                 yield candidate
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, for each site, each operand's best mean gain over the mean of the drifted world."""
+        """Return, for each site, each operand's best mean gain over the mean reward of the drifted world."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for action, totals in self.seen.items():
             if action in self.refused:

@@ -17,13 +17,13 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confir
 from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # maximum number of parts in a combined repair
-PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
-# number of further units to combine with the first unit, because a useful unit may gain little alone
+PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of the wanted gain
+# number of further units to combine with the first one, because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly
-CLIMB = 4  # maximum number of times that a fixed parameter is moved by such a factor
-STRONG = 5.0  # factor for parts that have no effect alone
+CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
+CLIMB = 4  # maximum number of such multiplications
+STRONG = 5.0  # factor for units that have no effect alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Settled:
     polished: set[frozenset[Unit]] = field(default_factory=set)  # combinations whose factors were adjusted
 
     def holds(self, candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-        """Confirm a candidate on further seeds; return False if it was tried before."""
+        """Return whether further seeds confirm a candidate; False if it was tried before."""
         if candidate in self.tried:
             return False
         self.tried.add(candidate)
@@ -90,7 +90,7 @@ class ForwardSelection:
         self.settled = settled or Settled()
 
     def candidates(self, base: Joint) -> Iterator[Candidate]:
-        """Yield combined candidates that hold on every seed they ran on."""
+        """Yield confirmed combinations, starting with `base`."""
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
             return  # the combination to start from reaches the goal on this seed, so no further part can show a gain
@@ -109,7 +109,7 @@ class ForwardSelection:
     def unions(
         self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
     ) -> Iterator[Candidate]:
-        """Combine the first part with each of the next, add a third to the best pair, and balance the best result.
+        """Combine the first part with each of the next ones, add a third to the best pair, and balance the best result.
 
         `hidden` are the units that never changed a reward alone.
         """
@@ -136,7 +136,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units that had no effect alone to a good pair; alone, missions may have ended before they mattered."""
+        """Add units that had no effect alone to a good pair: alone, a mission may have ended before they mattered."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():
@@ -158,7 +158,7 @@ class ForwardSelection:
         self.trials.expect((joint.candidate(self.mutate), seed) for joint in joints)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
-        """Run a combination once and return its gain, None if it cannot run; yield it if it holds."""
+        """Run a combination once and return its gain, or None if it cannot run; yield it if it is confirmed."""
         candidate = joint.candidate(self.mutate)
         try:
             near = self._reached(candidate)
@@ -182,7 +182,7 @@ class ForwardSelection:
                 return
 
     def fewest(self, joint: Joint) -> Iterator[Candidate]:
-        """Yield a combination that holds, without unneeded parts, if at most `MOST` parts remain."""
+        """Drop unneeded parts; yield the result if it has at most `MOST` parts and is confirmed."""
         try:
             fewer = self._least(joint) if self._reached(joint.candidate(self.mutate)) else joint
             candidate = fewer.candidate(self.mutate)
@@ -192,7 +192,7 @@ class ForwardSelection:
             return
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before."""
+        """Drop unneeded parts and yield the result if it is confirmed and new; otherwise adjust the factors."""
         least = self._least(joint)
         fewer = least.candidate(self.mutate)
         if fewer in self.settled.held:
@@ -205,7 +205,7 @@ class ForwardSelection:
         yield from self._polished(least)
 
     def _polished(self, joint: Joint) -> Iterator[Candidate]:
-        """Adjust the factors of a combination that passed its missions but earned a little too little."""
+        """Adjust the factors of a combination that passed its missions but earned slightly too little."""
         units = frozenset(unit for unit, _ in joint.parts)
         candidate, pairs = joint.candidate(self.mutate), self.goal.pairs
         ran = self.trials.ran(candidate, pairs)

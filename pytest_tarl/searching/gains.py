@@ -15,7 +15,7 @@ Part = tuple[Unit, float]  # a unit with a factor
 class Gains:
     """Gains in total reward over the unmutated runs of the same seeds.
 
-    Gains of at most `slack` are treated as noise. With `proposed`, the factor 1 counts as a change.
+    Gains of at most `slack` are treated as noise. If `proposed` is true, a factor of 1 counts as a change.
     """
 
     def __init__(self, slack: float, proposed: bool = False) -> None:
@@ -71,8 +71,7 @@ class Gains:
         """Return the units, except those that use the same constant as an earlier unit and have the same effect.
 
         For example, a constant that is passed to a function is used both in the call and in the function. Two units
-        count as such if they share a definition, and if all factors that were tried on both, at least two, had equal
-        gains.
+        count as equal if they share a definition and if at least two factors were tried on both, all with equal gains.
         """
         kept: list[Unit] = []
         for unit in among:
@@ -98,8 +97,8 @@ class Gains:
     def lost_both_ways(self, guard: Guard, among: Sequence[Unit], factors: Sequence[float]) -> list[Unit]:
         """Return the units that lost more than `slack` with each of these factors.
 
-        A mission that already earns the least possible reward cannot lose more. In that case, a changed episode without
-        a gain counts as a loss.
+        A mission that already earns the least possible reward cannot lose more. Therefore an episode that changed but
+        earned the same also counts as a loss.
         """
         tried = {unit: self.of(unit, guard) for unit in among}
 

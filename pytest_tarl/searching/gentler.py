@@ -1,4 +1,4 @@
-"""Decide whether to try gentler repairs before one that holds, and which constants these may change.
+"""Decide whether a repair that passes calls for milder alternatives, and which constants these may change.
 
 For example, a rope camera with wet brake pads overshoots its mark. A very low speed avoids that, and so does a wrong
 value for gravity. A maintainer would instead correct the friction of the pads, so that the mission goes as designed.
@@ -18,7 +18,8 @@ from tarl_lint.model import SiteId
 
 COARSE = (1.5, 0.65)
 FINE = (*COARSE, 1.22, 0.82, 1.35, 0.73)
-LONGER = 1.3  # a mission that is longer or shorter than designed by this ratio takes another course
+# maximum ratio of the repaired to the designed mission length, or the reverse, at which a repair needs no alternative
+LONGER = 1.3
 
 
 def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
@@ -35,9 +36,9 @@ def another_way(candidate: Candidate, trials: Trials, goal: Goal) -> bool:
 def gentler(
     found: Unit, units: Sequence[Unit], gains: Gains, guard: Guard, promising: float
 ) -> list[tuple[Unit, Sequence[float]]]:
-    """Return the named constants to try in place of `found`, each with its steps, best statement first.
+    """Return the named constants to try in place of `found`, each with its factors, best statement first.
 
-    The steps are smaller if another constant of the same statement gained at least `promising`. Constants that were
+    Smaller steps are added if a constant of the same statement gained at least `promising`. Constants that were
     increased and decreased without any effect are left out.
     """
     tried = gains.under(guard)

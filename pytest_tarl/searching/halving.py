@@ -16,8 +16,8 @@ from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trial
 from pytest_tarl.searching.units import units
 from tarl_lint.model import Operand
 
-ROUNDS = (1, 2, 4, 8)  # seeds per arm after each round
-REFINED = 3  # arms to refine between two rounds
+ROUNDS = (1, 2, 4, 8)  # number of seeds per arm after each round
+REFINED = 3  # number of arms to refine between two rounds
 SLACK = 0.1  # minimum gain that counts, as a share of the loss
 
 
@@ -40,7 +40,7 @@ class Halving:
         self._confirmed: set[Candidate] = set()
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield candidates that hold on every seed they ran on, round by round."""
+        """Yield confirmed candidates, round by round."""
         for guard in self.guards:
             arms = [Arm(unit, factor, guard) for factor in FACTORS for unit in self.units]
             for seeds in ROUNDS:

@@ -1,10 +1,10 @@
 """Search a few constants jointly: Bayesian optimisation over the logarithms of their steps.
 
-A step of a constant is its factor. If two constants have to grow together, a step in one of them alone loses reward. A
-Gaussian process fits all joint trials of a seed. Proposals change one to three constants of a good point (Regis &
+A step multiplies a constant by a factor. If two constants have to grow together, a step in one of them alone loses
+reward. A Gaussian process is fitted to all trials. Proposals change one to three constants of a good point (Regis &
 Shoemaker 2013). The proposal with the largest expected improvement runs next (Jones, Schonlau & Welch 1998). The value
-of a trial combines its reward with the deviation of its missions from the designed ones. The deviation counts because a
-mission that fails late is closer to the goal than one that fails at once, even with the same reward.
+of a trial combines its reward with the deviation of its missions from the designed ones. The deviation matters because
+a mission that fails late is closer to the goal than one that fails at once, even with the same reward.
 """
 
 from __future__ import annotations
@@ -31,20 +31,21 @@ DIMENSIONS = 8  # maximum number of constants to move
 LEAST = 2  # minimum number of constants to move
 EPISODES = 50  # maximum number of trials
 PATIENCE = 25  # maximum number of consecutive trials without an improvement
-FARTHEST = 3.0  # largest |log step|, a factor of 20
+FARTHEST = 3.0  # maximum |log(step)|; a step of e³ is a factor of 20
 CHANGED = 3  # maximum number of constants in which a trial differs from the point where it starts
-SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the changes of a log step
+SPREADS = (0.1, 0.3, 0.8)  # standard deviations of the random changes of a log step
 PROPOSALS = 400  # random proposals per trial; the one with the largest expected improvement runs
 STARTS = 4  # number of best points to start from
-ASUNDER = 0.2  # two points to start from must differ by at least this much in some log step
-HIDDEN = 2  # maximum number of hidden constants: they are moved although they hardly changed the reward alone
+ASUNDER = 0.2  # minimum difference, in at least one log step, between two points to start from
+# maximum number of hidden constants, which are moved although alone they hardly changed the reward
+HIDDEN = 2
 SELDOM = 0.25  # how often hidden constants are moved, relative to the other constants
-LENGTHS = (0.4, 1.0, 2.5, 8.0)  # length scales of a constant to choose from, in units of its log step
+LENGTHS = (0.4, 1.0, 2.5, 8.0)  # possible length scales of a constant, in units of its log step
 REFITTED = 4  # number of trials between two fits of the length scales
-NOISES = (0.05, 0.2)  # noise of a trial, as a share of the standard deviation of all trials
-WORST = 2.0  # larger deviations from the designed mission are clipped to this
-REFUSED = 0.5  # subtracted from the value of a point that is good on this seed but was refused on others
-SMALL = 0.02  # smaller changes of a log step are set to 0
+NOISES = (0.05, 0.2)  # possible noise levels of a trial, as a share of the standard deviation of all trials
+WORST = 2.0  # maximum deviation from the designed mission; larger deviations are clipped
+REFUSED = 0.5  # penalty on the value of a point that is good on this seed but was refused on others
+SMALL = 0.02  # minimum |log(step)|; smaller ones are set to 0
 
 
 @dataclass
@@ -141,7 +142,7 @@ class Jointly:
         self._lengths: Floats | None = None
 
     def candidates(self, starts: Sequence[Joint], guard: Guard) -> Iterator[Candidate]:
-        """Yield combinations that hold. Raise BudgetSpentError."""
+        """Yield confirmed combinations. Raise BudgetSpentError."""
         begun, since, best = self.trials.spent, 0, -float("inf")
         waiting = [(0.0,) * len(self.units), *(self._point(start) for start in starts)]
         while self.trials.spent - begun < EPISODES and since < PATIENCE:
@@ -167,8 +168,8 @@ class Jointly:
     def _value(self, joint: Joint, best: float) -> Generator[Candidate, None, float | None]:
         """Run a combination; return its share of the wanted gain minus the deviation of its missions.
 
-        A combination that would be the best so far also runs on a second seed, because one seed may be luck. The mean
-        is then returned.
+        A combination that would be the best so far also runs on a second seed, because its result on one seed may be
+        luck. Its gain is then the mean of both.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:
@@ -221,8 +222,8 @@ def _best_apart(points: Floats, values: Floats) -> Floats:
 def sensitive(among: Sequence[Unit], gains: Gains, guard: Guard) -> tuple[list[Unit], int]:
     """Return the units to move jointly, and the number of hidden ones (see HIDDEN), which come last.
 
-    Each constant moves on the scale on which it gained most. Named constants come first, then the other constants by
-    how much they changed the reward. Booleans, zeros and constants of nature are left out.
+    Each constant moves on the scale on which it gained most. Named constants come first. Among constants of the same
+    kind, those that changed the reward more come first. Booleans, zeros and constants of nature are left out.
     """
     best: dict[tuple[Operand, ...], tuple[float, Unit]] = {}
     for unit in among:

@@ -11,13 +11,14 @@ from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-UNTRIED = 2  # named constants to try before a changed literal is accepted
-GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)  # m/s², as programs write it
+UNTRIED = 2  # maximum number of untried named constants to try in place of a changed literal
+# values of the acceleration of gravity in programs, in m/s²
+GRAVITY = (9.8, 9.81, 9.82, 9.807, 9.8066, 9.80665)
 ROUNDED = 6e-4  # relative error of 3.14 as a value of π, rounded up
 
 
 class Oddness(IntEnum):
-    """How unusual a change reads, from the plainest to the oddest.
+    """How unusual a change looks to a maintainer, from the least to the most unusual.
 
     `NAMED` scales a named constant, `INNER` a literal. `VARIABLE` scales a name that stands for several constants, so
     the repair writes a new factor next to it. `OFFSET` adds a number or flips a sign. `NATURE` changes a constant of
@@ -43,12 +44,11 @@ def plainer(
     promising: float,
     beside: Unit | None = None,
 ) -> list[Unit]:
-    """Return the units whose change reads plainer than that of the candidate found, best gain first.
+    """Return the units whose change would be less unusual than the candidate's, best gain first.
 
-    Units that gain at least `promising` come first. Untried units follow, plainest first. Of equally plain ones, those
-    in the statement of `beside` come first: in a product, a named constant has the effect of the literal next to it. If
-    the candidate scales a variable or is an offset, all untried units follow. If it changes a literal, only `UNTRIED`
-    named constants follow.
+    Units that gain at least `promising` come first. Untried units follow, the least unusual first. Of equally unusual
+    ones, those in the statement of `beside` come first: in a product, a named constant has the same effect as the
+    literal next to it. If the candidate changes a literal, only `UNTRIED` untried units follow.
     """
     read = [unit for unit in units if kind(unit) < odd]
     gaining = [unit for unit in read if unit in gains and max(gains[unit].values()) >= promising]
@@ -80,7 +80,7 @@ def writing(operand: Operand) -> Oddness:
 
 
 def edges(guard: Guard) -> tuple[str, ...]:
-    """Return the sensors with a threshold in this guard, at which the repair sets in abruptly."""
+    """Return the sensors with a threshold in this guard; the repair switches on abruptly at a threshold."""
     return tuple(
         one.sensor.name
         for one in guard.conjuncts
@@ -89,7 +89,7 @@ def edges(guard: Guard) -> tuple[str, ...]:
 
 
 def of_nature(operand: Operand) -> bool:
-    """Return whether an operand is the acceleration of gravity, π or 2 π, which its author did not choose."""
+    """Return whether an operand is a constant of nature: the acceleration of gravity, π or 2 π."""
     if operand.value is None or isinstance(operand.value, bool):
         return False
     value = abs(operand.value)

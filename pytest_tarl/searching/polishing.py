@@ -1,7 +1,7 @@
-"""Adjust the factors of a combination that earns nearly enough on every seed it ran on.
+"""Adjust the factors of a combination that passes its missions but earns slightly too little.
 
-A joint search tells good regions from bad ones on one seed, in large steps. The best point of a region often passes all
-missions and earns a few percent too little. Its neighbours are then better than any point elsewhere.
+A joint search uses large steps and usually one seed, so it finds only the good regions. The best point of a region
+often passes all missions but earns a few percent too little. Its neighbours are then better than any point elsewhere.
 """
 
 from __future__ import annotations
@@ -9,22 +9,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from statistics import fmean
 
-ALMOST = 0.9  # share of the wanted gain from which a combination is adjusted ...
-KNOWN = 3  # ... if it ran on at least this many seeds
-SEEDS = 3  # seeds on which factors are compared
-STEPS = (1.2, 1.08)  # ratios by which a factor moves either way, the second when the first helps no more
-EPISODES = 36  # episodes after which no further factor is tried
-BEHIND = 0.05  # share of the wanted gain by which a first seed may fall behind before the others run
+ALMOST = 0.9  # minimum gain of a combination to adjust, as a share of the wanted gain
+KNOWN = 3  # minimum number of seeds on which a combination to adjust has run
+SEEDS = 3  # number of seeds on which factors are compared
+# ratios by which a factor is moved up or down; the second follows when the first no longer helps
+STEPS = (1.2, 1.08)
+EPISODES = 36  # number of episodes after which no further factor is tried
+BEHIND = 0.05  # maximum shortfall on the first seeds, as a share of the wanted gain; beyond it, no further seed runs
 
 Factors = tuple[float, ...]
 Earned = Callable[[Factors, int], float | None]
 
 
 def polished(begin: Factors, earned: Earned, seeds: Sequence[int], wanted: float) -> Factors:
-    """Return the factors with the highest mean total found by coordinate ascent, and `begin` if none is better.
+    """Return the factors with the highest mean total found by coordinate ascent, or `begin` if none is better.
 
-    `earned` returns the total of an episode by factors and seed, None if its mission failed. `wanted` is the gain that
-    a repair must bring.
+    `earned` takes factors and a seed and returns the total reward of the episode, or None if its mission failed.
+    `wanted` is the gain that a repair must bring.
     """
     search = _Ascent(earned, seeds[:SEEDS], BEHIND * wanted)
     first = search.mean(begin, -float("inf"))
@@ -63,7 +64,7 @@ class _Ascent:
         return best, most
 
     def mean(self, factors: Factors, most: float) -> float | None:
-        """Return the mean total; None if a mission fails, or if the first seeds are clearly behind `most`."""
+        """Return the mean total, or None if a mission fails or the first seeds earn clearly less than `most`."""
         if factors not in self._means:
             self._means[factors] = self._run(factors, most)
         return self._means[factors]

@@ -13,10 +13,10 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
 from pytest_tarl.searching.units import Unit
 
-# confidence of an approximate interval that decides what to run next, not whether a repair holds
+# confidence of the approximate interval that decides which arms run next, not which repair is accepted
 CONFIDENCE = 0.95
-LEAST = 3  # minimum number of common seeds for calling one arm behind another
-FINEST = 1.1  # stop refining between two factors when their ratio is below this
+LEAST = 3  # minimum number of common seeds for judging one arm significantly worse than another
+FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 
 Gains = Mapping[int, float]  # seed → gain over the unmutated run of that seed
 
@@ -30,7 +30,7 @@ class Arm:
     guard: Guard
 
     def candidate(self, mutate: Mutate) -> Candidate | None:
-        """Return the arm as a candidate, None if the factor changes nothing."""
+        """Return the arm as a candidate, or None if the factor changes nothing."""
         mutations = self.unit.mutations(mutate, self.factor)
         return Candidate(mutations, self.guard) if mutations else None
 
@@ -60,7 +60,7 @@ class Race:
                 self.gains.setdefault(arm, {})[pair.seed] = total - pair.total
 
     def gain(self, arm: Arm) -> float:
-        """Return the mean gain of an arm, 0 if it has not run."""
+        """Return the mean gain of an arm, or 0 if it has not run."""
         return fmean(self.gains[arm].values()) if arm in self.gains else 0.0
 
     def ranked(self, arms: Iterable[Arm]) -> list[Arm]:
@@ -70,7 +70,7 @@ class Race:
         )
 
     def abreast(self, arms: Iterable[Arm]) -> list[Arm]:
-        """Return the ranked arms except those that are significantly behind the first."""
+        """Return the arms, best gain first, without those that gain significantly less than the first."""
         ranked = self.ranked(arms)
         return [arm for arm in ranked if not behind(self.gains[arm], self.gains[ranked[0]])]
 
@@ -90,13 +90,13 @@ class Race:
 
 
 def behind(gains: Gains, leader: Gains) -> bool:
-    """Return whether one arm gains significantly less than the leader on their common seeds."""
+    """Return whether an arm gains significantly less than the leader on their common seeds."""
     differences = paired(leader, gains)
     return len(differences) >= LEAST and ahead_by(differences)[0] > 0.0
 
 
 def ahead_by(differences: Sequence[float]) -> tuple[float, float]:
-    """Return the approximate interval, at `CONFIDENCE`, of the mean of these differences."""
+    """Return an approximate confidence interval (`CONFIDENCE`) for the mean of `differences`."""
     found = mean_of(differences, (1.0 + CONFIDENCE) / 2)
     return found.low, found.high
 

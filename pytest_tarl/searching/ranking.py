@@ -1,6 +1,6 @@
 """The full ranking: the possible gain at every site (statement with constants), and the certainty of the order.
 
-Every operand runs once with every factor; the best factors of each site are refined, and then the sites race on common
+Every operand runs once with every factor. Then the best factors of each site are refined, and the sites race on common
 seeds.
 """
 
@@ -18,8 +18,8 @@ from pytest_tarl.searching.units import NEAR, units
 from tarl_lint.model import Operand, SiteId
 
 FLIP = -1.0
-OF_A_SITE = 2  # arms per site in the first race
-SEEDS = 8  # common seeds of the final race
+OF_A_SITE = 2  # number of arms per site in the first race
+SEEDS = 8  # number of common seeds of the final race
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Certainty:
     """How certain it is that the first site is ahead of all others.
 
     `by` is an approximate confidence interval for the lead in gain over the second site, on `seeds` common seeds; `by`
-    is None if there are too few seeds. `level` is the number of other sites that cannot be distinguished from the
+    is None if there are too few of them. `level` is the number of other sites that cannot be distinguished from the
     first, `ahead` the number of sites that gain significantly more. `gaining` is the number of sites that gain at all.
     """
 
@@ -65,7 +65,7 @@ class Ranking:
         return arm_effects(self.race)
 
     def certainty(self, first: str) -> Certainty | None:
-        """Return how certain it is that the site with this id leads, None if the site has not run."""
+        """Return how certain it is that the site with this id leads, or None if the site has not run."""
         arms = {str(site): arm for site, arm in self._best().items()}
         if first not in arms:
             return None
@@ -90,7 +90,7 @@ class Ranking:
         )
 
     def _sweep(self) -> None:
-        """Run every operand with every factor on the first seed; only the near factors if the reward never changes."""
+        """Run all factors of all operands on the first seed, but only the near ones if they never change the reward."""
         for at, factor in enumerate((*FACTORS, FLIP)):
             moving = self.units if at < len(NEAR) else [unit for unit in self.units if self._moves(unit)]
             self.race.run([Arm(unit, factor, self.guard) for unit in moving], 1)

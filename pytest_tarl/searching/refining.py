@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import sqrt
 
-OUTWARD = 2.3  # if the outermost factor is the best, the next one is larger (or smaller) by this ratio
-FINEST = 1.1  # stop refining between two factors when their ratio is below this
-ALMOST = 0.9  # a factor that gains this share of the loss is refined down to the ratio `NARROWEST`
+# ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
+OUTWARD = 2.3
+FINEST = 1.1  # ratio of two factors below which no factor between them is tried
+# minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
+ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# a factor that gains this share of the loss at a sharp peak (SHARP) is also refined to `NARROWEST`
+# the same at a sharp peak (see SHARP)
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
 

@@ -16,9 +16,9 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-MANY = 40  # more units than this are screened; up to this number the sweep alone is shorter
-BLOCK = 20  # units per sweep after a screening
-AT_ONCE = 4  # units mutated per run
+MANY = 40  # maximum number of units for which the sweep alone is shorter than screening and sweep
+BLOCK = 20  # number of units per sweep after a screening
+AT_ONCE = 4  # number of units mutated per run
 RUNS = 6.0  # number of runs, as a multiple of the square root of the number of units
 RIDGE = 1.0
 
@@ -26,7 +26,7 @@ RIDGE = 1.0
 def screened(
     together: ForwardSelection, guard: Guard, generator: np.random.Generator
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
-    """Yield candidates that happen to hold during the screening; return all units, best main effect first."""
+    """Yield candidates that happen to be confirmed during the screening; return all units, best main effect first."""
     units = together.units
     drawn = [_drawn(units, generator) for _ in range(ceil(RUNS * sqrt(len(units))))]
     joints = [Joint(tuple((units[i], NEAR[turn]) for i, turn in one), guard) for one in drawn]

@@ -1,6 +1,6 @@
 """The parts that all searches share: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
-A mission is one episode of the test. A candidate holds on a seed if its mission there earns about as much as designed.
+A mission is one episode of the test. A candidate passes on a seed if its mission there earns about as much as designed.
 A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
 """
 
@@ -21,11 +21,11 @@ from tarl_lint.model import Operand
 Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode to run: its candidate and seed
 
-# factors on a constant, in the order in which they are tried
+# factors for a constant, in the order in which they are tried
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
 CONFIRMATIONS = 5  # number of further seeds on which a promising candidate must also earn enough
-HARD = 2  # maximum number of seeds for confirmation that are chosen because other candidates failed there
-FAR = 0.6  # a candidate that gains this share of the wanted gain makes the reserve of episodes available
+HARD = 2  # maximum number of confirmation seeds that are chosen because other candidates failed on them
+FAR = 0.6  # minimum gain of a candidate that releases the reserve of episodes, as a share of the wanted gain
 PAIRED = 2  # minimum number of common seeds for comparing two candidates
 
 
@@ -56,12 +56,12 @@ class Goal:
     """The target of a search.
 
     - `pairs`: episodes of the unrepaired program that lost reward in the drifted world.
-    - `near`: the total reward from which a candidate is worth confirming.
-    - `enough`: the mean total reward that confirms a candidate.
+    - `near`: the minimum total reward of a candidate that is worth confirming.
+    - `enough`: the minimum mean total reward that confirms a candidate.
     - `online`: the mean total reward of all drifted episodes, including those without loss.
-    - `passing`: whether a failed mission never counts as near, because ending early can earn more than carrying on.
+    - `passing`: whether a failed mission never counts as near, because ending early can earn more than continuing.
     - `harder`: seed → the mean designed reward minus the designed reward of that seed, where known.
-    - `tolerated`: seed → the further loss allowed on this seed, because few missions lose.
+    - `tolerated`: seed → the additional loss allowed on this seed if only few missions lose reward.
     - `controls`: drifted episodes without loss.
     """
 
@@ -73,7 +73,8 @@ class Goal:
     harder: Mapping[int, float] = field(default_factory=dict)
     tolerated: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
-    ranged: bool = False  # the drift's size varies by episode, so a mission may fail because of its size
+    # the drift's size varies by episode, so a mission may fail only because the drift is large
+    ranged: bool = False
     steps: float | None = None  # mean length of a designed mission, if known
 
     @property
@@ -154,7 +155,7 @@ class Trials:
         self.foresee([one for one in wanted if one not in self._known][:left])
 
     def deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
-        """Return the mean deviation of a candidate's missions from the designed ones (see `course`), 0 if unknown.
+        """Return the mean deviation of a candidate's missions from the designed ones (see `course`), or 0 if unknown.
 
         Each designed mission that runs is charged to the budget once. Raise BudgetSpentError and RepairError.
         """
@@ -222,8 +223,8 @@ class Trials:
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
         """Return whether a candidate will probably earn too little, judging by earlier candidates that did.
 
-        The estimate uses an earlier candidate as a control variate: its mean total, plus the mean difference between
-        the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
+        The estimate uses an earlier candidate as a control variate: the earlier candidate's mean total, plus the mean
+        difference between the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
         """
         totals = self._totals(candidate, pairs)
         for other in self._short:
@@ -270,7 +271,7 @@ def label(candidate: Candidate) -> str:
 
 
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-    """Return whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
+    """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
     The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
     that rejected candidates lost in their acceptance tests. It is also rejected at the first failed mission, if

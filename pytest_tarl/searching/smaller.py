@@ -1,9 +1,9 @@
 """Decide which constants to change a little before one that has to change a lot.
 
-For example, the moisture probe of a dryer reads too low in the frost, so that the grain leaves too moist. A limit of
-the hot air that is twice as high restores the reward, and so does a target that is a sixth lower. A miscalibrated
-constant is more often wrong by a sixth than by a factor of two, and a change that is much larger than necessary is
-likely to do harm in a world that the test does not contain.
+For example, the moisture probe of a dryer reads too low in frost, so that the grain leaves too moist. Doubling the
+limit of the hot air restores the reward, and so does lowering the target by a sixth. A miscalibrated constant is more
+often wrong by a sixth than by a factor of two, and an unnecessarily large change is likely to do harm in a world that
+the test does not contain.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-STEPS = (0.82, 1.22)  # both are tried on each constant
-LESS = 0.5  # a change is small if its logarithm is at most this share of the other's
-EPISODES = 12  # episodes after which no further constant is tried
-EARLY = 0.5  # share of the budget; a repair found later is not compared
-WORSE = 0.02  # deviation from the designed missions by which a smaller change may exceed a larger one
+STEPS = (0.82, 1.22)  # factors to try on each constant
+LESS = 0.5  # maximum size of a small change (see `size`), as a share of the size of the change found
+EPISODES = 12  # number of episodes after which no further constant is tried
+EARLY = 0.5  # share of the budget after which a repair is no longer compared
+WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
 def size(unit: Unit, factor: float) -> float:
@@ -35,7 +35,7 @@ def size(unit: Unit, factor: float) -> float:
 def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
     """Return other named constants with small steps, the best gain so far first, then those not tried yet.
 
-    Constants that never changed a mission are left out, and steps of more than `LESS` of the size of the change found.
+    Constants that never changed a mission are left out, and so are steps larger than `LESS` times the change found.
     """
     most, tried = LESS * size(found, factor), gains.under(guard)
     others = [

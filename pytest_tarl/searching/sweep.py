@@ -1,8 +1,8 @@
 """Sweep and confirm, the default search: try one factor on all operands, then the next factor.
 
 Each run is paired with the unmutated run of the same seed. A candidate that earns nearly the designed reward is tried
-on further seeds. Results steer the search: larger steps are tried only on operands whose smaller step did not lose,
-those with the best gain first. If no single operand suffices, the search combines those that gained.
+on further seeds. Results steer the search: larger steps are tried only on operands whose smaller step did not clearly
+reduce the reward, best gain first. If no single operand suffices, the search combines those that gained.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tarl_lint.model import Operand
 if TYPE_CHECKING:
     import numpy as np
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
@@ -47,20 +47,20 @@ LAST = (10.0, 0.05)
 FLIPPED = 3
 REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 REFINED = 8  # maximum number of runs that refine one operand
-# number of refinements of each constant whose change reads plainer than the candidate found
+# number of refinements of each constant whose change a maintainer would prefer to the candidate found
 PLAINER_ROUNDS = 2
-PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
-SLACK = 0.1  # a smaller step may lose this share of the loss to repair before larger steps are skipped
+PLAINER = 12  # maximum number of runs for all such constants
+SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 
 
 class Sweep:
     """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
-    The first two guards are used throughout, the others only at the end. With `proposed`, the operands are parameters
-    of a change that the program does not contain yet. They are first tried with their own values. If the change has no
-    effect, factors that make it `weaker` are skipped. Only parameters of the same change are combined. The last steps
-    of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of these steps
-    are tried, on named constants.
+    If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
+    only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
+    yet. They are first tried with their own values. If the change has no effect, factors that make it `weaker` are
+    skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on every operand. If
+    a search for structural changes follows, only the nearest of these steps are tried, on named constants.
     """
 
     def __init__(
@@ -100,13 +100,13 @@ class Sweep:
         self._compared = (
             False  # whether rival constants were already compared by the course of their missions
         )
-        self._reduced = False  # whether smaller changes of other constants were tried
-        self._replaced: set[Unit] = set()  # units for which gentler ones were already tried
+        self._reduced = False  # whether smaller changes of other constants were already tried
+        self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield candidates that hold on every seed they ran on."""
+        """Yield confirmed candidates."""
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
@@ -149,7 +149,7 @@ class Sweep:
         return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
 
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
-        """Increase and decrease each unit, then try smaller steps if both lost, and combine the best units.
+        """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
 
         Until a gain exceeds the slack, the `LEADING` best units get larger steps at once.
         """
@@ -207,7 +207,7 @@ class Sweep:
             yield from self._all(factor, guard, still)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps on operands that change the reward and were not refined: few of their values may be good.
+        """Try small steps on operands that change the reward and were not refined: only a few values may be good.
 
         If no step gains, try the steps between these on named constants.
         """
@@ -285,14 +285,14 @@ class Sweep:
                     yield from self._closer(other, guard, before, pair)
 
     def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """If a candidate changes a function's return value, try to change only as few of its calls as suffice."""
+        """If a candidate changes a function's return value, instead change as few calls of the function as suffice."""
         calls = calls_of(unit, self.units)
         if len(calls) > 1:
             joint = Joint(tuple((call, factor) for call in calls), found.guard)
             yield from self._joining({}).fewest(joint)
 
     def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """If the candidate's missions take another course than designed, try named constants in small steps first."""
+        """If missions do not proceed as designed with the candidate, first try small steps of named constants."""
         if unit in self._replaced or not another_way(found, self.trials, self.goal):
             return
         self._replaced.add(unit)
@@ -303,7 +303,10 @@ class Sweep:
                     yield from self._try(other, found.guard, step, pair)
 
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a rival constant first if its missions are much closer to the designed ones, hence to the cause."""
+        """Yield a rival constant first if its missions are much closer to the designed ones.
+
+        It is then more likely to be the cause.
+        """
         seeds = self._compared_on(pair)
         if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
             return
@@ -321,7 +324,7 @@ class Sweep:
                 return
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a much smaller change of another constant first, unless missions go less as designed with it."""
+        """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
         if self._reduced or self.proposed or self.trials.spent > EARLY * self.trials.budget:
             return
         parts = smaller(unit, factor, self.units, self._gains, found.guard)
@@ -343,7 +346,7 @@ class Sweep:
         return [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
 
     def _holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a factor; return the candidate if it is new and holds on every seed."""
+        """Try a factor; return the candidate if it is new and confirmed, else None."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
             return None
@@ -356,7 +359,7 @@ class Sweep:
         return candidate if holds else None
 
     def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
-        """Return the deviation of a candidate's missions from the designed ones, 0 if it is unknown."""
+        """Return the deviation of a candidate's missions from the designed ones, or 0 if it is unknown."""
         try:
             return self.trials.deviation(candidate, seeds)
         except RepairError:
@@ -378,7 +381,7 @@ class Sweep:
         self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
 
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
-        """Run a candidate once; return None if it cannot be written into the source."""
+        """Run a candidate once; return whether it reached the goal, or None if it cannot be written into the source."""
         try:
             seed = self.goal.pairs[pair].seed
             return self.goal.reached(self.trials(candidate, seed), seed)

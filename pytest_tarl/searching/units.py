@@ -43,7 +43,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 
 
 def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Unit, ...]:
-    """Add, after each unit whose constant has a chart, a unit on that chart; for a zero, only the new unit stays."""
+    """Add, after each unit whose constant has a chart, a unit on that chart; for a constant of 0, keep only that."""
     found: list[Unit] = []
     for unit in plain:
         chart = charts.get(unit.operands[0])
