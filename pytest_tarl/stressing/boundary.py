@@ -12,8 +12,8 @@ from pytest_tarl.stressing.findings import Curve
 from pytest_tarl.stressing.guarantee import Guarantee, most_passed
 
 COARSE, FINE = 16, 32  # maximum number of episodes at a point of the sweep, and near the boundary
-RESOLUTION = 0.02  # share of the declared range; bisection stops when the interval is this narrow
-NOISY = 0.04  # bisection stops at this width if the failing end is undecided, because noise then hides a finer boundary
+RESOLUTION = 0.02  # width of the interval at which bisection stops, as a share of the declared range
+NOISY = 0.04  # the same while the failing end is undecided, because noise then hides a finer boundary
 
 
 def sweep(curve: Curve, evaluator: Evaluator) -> None:
@@ -24,7 +24,7 @@ def sweep(curve: Curve, evaluator: Evaluator) -> None:
 
 
 def bisect(curve: Curve, evaluator: Evaluator) -> None:
-    """Bisect between the nearest failing point and the holding point before it.
+    """Bisect between the nearest failing point and the point before it, where the guarantee holds.
 
     Stop when the interval is narrower than RESOLUTION, or than NOISY while the failing end is undecided. Raise
     BudgetSpentError.
@@ -42,7 +42,7 @@ def bisect(curve: Curve, evaluator: Evaluator) -> None:
 def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
     """Test failing points on fresh seeds until one is confirmed; the k-th test has the risk `risk / (k(k + 1))`.
 
-    The search did not see these seeds, so all rays can share them. Raise BudgetSpentError.
+    The search does not use these seeds, so all rays can share them. Raise BudgetSpentError.
     """
     for k, t in enumerate(_candidates(curve, evaluator.guarantee, risk), 1):
         if curve.confirmed is not None and t >= curve.confirmed:
@@ -56,8 +56,8 @@ def confirm(curve: Curve, evaluator: Evaluator, risk: float) -> None:
 def _candidates(curve: Curve, given: Guarantee, risk: float) -> list[float]:
     """Return the values of t to confirm: the most promising ones, ascending, then values farther away.
 
-    The promising values are the nearest one that the model expects to be confirmed, and failing ones with clearly low
-    margins. A value exactly at the boundary is no candidate, because even many episodes rarely show a failure there.
+    The promising values are the nearest value that the model expects to be confirmed, and failing values with clearly
+    low margins. A value exactly at the boundary is not tested, because even many episodes rarely show a failure there.
     """
     decided = sorted(t for t, one in curve.evidence.items() if one.result == "fails")
     if not decided:

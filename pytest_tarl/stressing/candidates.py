@@ -18,13 +18,13 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
 HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
-# standard errors of a loss below the tolerated one, so that a bound at 4 % shows it 4 times in 5
+# standard errors by which a loss must be below the tolerated one for a bound with 4 % risk to show it 4 times in 5
 HOLDING = 3.0
-# standard errors of a loss above the tolerated one, so that a bound at 0.4 % shows it 4 times in 5
+# standard errors by which a loss must be above the tolerated one for a bound with 0.4 % risk to show it 4 times in 5
 FAILING = 4.0
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
-CENTRES = np.linspace(0.0, 1.25, 251)  # values of t at which half of the episodes fail
-SCALES = np.geomspace(0.002, 0.3, 16)  # scales of the logistic distribution, in units of t
+CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail
+SCALES = np.geomspace(0.002, 0.3, 16)  # possible scales of the logistic distribution, in units of t
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Model:
     def holding(self, episodes: int, paired: int) -> float:
         """Return the farthest t at which a test is expected to show that the guarantee holds, or 0.
 
-        All of `episodes` must pass there, and the loss, bounded by `paired` episodes, must be tolerated.
+        All `episodes` must pass there, and the bound of the loss from `paired` episodes must be tolerated.
         """
 
         def beyond(t: float) -> bool:

@@ -17,13 +17,13 @@ from pytest_tarl.stressing.findings import Curve, Failure, MarginMap, confirmed,
 from pytest_tarl.stressing.nearest import EXPECTED, FIRM, NEAR, Nearest, Steps
 from pytest_tarl.stressing.rays import Ray, distance, joined
 
-# pairs are tested at this share of the distance to each boundary, where each direction alone holds
+# share of the distance to each boundary at which pairs are tested; each direction alone holds there
 INSIDE = 0.9
 FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
 # share of the budget after which the search stops vetting its result, to keep episodes for confirmation
 VETTED = 0.55
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
-QUICK = SIZES[0]  # episodes per point of a ray before the first search
+QUICK = SIZES[0]  # number of episodes per point of a ray before the first search
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Together:
     def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
         """Test drifts in order on fresh seeds until one is confirmed; the k-th test overall has risk / (k(k + 1)).
 
-        No drift is chosen with the seeds of the rays, so all tests share these seeds. Stop at a drift that contains a
+        No drift was chosen with the seeds of the rays, so all tests share these seeds. Stop at a drift that contains a
         confirmed failure: one that changes the same values at least as much. Raise BudgetSpentError.
         """
         for point in chain:
@@ -77,7 +77,7 @@ def _at_most(one: Point, other: Point, evaluator: Evaluator) -> bool:
 
 
 class Combined:
-    """The search in several directions: `begin` runs before the single directions are examined, `end` after."""
+    """The search in several directions: `begin` runs before the single directions are examined, `end` afterwards."""
 
     def __init__(self, evaluator: Evaluator, together: Together) -> None:
         self.evaluator, self.together = evaluator, together

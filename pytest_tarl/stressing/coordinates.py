@@ -1,6 +1,6 @@
 """Drifts as vectors: for each range, the difference from nominal in units of the declared range.
 
-Options of a choice have no coordinate; they are those of a base point.
+An option of a choice has no coordinate; it is that of a base point.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 from pytest_tarl.stressing.rays import distance
 
 Vector = NDArray[np.float64]
-ROUNDING = 1e-12  # a number this close to nominal counts as nominal
+ROUNDING = 1e-12  # maximum difference from nominal that counts as nominal
 
 
 @dataclass(frozen=True)

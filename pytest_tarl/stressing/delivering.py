@@ -58,7 +58,7 @@ def deliver_repairs(found: Stress, root: Path) -> list[str]:
 
 
 def _documents(found: Stress, root: Path, name: str) -> dict[Path, Callable[[Path], None]]:
-    """Return a function for each file, the result and the page, that writes it to a path."""
+    """Return, for each of the two files (result and page), a function that writes it to a path."""
     return {
         root / ".tarl" / "stress" / f"{name}.json": _as_text(json_result.text(found)),
         _page(root, name): _as_text(page.render(found)),
@@ -112,7 +112,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         jobs[memory] = lambda path: kept.write(found.failures, path)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
     lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
-    if report in failed:  # the page on disk, if any, is that of an earlier run
+    if report in failed:  # the page on disk, if any, is from an earlier run
         return lines
     return [*lines, f"{'report':10} {report.relative_to(root).as_posix()}"]
 

@@ -129,8 +129,8 @@ class Evaluator:
     def losses(self, point: Point) -> tuple[list[float], int]:
         """Return the loss of each episode that the search ran at a point, and how many of them failed.
 
-        A loss is the difference from the nominal episode with the same seed, in units of the tolerated loss. Raise
-        KeyError if the search ran no episode there.
+        A loss is the difference from the nominal episode with the same seed, in units of the tolerated loss; it is
+        positive if the episode earned less. Raise KeyError if the search ran no episode there.
         """
         outcomes = self._known[("search", *point.values())]
         unit = self.guarantee.tolerance
@@ -147,7 +147,7 @@ class Evaluator:
         return self._of("search", point, count)
 
     def fresh(self, point: Point, count: int) -> Sequence[Outcome]:
-        """Return the outcomes of the first `count` seeds that confirm results along rays. Raise BudgetSpentError."""
+        """Return the outcomes of the first `count` confirmation seeds of the rays. Raise BudgetSpentError."""
         return self._of(RAYS, point, count)
 
     def affords(self, point: Point, count: int, paired: int) -> bool:
@@ -188,7 +188,7 @@ class Evaluator:
         ]
 
     def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:
-        """Return the outcome of one episode at each point; point i has the seed with number `rows[i]`.
+        """Return the outcome of one episode at each point; point i uses seed number `rows[i]`.
 
         Raise BudgetSpentError.
         """

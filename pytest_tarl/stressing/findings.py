@@ -14,14 +14,14 @@ from pytest_tarl.stressing.rays import Ray, distance
 CONFIDENCE = 0.9  # confidence that a boundary lies in its interval
 # maximum probability that the guarantee still holds at the far end of the interval
 FAR_RISK = (1.0 - CONFIDENCE) / 6
-NEARER = 0.98  # a distance counts as nearer than another one if it is below this share of the other
+NEARER = 0.98  # maximum ratio of two distances at which the first counts as nearer
 # maximum probability that the guarantee already fails at the near end of the interval
 NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 
 
 @dataclass
 class Curve:
-    """The evidence along a ray, by the place t; a search adds to it.
+    """The evidence along a ray, by the place t; the search adds to it.
 
     `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which they showed
     none.
@@ -70,7 +70,7 @@ class Curve:
 class Boundary:
     """The boundary along a ray: the guarantee holds up to `near` and fails at `far`; `at` is the estimate.
 
-    If the margin never rises with the drift, the boundary lies between `near` and `far` at the confidence CONFIDENCE.
+    If the margin never rises with the drift, the boundary lies between `near` and `far` with confidence CONFIDENCE.
     `near` is None if no value except the nominal one was shown to hold.
     """
 
@@ -213,7 +213,7 @@ class Stress:
 
     @property
     def nearer(self) -> Failure | None:
-        """Return the nearest drift that the model predicts to fail without confirmation.
+        """Return the nearest unconfirmed drift that fails according to the model.
 
         Return None if a confirmed failure is about as near or nearer.
         """

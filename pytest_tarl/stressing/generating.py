@@ -7,7 +7,7 @@ from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal
 
-BITS = 4  # a range has 2 ** BITS sizes on each side of nominal
+BITS = 4  # number of bits drawn for the size of a change
 
 
 def generate(space: Space, seed: int, tries: int, margin: Callable[[Point], float | None]) -> None:

@@ -20,7 +20,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.guarantees import CONFIDENCE
 
 LOWEST = -1.5  # lower limit of margins: how clearly a drift fails says little about where the boundary is
-LEAST = 8  # minimum number of episodes to count as holding; if 1 in 12 fails, 8 episodes all pass half of the time
+LEAST = 8  # minimum number of episodes for the result "holds"; if 1 in 12 fails, 8 episodes all pass half of the time
 HOPEFUL = 0.84  # one-sided confidence of a bound one standard error above the mean
 # approximate error probability of each decision of the search; only fresh seeds give a guarantee
 SEARCH_RISK = 0.05
@@ -47,7 +47,7 @@ class Evidence:
     margin: float
     episodes: int
     passed: int
-    loss: float  # mean loss of reward per episode against the nominal episode with the same seed
+    loss: float  # mean loss of reward per episode, compared with the nominal episode of the same seed
     spread: float  # standard deviation of the loss of an episode
 
     @property
@@ -83,8 +83,8 @@ class Guarantee:
 def guarantee(fixture: Fixture, designation: Designation) -> Guarantee:
     """Return the guarantee of a recording.
 
-    The success rate is its lower confidence bound in the recording, but at most `min_success`. The tolerated loss comes
-    from the tolerance of the marker.
+    The guaranteed success rate is the lower confidence bound from the recording, but at most `min_success`. The
+    tolerated loss comes from the tolerance of the marker.
     """
     sample = fixture.sample
     outcomes = [
@@ -132,8 +132,8 @@ def margin_of(
     """Return the margin of outcomes, cut off at LOWEST, and its approximate standard deviation.
 
     If some episodes failed, the deviation is half the width of the margin's 80 % interval. If all passed, it is the
-    standard error of the mean loss. That error includes two assumed losses whose deviation is a third of the tolerance,
-    because the losses of a few episodes may agree by chance.
+    standard error of the mean loss. The error is computed with two assumed additional losses that deviate from the mean
+    by a third of the tolerance, because the losses of a few episodes may agree by chance.
     """
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     losses = _losses(outcomes, nominal)
@@ -185,7 +185,7 @@ def hopeless(
 
 
 def enough_pass(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether fresh episodes show, with error probability `risk`, that the success rate is as guaranteed."""
+    """Return whether fresh episodes show, with error probability `risk`, at least the guaranteed success rate."""
     count, passed = len(outcomes), sum(one.passed for one in outcomes)
     return rate(passed, count, 1.0 - risk).low >= given.rate
 
@@ -201,7 +201,7 @@ def little_lost(
 
 
 def unlike_recorded(given: Guarantee, outcomes: Sequence[Outcome], risk: float) -> bool:
-    """Return whether episodes fail the guarantee relative to the recorded rewards, with error probability `risk`."""
+    """Return whether episodes refute the guarantee relative to the recorded rewards, with error probability `risk`."""
     if _too_few_pass(given, outcomes, risk / 2):
         return True
     totals = [one.total for one in outcomes]

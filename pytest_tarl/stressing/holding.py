@@ -17,7 +17,8 @@ from pytest_tarl.stressing.findings import NEAR_RISK, Curve
 from pytest_tarl.stressing.guarantee import LEAST, enough_pass, little_lost
 from pytest_tarl.stressing.rays import Ray
 
-SHARES = (0.85, 0.15)  # shares of the risk: of the first and second value, and of the two tests at each value
+# shares of the risk for the first and second value, and for the two tests at each value
+SHARES = (0.85, 0.15)
 SECOND = 0.5  # the second value, as a share of the first
 BATCH = 8  # a test checks after each batch of this many episodes whether it can still succeed
 PAIRED = (16, 32)  # numbers of episodes to bound the loss with, unless the marker declares total_range
@@ -62,7 +63,7 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 
 def least(share: float, failed: int, risk: float) -> int:
-    """Return the minimum number of episodes that show a success rate of `share` if `failed` of them failed."""
+    """Return the minimum number of episodes that show a success rate of `share` although `failed` of them failed."""
     # upper limit of the search: of `failed` + 1 groups of episodes, one has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)

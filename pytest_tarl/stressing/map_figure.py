@@ -12,7 +12,7 @@ from pytest_tarl.stressing.svg_text import INK, svg_text
 SIZE, LEFT, TOP, FOOT = 400, 90, 12, 130  # px: side of the map, and the margins on the left, above and below
 COLOURS = {"holds": "#d5ecdf", "unsure": "#f3dfa2", "fails": "#e59a93"}  # light colours, below dark marks
 NAMES = {"holds": "holds", "unsure": "undecided", "fails": "fails"}
-SURE = 2.0  # a margin closer to 0 than this many standard deviations counts as undecided
+SURE = 2.0  # number of standard deviations; a margin closer to 0 counts as undecided
 
 
 def map_figure(stress: Stress) -> str:
@@ -53,7 +53,7 @@ def map_words(stress: Stress) -> str:
 
 
 def answer(margin: float, spread: float) -> str:
-    """Return whether the guarantee holds in a cell, fails, or is undecided ("unsure")."""
+    """Return the result for a cell: the guarantee "holds", "fails", or is undecided ("unsure")."""
     if abs(margin) < SURE * spread:
         return "unsure"
     return "holds" if margin > 0.0 else "fails"

@@ -31,37 +31,38 @@ from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
 from pytest_tarl.stressing.spreading import spread
 
-NEARER = 0.98  # the next failing drift must be nearer than this share of the best distance
+NEARER = 0.98  # maximum distance of the next failing drift, as a share of the best distance
 LARGEST = 2.0  # maximum distance of the drifts that are searched
 PREDICTED = 3  # number of predicted drifts to try in a row
-GAIN = 0.01  # a drift is not tried if the expected gain, in units of the best distance, is below this
+GAIN = 0.01  # minimum expected gain of a drift that is tried, in units of the best distance
 # numbers of standard deviations by which the predictions may be optimistic, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# a tried drift counts as failing if its excess is above -SURE times the depth that fresh episodes can show
+# largest shortfall of a tried drift that counts as failing, in units of the excess loss that fresh episodes can show
 SURE = 0.5
-CLEAR = 4.0  # a tried drift also counts as failing if its margin is this many standard deviations below 0
+# number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
+CLEAR = 4.0
 GENERATED = 24  # maximum number of drifts from Hypothesis
 ROUNDS, EXPLORED = 8, 8  # rounds of the first search, and drifts explored in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before confirmation
-SAME = 0.02  # drifts whose relative difference is below this count as the same
-TRIES = 24  # CMA-ES stops after this many drifts in a row without a nearer failure
+SAME = 0.02  # relative difference of drifts below which they count as the same
+TRIES = 24  # number of consecutive drifts without a nearer failure after which CMA-ES stops
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
-# Steps to choose drifts by: the errors of the model to allow for, in standard deviations, and the excess over
-# the
-# guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation, NEAR for the
-# second, and
-# EXPECTED for drifts that are reported without confirmation.
+# Steps by which drifts are chosen: the errors of the model to allow for, in standard deviations, and the
+# excess over the guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation,
+# NEAR for the second, and EXPECTED for drifts that are reported without confirmation.
 FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
 NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
 EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
-STANDARD = 4.1  # fresh episodes show a loss this many standard errors beyond the tolerated one 4 times in 5
-# standard errors that a share of failing episodes needs to be shown; maximum share
+# excess of a loss over the tolerated one, in standard errors, that fresh episodes show 4 times in 5
+STANDARD = 4.1
+# excess of a failure rate, in standard errors, that fresh episodes show 4 times in 5; maximum failure rate
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
-TRIFLE = 0.15  # components below this share of the distance may be noise and are dropped before confirmation
+# share of the distance below which components may be noise; they are dropped before confirmation
+TRIFLE = 0.15
 
 Steps = Sequence[tuple[float, float]]  # (errors of the model, excess) for each step of FIRM, NEAR or EXPECTED
 
@@ -73,7 +74,7 @@ class Nearest:
     evaluator: Evaluator
     curves: Sequence[Curve]
     tried: list[Point] = field(default_factory=list)
-    risk: float = 0.05  # error probability of the confirmation, to know what it can show
+    risk: float = 0.05  # error probability of the confirmation; it determines which failures can be shown
     _spread: Iterator[Vector] | None = None
     _fitted: tuple[int, Prediction] | None = None  # (number of episodes that the model was fitted to, model)
 
@@ -104,7 +105,7 @@ class Nearest:
         """Return the nearest known failing drift, from `tried` and the rays, or None.
 
         The model of all episodes decides whether a drift fails, unless the drift's own episodes show it clearly. A
-        drift with an option that is not nominal is outside the model and counts only its own episodes.
+        drift with an option that is not nominal is outside the model; only its own episodes decide.
         """
         coordinates = self._nominal()
         own = [point for point in self._known() if coordinates.covers(point) and self._distance(point) > 0.0]
@@ -165,10 +166,10 @@ class Nearest:
         return margin_map(self.curves, self._model(), self._nominal())
 
     def _farther(self, limit: float) -> list[Point]:
-        """Return up to three tried drifts that failed beyond a distance, in several directions, nearest first.
+        """Return up to three failing drifts farther than `limit` that change several directions, nearest first.
 
-        They are tested if no nearer candidate is confirmed, because the model or a few lucky episodes were wrong about
-        it.
+        They are tested if no nearer candidate is confirmed: the model may have been wrong, or a few episodes may have
+        failed by chance.
         """
         usual, coordinates = self.evaluator.space.nominal, self._nominal()
         found = [
@@ -215,7 +216,7 @@ class Nearest:
 
     @cached_property
     def _share(self) -> float:
-        """Return the share of failing episodes that the largest fresh sample shows about 4 times in 5."""
+        """Return the failure rate that the largest number of fresh episodes shows about 4 times in 5."""
         episodes = NEAREST[-1]
         most = most_passed(self.evaluator.guarantee, episodes, self.risk / 2 / len(NEAREST))
         if most < 0:
@@ -224,7 +225,7 @@ class Nearest:
         return min(share + POWER * sqrt(share * (1.0 - share) / episodes), IMPOSSIBLE)
 
     def _shown(self, noise: float) -> Shown:
-        """Return what the largest fresh sample can show; `noise` is the standard deviation of an episode's loss."""
+        """Return what the largest number of fresh episodes can show; `noise` is the standard deviation of a loss."""
         depth = min(max(STANDARD * noise / sqrt(NEAREST[-1]), SHALLOW), DEEP)
         return Shown(depth, self._share)
 

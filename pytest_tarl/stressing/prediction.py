@@ -1,7 +1,7 @@
 """Predict the nearest failing drift from the drifts tried so far.
 
-Two models, of the loss and of the share of failing episodes, estimate the probability that a drift fails. As in
-Bayesian optimisation, the search then tries the most promising drift.
+Two models, of the loss and of the failure rate, estimate the probability that a drift fails. As in Bayesian
+optimisation, the search then tries the most promising drift.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from pytest_tarl.stressing.surrogates import LossField, Matrix, RateField, covar
 
 DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
-# refinements around the best drift, each with half the step, and the initial standard deviation
+# number of refinements around the best drift; initial standard deviation, which each refinement halves
 ROUNDS, SPREAD = 5, 0.15
-STRETCHED = (0.9, 1.1)  # tried drifts are also compared at these multiples of their vectors
-RAREST = 0.007  # minimum share of failing episodes that the model assumes at nominal
+STRETCHED = (0.9, 1.1)  # multiples of the vectors of tried drifts that are compared as well
+RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
 IRRELEVANT = 0.3  # scale factor of the coordinates of a direction with little influence
-LOGIT = 4.0  # a difference of logits that counts as much as the whole tolerated loss
+LOGIT = 4.0  # difference of logits that counts as much as the whole tolerated loss
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Shown:
-    """What fresh episodes can show: the smallest excess loss or failing share that they detect reliably.
+    """What fresh episodes can show: the smallest excess loss or failure rate that they detect reliably.
 
     `depth` is the loss beyond the tolerated one, in units of the tolerated one.
     """
@@ -57,7 +57,7 @@ class Shown:
 
     @property
     def logit(self) -> float:
-        """Return the logit of the failing share."""
+        """Return the logit of the failure rate."""
         return log(self.share / (1.0 - self.share))
 
 
@@ -108,14 +108,14 @@ class Prediction:
             )
 
     def deeper(self, times: float) -> Prediction:
-        """Return a copy that requires an excess over the guarantee `times` as large as fresh episodes can show."""
+        """Return a copy that requires `times` the smallest excess over the guarantee that fresh episodes can detect."""
         other = copy(self)
         other.shown = Shown(self.shown.depth * times, self.shown.share ** (1.0 / times))
         return other
 
     @one_thread
     def promising(self, limit: float, draws: np.random.Generator) -> tuple[Vector, float]:
-        """Return the vector with the largest expected gain, and the gain.
+        """Return the vector with the largest expected gain, and that gain.
 
         The gain is the probability that the drift fails, times the distance by which it is nearer than `limit`, in
         units of the ranges. This is constrained expected improvement (Gelbart et al. 2014) with a known objective.
@@ -158,9 +158,10 @@ class Prediction:
 
     @one_thread
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
-        """Return by how much each vector exceeds what fresh episodes can show, in units of the tolerated loss.
+        """Return how far each vector's predicted loss or failure rate exceeds what fresh episodes can show.
 
-        The prediction is first lowered by `errors` standard deviations. The result has the shape (drifts,).
+        The larger excess of the two counts, in units of the tolerated loss. The prediction is first lowered by `errors`
+        standard deviations. The result has the shape (drifts,).
         """
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         found: Vector = mean - errors * deviation - 1.0 - self.shown.depth
@@ -189,7 +190,7 @@ class Prediction:
     def _prior(self, vectors: Vector, field: int) -> tuple[Matrix, Vector]:
         """Return prior covariances with the tried drifts, and prior variances.
 
-        `field` is 0 for the loss and 1 for the failing share.
+        `field` is 0 for the loss and 1 for the failure rate.
         """
         units = self._units[field]
         return covariance(vectors * units, self._vectors * units), variance(vectors * units)

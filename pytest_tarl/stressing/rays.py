@@ -69,7 +69,7 @@ def rays(space: Space, must_hold: Mapping[str, Sequence[Any]]) -> list[Ray]:
 
 
 def joined(parts: Sequence[tuple[Ray, float]]) -> Ray:
-    """Return the ray to the point that has the values of all given places on rays."""
+    """Return the ray to the point that combines the values at given places on several rays."""
     space = parts[0][0].space
     farthest = dict(space.nominal)
     for ray, t in parts:

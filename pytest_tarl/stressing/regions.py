@@ -28,7 +28,7 @@ class Region:
 
 
 def regions(space: Space, failed: Failure) -> Iterator[Region]:
-    """Yield the regions beyond a failure, widest first; each covers the same share of every direction's rest."""
+    """Yield the regions beyond a failure, widest first; each covers the same share of all remaining ranges."""
     for reach in REACH:
         spans: dict[str, Span | Choice] = {}
         words = []

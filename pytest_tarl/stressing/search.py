@@ -27,7 +27,8 @@ from pytest_tarl.stressing.statements import Source, statements
 class Risks:
     """The error probabilities of the claims of a run.
 
-    `each` is for the nominal drift and for each direction, `combinations` for all combinations together.
+    `each` is the risk of the claim about the nominal drift, and of the claim about each direction. `combinations` is
+    the total risk of the claims about all combinations.
     """
 
     each: float
@@ -179,7 +180,7 @@ def _evaluator(request: Request, space: Space) -> Evaluator:
 
 
 def _nominal_fails(evaluator: Evaluator, risk: float) -> bool:
-    """Return whether the guarantee fails at nominal, so that the nominal world is not the recorded one."""
+    """Return whether the guarantee fails at the nominal drift; then the nominal world differs from the recorded one."""
     outcomes = evaluator.common(evaluator.space.nominal, COARSE)
     return unlike_recorded(evaluator.guarantee, outcomes, risk)
 

@@ -11,10 +11,10 @@ SHRINKS = 4  # maximum number of attempts per direction
 
 
 def shrunk(point: Point, evaluator: Evaluator) -> Point:
-    """Return a failing point with smaller changes, where single directions could be moved towards nominal.
+    """Move single directions of a failing point towards nominal while it still fails; return the result.
 
-    For each direction, the nominal value is tried first, then ever smaller steps. Hypothesis would instead shrink to
-    simple values, which need not be near. Raise BudgetSpentError.
+    For each direction, the nominal value is tried first, then smaller and smaller steps. Hypothesis would instead
+    shrink to simple values, which need not be near nominal. Raise BudgetSpentError.
     """
     space, now = evaluator.space, dict(point)
     for name in sorted(now, key=lambda one: -distance(space, {**space.nominal, one: now[one]})):

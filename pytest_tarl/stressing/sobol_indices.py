@@ -28,7 +28,7 @@ RESAMPLES = 200  # number of bootstrap resamples for the intervals
 
 
 def sobol(evaluator: Evaluator) -> Sobol | None:
-    """Return the indices from the episodes that the search left over.
+    """Return the indices, computed with the episodes that the search left over.
 
     Return None if too few episodes are left or SALib is not installed. All points of a row of the sample share a seed
     and are paired with the nominal episode of that seed. Raise BudgetSpentError if the time limit is reached.

@@ -34,7 +34,7 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
 
 
 def _inverse(number: int, base: int) -> float:
-    """Return the radical inverse: the digits of a number in this base, mirrored at the point."""
+    """Return the radical inverse: the digits of a number in this base, mirrored at the radix point."""
     found, unit = 0.0, 1.0 / base
     while number:
         number, digit = divmod(number, base)

@@ -1,7 +1,7 @@
-"""Gaussian processes over drifts: regression for the loss, classification for the share of failing episodes.
+"""Gaussian processes over drifts: regression for the loss, classification for the failure rate.
 
-They follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the share. Both
-functions are fixed at nominal: the loss at 0, the logit of the share at a constant.
+They follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the failure rate.
+Both functions are fixed at nominal: the loss at 0, the logit of the failure rate at a constant.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class LossField:
 
 
 class RateField:
-    """The logit of the failing share at each drift: a Gaussian process fitted to counts of failed episodes."""
+    """The logit of the failure rate at each drift: a Gaussian process fitted to counts of failed episodes."""
 
     def __init__(
         self,

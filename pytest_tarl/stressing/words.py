@@ -10,7 +10,7 @@ from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
 from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress
 from pytest_tarl.stressing.rays import Ray
 
-MOST_SHOWN = 5  # maximum number of combinations, and of statements
+MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
 SURE = f"{100 * CONFIDENCE:.3g} %"
 ROUNDING = 1e-9  # tolerance for rounding errors of places on a ray
 
@@ -43,7 +43,7 @@ def ended_words(stress: Stress) -> Iterator[str]:
     if stress.ended in ENDED:
         yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
     if stress.seconds is not None:
-        yield f"A time limit is not reproducible; --tarl-stress-budget {stress.episodes} is, with as many episodes."
+        yield f"A time limit is not reproducible; for as many episodes, use --tarl-stress-budget {stress.episodes}."
 
 
 def budget_words(stress: Stress) -> str:
@@ -63,7 +63,7 @@ def guarantee_words(stress: Stress) -> str:
 def nominal_words() -> str:
     """Return the advice for a guarantee that fails at the nominal values."""
     return (
-        "The guarantee fails at the nominal values already, so the nominal world is not the recorded one: correct the "
+        "The guarantee already fails at the nominal values, so the nominal world is not the recorded one: correct the "
         "nominal values, or record again with `pytest --tarl-record`."
     )
 
@@ -89,7 +89,7 @@ def together(stress: Stress) -> Iterator[str]:
         yield f"{len(found) - MOST_SHOWN} more failing combinations are in the JSON result."
     if stress.nearer is not None:
         where = of_point(stress.space, stress.nearer.point)
-        yield f"Probably fails with {where} already (distance {stress.nearer.distance:.2g}); this is not confirmed."
+        yield f"Probably already fails with {where} (distance {stress.nearer.distance:.2g}); this is not confirmed."
     elif not found and stress.tried:
         yield f"No combination was found that fails although each direction alone holds ({stress.tried} tried)."
 
@@ -152,7 +152,7 @@ def repair_lines(stress: Stress) -> Iterator[str]:
             draws = one.draws
             yield (
                 f"over the declared space: {draws.passed_after} instead of {draws.passed_before} of {draws.episodes} "
-                f"fresh draws pass, at least {100 * draws.success_at_least:.3g} % at 95 %, and each earns "
+                f"fresh draws pass, at least {100 * draws.success_at_least:.3g} % with 95 % confidence, and each earns "
                 f"{draws.reward_after:.4g} instead of {draws.reward_before:.4g}."
             )
         if one.withheld:

@@ -165,7 +165,7 @@ def test_attempted_repairs_are_listed_in_text_json_and_page() -> None:
     told = [*repair_lines(found)]
     assert told[0] == "a from 0.5 to 1: none accepted: <why>."
     assert told[2] == "a to 1: not beyond 0.5 → beyond 0.9: more robust"
-    assert "59 instead of 30 of 60 fresh draws pass, at least 92 % at 95 %" in told[3]
+    assert "59 instead of 30 of 60 fresh draws pass, at least 92 % with 95 % confidence" in told[3]
     shown = page.render(found)
     assert "&lt;why&gt;" in shown
     assert "<td>beyond 0.9<td>more robust" in shown

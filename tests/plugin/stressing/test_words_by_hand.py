@@ -165,7 +165,7 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
 
 def test_an_expected_failure_is_printed_only_if_it_is_clearly_nearer_than_all_confirmed_ones() -> None:
     near, nearer = combined(mud=3.0, slope=0.5), combined(mud=3.6, slope=0.25)  # distances 0.35 and 0.16
-    told = "Probably fails with mud=3.6 and slope=0.25 already (distance 0.16); this is not confirmed."
+    told = "Probably already fails with mud=3.6 and slope=0.25 (distance 0.16); this is not confirmed."
     confirmed_one = "Fails with mud=3 and slope=0.5 (distance 0.35), although each alone holds."
     assert [*words.together(stress(expected=(nearer, near), tried=3))] == [told]
     assert [*words.together(stress(combinations=(near,), expected=(nearer, near)))] == [confirmed_one, told]
@@ -235,7 +235,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
     assert len([*words.lines(stress(curve(FLAT, GOOD), ended="nominal"))]) == 3
     assert [*words.ended_words(stress(ended="interrupted", seconds=2.5))] == [
         "Interrupted after 150 episodes: this is what was known by then.",
-        "A time limit is not reproducible; --tarl-stress-budget 150 is, with as many episodes.",
+        "A time limit is not reproducible; for as many episodes, use --tarl-stress-budget 150.",
     ]
     assert words.budget_words(stress(seconds=2.5)) == "2.5 s"
 
