@@ -17,9 +17,8 @@ import numpy as np
 MEASURED = ("100000:12.9:571", "400000:29.7:813", "1000000:61.4:1242")
 BYTES = 193  # stored size of a mission without taint lists (bytes)
 INGESTED = 2000  # number of missions ingested per CPU second
-SCORES = (
-    26 + 16
-)  # number of bytes that a worker returns for a mission: its number, and one byte for each score
+# number of bytes that a worker returns for a mission: its number, and one byte for each score
+SCORES = 26 + 16
 TAKEN = 26 + 25  # number of bytes that a task receives for a mission: its scores and results
 PARALLEL = 0.75  # share of a query's CPU time that runs on workers
 TRANSFER = 1.25e9  # transfer rate between the client and the workers (bytes per second), 10 Gbit/s

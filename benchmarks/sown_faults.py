@@ -50,12 +50,8 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-_UNSEEN = (
-    ast.Import,
-    ast.ImportFrom,
-    ast.Assert,
-    ast.Raise,
-)  # no faults here: not every message needs a test
+# no faults here: not every message needs a test
+_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)
 
 
 @dataclass(frozen=True, order=True)

@@ -21,9 +21,8 @@ from pytest_tarl.spaces import Fault, Point, Space
 AS_WRITTEN = "none"  # the drift name that selects the world as its author wrote it
 _HEADER = "header.npy"
 _PREFIX = 10  # number of bytes before the header of a version 1 .npy file
-_LARGEST = (
-    100_000_000  # maximum number of bytes of a header (10,000 statements take 3 MB); a larger one is damaged
-)
+# maximum number of bytes of a header (10,000 statements take 3 MB); a larger one is damaged
+_LARGEST = 100_000_000
 
 
 def fixture_path(root: Path, test: str) -> Path:

@@ -36,12 +36,10 @@ class Designation:
     confidence: float | None = None  # confidence at which the recording must decide whether min_success holds
     total_range: tuple[float, float] | None = None  # smallest and largest possible total reward of an episode
     tolerance: float | None = None
-    judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
-        None  # function that computes the rewards that a log lacks
-    )
-    monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # function that computes the reward of a mission in a bag, or a class with such a method
-    )
+    # function that computes the rewards that a log lacks
+    judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = None
+    # function that computes the reward of a mission in a bag, or a class with such a method
+    monitor: Callable[[Any], float | Mapping[str, float]] | None = None
     requirements: Requirements = NOTHING_REQUIRED
     must_hold: Mapping[str, tuple[Any, ...]] = field(
         default_factory=dict

@@ -59,9 +59,8 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
-        self._faults = (
-            NO_FAULTS if replay is not None else faults
-        )  # a recorded mission already contains the faults of its robot
+        # a recorded mission already contains the faults of its robot
+        self._faults = NO_FAULTS if replay is not None else faults
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0

@@ -12,9 +12,8 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-IDLE = (
-    3  # after this many attempts without a message, none is left; an attempt may handle another event instead
-)
+# after this many attempts without a message, none is left; an attempt may handle another event instead
+IDLE = 3
 
 Say = Callable[[dict[str, Any]], None]
 

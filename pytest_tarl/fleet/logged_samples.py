@@ -19,9 +19,8 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.logged import Mission, missions, trace
 
-BYTES = (
-    8  # size in bytes of a mission ID; logged missions have no seed, so the ID is stored in the seed field
-)
+# size in bytes of a mission ID; logged missions have no seed, so the ID is stored in the seed field
+BYTES = 8
 
 
 def logged_samples(log: Path, fixture: Fixture) -> Iterator[tuple[float, Sample]]:

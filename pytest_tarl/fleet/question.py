@@ -67,10 +67,8 @@ class Answer:
     repairs: tuple[repairs.Effect, ...]
     left_out: Mapping[str, int]
     accepted: Mapping[str, str] = field(default_factory=dict)  # the drift for which each repair was accepted
-    period: tuple[float, float] = (
-        0.0,
-        0.0,
-    )  # starts of the first and the last mission; 0 if no start is known
+    # starts of the first and the last mission; 0 if no start is known
+    period: tuple[float, float] = (0.0, 0.0)
     lowest: tuple[Mission, ...] = ()  # missions of the robot in question with the lowest totals
 
     def meets(self, rule: str) -> bool:

@@ -14,9 +14,8 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.sensors import Cell
 
-MOST_ENTRIES = (
-    4_000_000  # maximum number of queued entries (two per event); later events are dropped and counted
-)
+# maximum number of queued entries (two per event); later events are dropped and counted
+MOST_ENTRIES = 4_000_000
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,8 @@ from pytest_tarl.patching.expressions import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
 LONGEST_COPY = 3  # maximum number of lines of a statement that may be written twice, under `if` and `else`
-LONGEST_CONDITION = (
-    48  # maximum number of characters of a condition inside an expression; longer ones are assigned to a name
-)
+# maximum number of characters of a condition inside an expression; longer ones are assigned to a name
+LONGEST_CONDITION = 48
 _ARITHMETIC = {
     "abs",
     "bool",

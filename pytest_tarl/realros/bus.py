@@ -22,9 +22,8 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
-_SWITCH_INTERVAL = (
-    0.0002  # thread switch interval (s); the default, 0.005 s, delays a message at every switch
-)
+# thread switch interval (s); the default, 0.005 s, delays a message at every switch
+_SWITCH_INTERVAL = 0.0002
 
 
 class RealBus(Bus):

@@ -13,9 +13,8 @@ from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
-LEAST_NEAR = (
-    2  # minimum number of successful episodes for the note that a candidate works in a part of the range
-)
+# minimum number of successful episodes for the note that a candidate works in a part of the range
+LEAST_NEAR = 2
 
 STRATA = 4  # number of strata (parts of the range); the episodes of each interim test are a multiple of this number
 

@@ -19,9 +19,8 @@ from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
 
 SUM, SCALE = "sum", "scale"
-ALIKE = (
-    2.0  # a plain sum is tried if the constant's change and the sensor's value differ by at most this ratio
-)
+# a plain sum is tried if the constant's change and the sensor's value differ by at most this ratio
+ALIKE = 2.0
 REST = 0.9  # minimum share of the recorded steps in which the sensor must be about zero
 
 

@@ -34,9 +34,8 @@ MOST = {
 }  # maximum number of expressions at which to try a template, by the template's kind
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = (
-    50  # minimum number of episodes for templates with a telling sensor, but at most a third of the budget
-)
+# minimum number of episodes for templates with a telling sensor, but at most a third of the budget
+LEAST = 50
 
 
 class Structures:

@@ -11,9 +11,8 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin of each sensor
 
-ORDERS = (
-    24  # number of orders of sensors that are tried when merging bins; all orders if there are four sensors
-)
+# number of orders of sensors that are tried when merging bins; all orders if there are four sensors
+ORDERS = 24
 NAMED = 3  # maximum number of places named before "and 2 more"
 
 

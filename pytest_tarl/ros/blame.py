@@ -9,10 +9,8 @@ from types import FrameType, TracebackType
 
 _HERE = str(Path(__file__).parent)
 _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib")})
-_SYSTEM = (
-    "/dist-packages/",
-    "/opt/ros/",
-)  # folders of a system ROS, which sysconfig does not list in a virtual environment
+# folders of a system ROS, which sysconfig does not list in a virtual environment
+_SYSTEM = ("/dist-packages/", "/opt/ros/")
 
 Place = tuple[str, int, str]  # file, line, function
 

@@ -18,9 +18,8 @@ Shape = Literal["one", "array", "sequence"]
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {  # default values in common packages, which rosbags drops
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-_FILLER = (
-    "structure_needs_at_least_one_member"  # dummy member that ROS 2 gives empty types, hidden from programs
-)
+# dummy member that ROS 2 gives empty types, hidden from programs
+_FILLER = "structure_needs_at_least_one_member"
 _PRIMITIVES = frozenset(
     [
         "bool",
