@@ -205,7 +205,7 @@ def with_own_settings(copy: Path, tests: Iterable[str]) -> list[str]:
 
 
 def apart(copy: Path, tests: Iterable[str]) -> list[list[str]]:
-    """Return the arguments of pytest, one list for each pytest.ini that applies to some of the tests."""
+    """Return the arguments of each pytest run; tests with different pytest.ini files run separately."""
     runs: dict[str, list[str]] = {}
     for test in tests:
         file = Path(test.partition("::")[0])
@@ -261,7 +261,7 @@ def tried(
 ) -> Outcome:
     """Insert a fault, run the tests that reach it, and remove it.
 
-    It is caught if the test that failed, or all tests after a timeout, pass without the fault within the same time.
+    It is caught if the failed test, or after a timeout all tests, pass within the same time without the fault.
     """
     if not tests:
         return Outcome(fault, "unreached", 0)
@@ -288,7 +288,7 @@ def tried(
 
 
 def tested(copy: Path, tests: Sequence[str], limit: float, runner: Runner) -> tuple[int, str]:
-    """Return pytest's exit status and the test that failed first; no test if pytest itself failed.
+    """Return pytest's exit status and the first failed test, or no test if pytest itself failed.
 
     Raises TimeoutExpired if the tests of one pytest.ini exceed the limit in seconds.
     """

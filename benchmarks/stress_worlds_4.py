@@ -28,14 +28,14 @@ def clip(value: float, size: float) -> float:
 
 
 def quadrotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Fly a planar quadrotor 2 m sideways in gusts and hold it there, on estimates that arrive late.
+    """Fly a planar quadrotor 2 m sideways in gusts and hold it there, with delayed state estimates.
 
-    A position loop asks for a tilt, an attitude loop for a torque; the thrust makes up for the nominal weight and the
-    tilt, and saturates. It passes if it stays above 1 m, never tilts beyond 1 rad, and ends within 0.7 m of its goal.
-    The reward falls with the mean error of the second half.
+    A position loop commands a tilt, and an attitude loop commands a torque. The thrust compensates for the nominal
+    weight and the tilt, within limits. The flight passes if the quadrotor stays above 1 m, never tilts beyond 1 rad,
+    and ends within 0.7 m of its goal. The reward falls with the mean error of the second half.
 
     Directions: mass (0.7 to 1.3 kg), the centre of mass (±9 mm to the side), the age of the estimates (40 to 240 ms),
-    and the gusts (0.3 to 1.3 m/s² of standard deviation).
+    and the gusts (standard deviation 0.3 to 1.3 m/s²).
     """
     p, q, r, s = x.tolist()
     mass, aside, age, gusts = 1.0 + 0.6 * p, 0.018 * q, 2 + round(10 * r), 0.3 + 1.0 * s
@@ -70,9 +70,9 @@ def quadrotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def forklift(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Drive a forklift over a ramp of 6 m and stop it, load first, at a rack 12 m away.
 
-    The speed follows the braking distance to the rack. The drive and the brake act on the front axle, which carries
-    the load, and slip beyond its grip. It passes if it stops 0 to 0.3 m before the rack within 15 s and never lifts its
-    rear axle. The reward falls with the time that it takes.
+    The speed follows the braking distance to the rack. The drive and the brake act on the front axle, which carries the
+    load, and its wheels slip beyond their grip. The run passes if the forklift stops 0 to 0.3 m before the rack within
+    15 s and never lifts its rear axle. The reward falls with the time that it takes.
 
     Directions: the load (300 to 1500 kg), the slope of the ramp (-0.13 to 0.13 rad; negative is downhill), fading of
     the brake (up to 65 %), and water on the floor (friction from 0.5 down to 0.12).
@@ -104,11 +104,11 @@ def forklift(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def corridor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Drive a base with two wheels along a bent corridor through two doors, on odometry and marks on the walls.
+    """Drive a two-wheeled base along a bent corridor through two doors, by odometry and marks on the walls.
 
-    Pure pursuit steers by the estimated pose. A mark every 2 m corrects the estimate, unless it is 0.3 m off to the
-    side and therefore taken for a wrong match. It passes if both doors are passed within 0.25 m of their middle and it
-    never leaves the path by 0.6 m. The reward falls with the mean distance from the path.
+    Pure pursuit steers by the estimated pose. A mark every 2 m corrects the estimate, unless the mark appears at least
+    0.3 m to the side, which counts as a wrong match. The run passes if the base passes both doors within 0.25 m of
+    their middle and always stays within 0.6 m of the path. The reward falls with the mean distance from the path.
 
     Directions: one wheel larger than the other (±2 %), a bias of the gyro (±0.03 rad/s), latency of the commands and
     the marks (0 to 0.4 s), and slip of the wheels in turns (0 to 35 %).
@@ -147,11 +147,11 @@ def corridor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Pick a box from a moving belt by a camera above it, and lift it.
+    """Pick up a box from a moving belt, guided by a camera above the belt.
 
-    The camera sees the box every 0.1 s until the arm covers it. The arm follows the predicted place with a limited
-    speed and closes the gripper when it has been there for 0.24 s. It passes if the box fits between the fingers at its
-    own angle and does not slide out of the pads during the lift. Episodes either earn the reward or do not pass.
+    The camera sees the box every 0.1 s until the arm covers it. The arm follows the predicted place at a limited speed
+    and closes the gripper when it has been there for 0.24 s. The pick passes if the box fits between the fingers at its
+    angle and does not slide out of the pads during the lift. All episodes earn the same reward.
 
     Directions: the camera shifted across the belt (±11 mm) and turned (±0.09 rad), the belt faster than the arm
     was told to expect (up to 110 %), and dust on the pads (up to 50 % of the friction).
@@ -191,11 +191,11 @@ def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def tank(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Hold the level of a tank with a valve that sticks, through a change of the set point and a batch drawn off.
+    """Hold the level of a tank with a sticking valve, while the set point changes and a batch is drawn off.
 
-    A PI law with a limit on its integral reads the level through a lag. The valve stays where it is until the command
-    differs by more than its stiction. It passes if the tank neither overflows (2 m) nor falls below the outlet
-    (0.45 m). The reward falls with the mean error.
+    A PI controller with a limited integral reads the level with a lag. The valve does not move until the command
+    differs from its position by more than its stiction. The run passes if the tank neither overflows (2 m) nor falls
+    below the outlet (0.45 m). The reward falls with the mean error.
 
     Directions: the pressure of the supply (-30 to 30 %), the demand (-30 to 30 %), stiction (0.5 to 25 % of the
     stroke), and the lag of the reading (1 to 30 s).
@@ -224,10 +224,10 @@ def tank(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def berth(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Bring a boat into a berth beside a pier, in a current and gusts.
 
-    Line of sight with an integral steers it; the two propellers set speed and turn, and the speed falls with the
-    distance. It passes if it arrives within 60 s, less than 0.9 m from the middle of the berth, at less than 0.7 m/s,
-    at most 0.5 rad askew, and never touched the pier 1.5 m to its right. The reward falls with the mean distance from
-    the line.
+    Integral line-of-sight guidance steers the boat. Its two propellers set speed and turn rate, and the speed falls
+    with the distance. The manoeuvre passes if the boat arrives within 60 s, less than 0.9 m from the middle of the
+    berth, at less than 0.7 m/s, with a heading error below 0.5 rad, and never touched the pier 1.5 m to its right. The
+    reward falls with the mean distance from the line.
 
     Directions: the current across (-0.16 to 0.16 m/s, positive away from the pier) and along (-0.2 to 0.2 m/s,
     positive towards the berth), age of the position (0 to 2.5 s), and thrust that the left propeller lost (0 to 70 %).
@@ -279,7 +279,7 @@ QUIET_WORLDS: Mapping[str, World] = {one.__name__: one for one in (quiet_quadrot
 
 
 def sampled(name: str, world: World, drifts: int, episodes: int) -> str:
-    """Return the line of a world: what its nominal episodes and those of random drifts come to.
+    """Return the table row of a world: the results of its nominal episodes and of episodes under random drifts.
 
     A drift breaks the guarantee here if one of its episodes fails or their mean reward is too low. Over few episodes
     this overestimates the share for a world whose failures are rare.
@@ -303,7 +303,7 @@ def sampled(name: str, world: World, drifts: int, episodes: int) -> str:
 
 
 def main() -> None:
-    """Print a line per world: its nominal episodes, and those of drifts drawn uniformly."""
+    """Print a row per world: its nominal episodes, and those under uniformly drawn drifts."""
     every = {**FOURTH_WORLDS, **QUIET_WORLDS}
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("worlds", nargs="*", metavar="WORLD", help="default: all")

@@ -18,7 +18,7 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
-# Large libraries that the tests import. No plugins of pytest: it rewrites their assertions when it imports them.
+# Large libraries that the tests import, but no plugins of pytest: it rewrites their assertions when it imports them.
 LIBRARIES = (
     "_pytest.config",
     "_pytest.pytester",
@@ -53,7 +53,7 @@ LIBRARIES = (
     "PIL.Image",
     "threadpoolctl",
 )
-POLL = 0.02  # seconds between two looks at a running pytest
+POLL = 0.02  # seconds between two checks of a running pytest
 
 
 class Runner:
@@ -64,9 +64,9 @@ class Runner:
         self._output = output
 
     def __call__(self, arguments: Sequence[str], limit: float) -> tuple[int, str]:
-        """Return pytest's exit status, negative if a signal ended it, and what it printed.
+        """Return pytest's exit status, negative if a signal ended it, and its output.
 
-        Raises TimeoutExpired if it takes longer than the limit in seconds; it is killed with its child processes.
+        If the run takes longer than the limit in seconds, kill it with its child processes and raise TimeoutExpired.
         """
         assert self._server.stdin is not None
         assert self._server.stdout is not None
@@ -153,7 +153,7 @@ def ended(child: int, limit: float) -> str:
             return "timeout"
         time.sleep(POLL)
     with suppress(ProcessLookupError):
-        os.killpg(child, 9)  # processes that the tests have left behind
+        os.killpg(child, 9)  # processes that the tests left behind
     return str(os.waitstatus_to_exitcode(found[1]))
 
 

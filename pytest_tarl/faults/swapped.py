@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def swapped(topic: str, first: str, second: str) -> TopicFault:
-    """Return a fault that is off or on; if it is on, it exchanges the values of two fields.
+    """Return a fault that is off or on; when on, it exchanges the values of two fields.
 
     Raise SettingsError for invalid arguments.
     """

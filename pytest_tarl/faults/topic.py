@@ -117,7 +117,7 @@ def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
 
 
 def require_text(kind: str, what: str, value: Any) -> None:
-    """Raise SettingsError unless an argument is a text that is not empty; `what` is "topic" or "field"."""
+    """Raise SettingsError unless an argument is a non-empty string; `what` is "topic" or "field"."""
     if not isinstance(value, str) or not value:
         raise SettingsError(
             f'faults.{kind}: give the {what} as text, for example "{"/odom" if what == "topic" else "data"}", got '

@@ -15,14 +15,14 @@ _FLOAT32, _INT32 = 7, 5  # PointField.datatype
 
 
 class LaserProjection:
-    """Project scans to point clouds. Beams outside of the scan's range are dropped."""
+    """Project scans to point clouds. Beams outside the scan's range are dropped."""
 
     LASER_SCAN_INVALID: Final = -1.0
     LASER_SCAN_MIN_RANGE: Final = -2.0
     LASER_SCAN_MAX_RANGE: Final = -3.0
 
     class ChannelOption:
-        """Fields of the cloud in addition to x, y and z; combine them by `|`."""
+        """Fields of the cloud in addition to x, y and z; combine them with `|`."""
 
         NONE: Final = 0x00
         INTENSITY: Final = 0x01
@@ -35,7 +35,7 @@ class LaserProjection:
     def projectLaser(
         self, scan_in: Any, range_cutoff: float = -1.0, channel_options: int = ChannelOption.DEFAULT
     ) -> Any:
-        """Return the cloud of a scan, with the beams shorter than `range_cutoff` (m) if it is not negative."""
+        """Return the cloud of a scan. A `range_cutoff` (m) of 0 or more is an additional upper limit of the range."""
         import numpy as np
 
         from pytest_tarl.ros.point_cloud2 import create_cloud

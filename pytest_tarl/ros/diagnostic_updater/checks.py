@@ -30,7 +30,7 @@ class FrequencyStatusParam:
 
     freq_bound: Mapping[str, float]
     tolerance: float = 0.1
-    window_size: int = 5  # in updates
+    window_size: int = 5  # number of updates
 
 
 class FrequencyStatus(DiagnosticTask):
@@ -97,11 +97,11 @@ class TimeStampStatus(DiagnosticTask):
         self.params = TimeStampStatusParam() if params is None else params
         self.lock = threading.Lock()
         self.early_count = self.late_count = self.zero_count = 0
-        self._ages: list[float] = []  # s, since the last update
+        self._ages: list[float] = []  # ages (s) of the stamps since the last update
         self._zero = False
 
     def tick(self, stamp: Any) -> None:
-        """Take a stamp: seconds, or a time of either generation."""
+        """Take a stamp: seconds, or a time of ROS 1 or ROS 2."""
         seconds = _seconds(stamp)
         if seconds == 0:
             self._zero = True
@@ -136,7 +136,7 @@ class TimeStampStatus(DiagnosticTask):
 
 
 class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
-    """The frequency of a topic, added to an updater."""
+    """A diagnosis of a topic's frequency, added to an updater."""
 
     def __init__(self, name: str, diag: Any, freq: FrequencyStatusParam) -> None:
         super().__init__(f"{name} topic status")
@@ -155,7 +155,7 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """The frequency and the stamps of a topic, added to an updater."""
+    """A diagnosis of a topic's frequency and time stamps, added to an updater."""
 
     def __init__(self, name: str, diag: Any, freq: FrequencyStatusParam, stamp: TimeStampStatusParam) -> None:
         super().__init__(name, diag, freq)

@@ -12,7 +12,7 @@ from pytest_tarl.ros.messages.definitions import Kind
 
 
 def number(level: Any) -> int:
-    """Return a level as a number; ROS 2 has one byte for it."""
+    """Return a level as a number; in ROS 2, a level is one byte."""
     return level[0] if isinstance(level, bytes) else int(level)
 
 
@@ -32,11 +32,15 @@ class _Filling:
             self.level, self.message = args[0], str(args[1])
 
     def clearSummary(self) -> None:
-        """Set level OK without a message."""
+        """Set the level to OK, without a message."""
         self.set_level(0, "")
 
     def mergeSummary(self, *args: Any) -> None:
-        """Merge level and message, or those of another status: the higher level, and the messages of equal rank."""
+        """Merge level and message with those of this status.
+
+        The higher level wins. If both levels are OK, or neither is, the messages are joined. Otherwise the message of
+        the higher level wins.
+        """
         level, text = (args[0].level, args[0].message) if len(args) == 1 else args
         if (number(level) > 0) == (number(self.level) > 0):
             self.message = f"{self.message}; {text}" if self.message else text
@@ -51,12 +55,12 @@ class _Filling:
         self.values.append(pair(key=key, value=str(val)))
 
     def set_level(self, level: int, text: str) -> None:
-        """Set level and message; the level is a number in both generations."""
+        """Set level and message; `level` is a number in both ROS generations."""
         self.summary(level if self._kind == "ros1" else bytes([level]), text)
 
 
 def wrapper_of(kind: Kind) -> Any:
-    """Return `DiagnosticStatusWrapper`, a subclass of the generation's DiagnosticStatus."""
+    """Return `DiagnosticStatusWrapper`, a subclass of DiagnosticStatus in this ROS generation."""
     return _wrapper(kind, class_of(kind, "diagnostic_msgs/DiagnosticStatus"))
 
 

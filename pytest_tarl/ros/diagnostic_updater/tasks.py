@@ -51,7 +51,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks.append(t)
 
     def run(self, stat: Any) -> Any:
-        """Run all tasks, each with the given summary, and merge their summaries."""
+        """Run all tasks, each starting from the status's current summary, and merge their summaries."""
         given, merged = type(stat)(), type(stat)()
         given.summary(stat)
         for task in self.tasks:
@@ -64,7 +64,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
 
 @dataclass
 class _Added:
-    """A task of a vector."""
+    """A task in a list, with its name."""
 
     name: str
     fn: Fill
@@ -94,7 +94,7 @@ class DiagnosticTaskVector:
             self.addedTaskCallback(self.tasks[-1])
 
     def removeByName(self, name: str) -> bool:
-        """Remove the first task of a name; return whether there was one."""
+        """Remove the first task with this name; return whether there was one."""
         with self.lock:
             found = next((one for one in self.tasks if one.name == name), None)
             if found is not None:

@@ -13,7 +13,7 @@ from pytest_tarl.ros.messages import class_of
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.process import current_process
 
-_CHECK_SECONDS = 0.25  # how often rospy's updater reads its period from the parameter server
+_CHECK_SECONDS = 0.25  # interval (s) at which rospy's updater reads its period from the parameter server
 _NO_ID = (
     "diagnostic_updater: no hardware ID was set: call setHardwareID, with 'none' for a device without one."
 )
@@ -71,7 +71,7 @@ class Updater(DiagnosticTaskVector):
         self.hwid = hwid
 
     def publish(self, msg: Any) -> None:
-        """Publish a status or a list of them, each with the name of the node in front of its own."""
+        """Publish a status or a list of statuses, each with the node's name before its own."""
         statuses = msg if isinstance(msg, list) else [msg]
         for status in statuses:
             status.name = f"{self._name()}: {status.name}"
@@ -80,7 +80,7 @@ class Updater(DiagnosticTaskVector):
         self.publisher.publish(message)
 
     def addedTaskCallback(self, task: Any) -> None:
-        """Publish that the node starts."""
+        """Publish that the node is starting."""
         status = self._status(task.name)
         status.set_level(0, "Node starting up")
         self.publish(status)
