@@ -68,7 +68,7 @@ def run_online(
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
     `changeable` holds the IDs of the sites with an operand that a repair can change, if known: these sites rank before
-    all others. With a `stage`, the comparison ends after that stage, and a later call may continue it.
+    all others. If `stage` is given, the comparison ends after that stage, and a later call may continue it.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)

@@ -185,7 +185,7 @@ class Tarl:
             every_step: Topics that it publishes in each step; a step ends once a message has arrived on each of them.
             environment: Further environment variables.
             timeout: Maximum real time until the simulator is ready, in s.
-            patience: Real time in s without an answer or progress of its clock after which it counts as hung.
+            patience: Real time in s after which a simulator that neither answers nor advances its clock counts as hung.
 
         Raises:
             SettingsError: The arguments are invalid, no rclpy or rospy is installed, or a node is already running.

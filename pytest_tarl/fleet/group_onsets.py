@@ -1,4 +1,4 @@
-"""Find the groups whose world differs from the recorded one, and since when.
+"""Find the groups whose world differs from the recorded one, and the time since when it differs.
 
 All missions of a group, of all its robots, pass through one monitor in the order of their times, as in `tarl watch`. A
 change that is too small or too short to be detected in one robot (such as a season at a site) can be detected in all

@@ -1,7 +1,7 @@
 """The page of a fleet: one self-contained HTML file that stays readable with ten thousand robots.
 
 The page shares styles with the report page (report/page/page.css). fleet.js draws its map, timeline and table of robots
-from an embedded JSON document. The numbers of robots are stored as columns.
+from an embedded JSON document. Robots are stored as columns of numbers.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.residuals import Model, fitted, residuals
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 
-FEWEST = 5  # minimum number of missions that visited a cell, to state its residual
+FEWEST = 5  # minimum number of missions in a cell for which a residual is stated
 
 
 @dataclass(frozen=True)

@@ -99,10 +99,10 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 def factors(low: Floats, high: Floats, found: Floats) -> None:
     """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
 
-    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks, the same
-    function of 1 - p on large ranks, and the same function of twice the distance of p to the nearer end of [0, 1] on
-    both. The lines 1 ± (1 - 2p)/2 win on small shifts. Powers are computed by square roots, which round equally on all
-    platforms.
+    `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks if p is
+    the rank, and on large ranks if p is 1 minus the rank. They win on both if p is twice the distance from the rank to
+    the nearer end of [0, 1]. The lines 1 ± (1 - 2p)/2 win on small shifts, where p is the rank. Powers are computed by
+    square roots, which round equally on all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

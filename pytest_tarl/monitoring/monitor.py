@@ -62,7 +62,7 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Update with missions in order; the state does not depend, to the last bit, on their division into calls."""
+        """Update with missions in order; however they are divided into calls, the state is the same to the last bit."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:

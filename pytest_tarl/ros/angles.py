@@ -35,5 +35,5 @@ def two_pi_complement(angle: float) -> float:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("angles", name)

@@ -188,5 +188,5 @@ def _opencv(function: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("cv_bridge", name)

@@ -26,5 +26,5 @@ def CV_MAT_DEPTHWrap(i: int) -> int:  # noqa: N802
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("cv_bridge.boost.cv_bridge_boost", name)

@@ -35,7 +35,7 @@ class DeserializationError(MessageException):
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("genpy", name)

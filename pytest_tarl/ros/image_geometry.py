@@ -228,5 +228,5 @@ def _opencv(what: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("image_geometry", name)

@@ -69,5 +69,5 @@ class LaserProjection:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("laser_geometry", name)

@@ -32,7 +32,7 @@ _ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w-]+)\)")
 class Launched:
     """A node of a launch file. `path` is its Python program; if it has none, `foreign` says why.
 
-    `problem` says why it cannot be started; it is empty if it can be.
+    `problem` says why the node cannot be started; it is empty if the node can be started.
     """
 
     launch: Launch

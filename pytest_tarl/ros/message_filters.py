@@ -206,7 +206,7 @@ def _ns(stamp: Any) -> int:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("message_filters", name)

@@ -163,5 +163,5 @@ class RosPack:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse(str(sys._getframe(1).f_globals.get("__name__", "rospkg")), name)

@@ -136,5 +136,5 @@ def create_cloud_xyz32(header: Any, points: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("point_cloud2", name)

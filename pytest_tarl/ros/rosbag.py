@@ -223,5 +223,5 @@ def _opened(path: Path, mode: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosbag", name)

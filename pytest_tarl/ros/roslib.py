@@ -12,7 +12,7 @@ def load_manifest(package_name: str) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("roslib", name)

@@ -134,5 +134,5 @@ class SoundClient:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("sound_play.libsoundplay", name)

@@ -20,5 +20,5 @@ def do_transform_cloud(cloud: Any, transform: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("tf2_sensor_msgs", name)

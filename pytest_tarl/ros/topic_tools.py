@@ -65,5 +65,5 @@ class LazyTransport(SubscribeListener, metaclass=_Subscribing):
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("topic_tools", name)

@@ -28,5 +28,5 @@ def get_name_of_constant(C: Any, n: int) -> str:  # noqa: N803 (actionlib's name
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("actionlib", name)

@@ -36,5 +36,5 @@ def get_parameter_names(config: dict[str, Any]) -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("dynamic_reconfigure", name)

@@ -12,5 +12,5 @@ __all__ = ["InteractiveMarkerServer", "MenuHandler"]
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("interactive_markers", name)

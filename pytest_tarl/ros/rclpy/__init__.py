@@ -105,5 +105,5 @@ def spin_until_future_complete(
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rclpy", name)

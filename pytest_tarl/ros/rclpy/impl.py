@@ -8,5 +8,5 @@ from pytest_tarl.ros.missing import refuse
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rclpy.impl", name)

@@ -112,5 +112,5 @@ def _message(parameter: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rclpy.parameter_client", name)

@@ -161,5 +161,5 @@ class TransformBroadcaster:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("tf", name)

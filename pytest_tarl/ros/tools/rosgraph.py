@@ -145,5 +145,5 @@ def myargv(argv: Sequence[str] | None = None) -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosgraph", name)

@@ -123,5 +123,5 @@ def anonymous_name(id: str) -> str:  # noqa: A002 (rosgraph's name)
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosgraph.names", name)

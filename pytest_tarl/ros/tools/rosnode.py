@@ -43,5 +43,5 @@ def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosnode", name)

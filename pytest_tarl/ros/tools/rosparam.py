@@ -97,5 +97,5 @@ def list_params(ns: str) -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosparam", name)

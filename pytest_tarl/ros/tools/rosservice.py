@@ -58,5 +58,5 @@ def call_service(service_name: str, service_args: Any, service_class: Any = None
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rosservice", name)

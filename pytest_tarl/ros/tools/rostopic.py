@@ -63,5 +63,5 @@ def _known(topic: str) -> tuple[str | None, str | None, Evaluate]:
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rostopic", name)

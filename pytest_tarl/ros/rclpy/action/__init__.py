@@ -13,5 +13,5 @@ __all__ = ["ActionClient", "ActionServer", "CancelResponse", "GoalResponse"]
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("rclpy.action", name)
