@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -45,7 +46,6 @@ LIBRARIES = (
     "pygls.lsp.server",
     "lsprotocol.types",
     "cattrs",
-    "anyio",
     "rosbags.rosbag1",
     "rosbags.rosbag2",
     "rosbags.typesys",
@@ -137,8 +137,11 @@ def run(arguments: list[str], output: str) -> None:
         import pytest
 
         status = int(pytest.main(arguments))
+    except BaseException:
+        traceback.print_exc()
     finally:
         sys.stdout.flush()
+        sys.stderr.flush()
         os._exit(status)
 
 

@@ -6,6 +6,7 @@ import ast
 import importlib
 import subprocess
 from collections.abc import Iterator
+from importlib.metadata import entry_points, packages_distributions
 from pathlib import Path
 from typing import Any
 
@@ -178,3 +179,10 @@ def test_without_coverage_each_file_of_tests_runs_for_each_fault(
     assert reached.at("half.py", [1]) == sorted(files)
     assert reached.within(0.0, reached.at("half.py", [1]), "half.py") == ["test_half.py", "test_a.py"]
     assert mutants.tested(tmp_path, files, 60.0, runner) == (1, "test_half.py")
+
+
+def test_the_warm_process_imports_no_plugin_of_pytest(mutants: Any) -> None:
+    homes = packages_distributions()
+    plugins = {one.dist.name for one in entry_points(group="pytest11") if one.dist is not None}
+    names = {name.partition(".")[0] for name in importlib.import_module("warm_pytest").LIBRARIES}
+    assert not plugins & {home for name in names for home in homes.get(name, ())}
