@@ -46,6 +46,7 @@ def parser() -> Parser:
     """Return the parser of the command line."""
     parser = Parser(prog="tarl", description="Inspect recordings, watch robots, and apply repairs of TARL.")
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
+    parser.passing = frozenset({"observe"})
     commands = parser.add_subparsers(required=True, metavar="COMMAND", dest="command")
     add_show(commands)
     add_diff(commands)

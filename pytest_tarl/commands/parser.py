@@ -13,7 +13,12 @@ NO_COMMAND = "the following arguments are required: COMMAND"
 
 
 class Parser(argparse.ArgumentParser):
-    """The parser of `tarl` or of one of its commands."""
+    """The parser of `tarl` or of one of its commands.
+
+    `passing` names the commands that pass the arguments after `--` on, in `argv`.
+    """
+
+    passing: frozenset[str] = frozenset()
 
     def error(self, message: str) -> NoReturn:
         """Print the usage (of `tarl` alone: the list of commands) and a sentence, and exit with 2."""
@@ -25,7 +30,12 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
         """Parse the arguments. Report an unknown argument with the usage of its command instead of that of `tarl`."""
-        found, extra = self.parse_known_args(args)
+        given = sys.argv[1:] if args is None else list(args)
+        # argparse takes `argv` together with the first positional argument, and so refuses options between the two
+        end = given.index("--") if given[:1] and given[0] in self.passing and "--" in given else len(given)
+        found, extra = self.parse_known_args(given[:end])
+        if end < len(given):
+            found.argv += given[end + 1 :]
         if extra:
             command: Parser = getattr(found, "parser", self)
             command.error(f"unrecognized arguments: {' '.join(extra)}")
