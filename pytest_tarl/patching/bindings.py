@@ -57,9 +57,9 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
         for found in _bindings(node)
         if source.function(found.node) is function
     }
-    return frozenset(
-        names.difference(*(node.names for node in inside if isinstance(node, ast.Global | ast.Nonlocal)))
-    )
+    elsewhere = [node for node in inside if isinstance(node, ast.Global | ast.Nonlocal)]
+    own = [node.names for node in elsewhere if source.function(node) is function]
+    return frozenset(names.difference(*own))
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
