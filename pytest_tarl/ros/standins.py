@@ -77,6 +77,20 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "dynamic_reconfigure.encoding": "dynamic_reconfigure.encoding",
     "dynamic_reconfigure.server": "dynamic_reconfigure.server",
     "diagnostic_updater": "diagnostic_updater",
+    "smach": "smach",
+    "smach.state": "smach.state",
+    "smach.state_machine": "smach.machine",
+    "smach.concurrence": "smach.concurrence",
+    "smach.iterator": "smach.iterating",
+    "smach.sequence": "smach.machine",
+    "smach.user_data": "smach.userdata",
+    "smach.container": "smach.container",
+    "smach.exceptions": "smach.errors",
+    "smach_ros": "smach_ros",
+    "smach_ros.introspection": "smach_ros.introspection",
+    "smach_ros.monitor_state": "smach_ros.monitoring",
+    "smach_ros.service_state": "smach_ros.services",
+    "smach_ros.simple_action_state": "smach_ros.actions",
     "laser_geometry": "laser_geometry",
     "laser_geometry.laser_geometry": "laser_geometry",
     "tf2_sensor_msgs": "tf2_sensor_msgs",
@@ -147,7 +161,7 @@ TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_tra
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
             "interactive_markers", "rosidl_runtime_py", "diagnostic_updater", "laser_geometry",
-            "tf2_sensor_msgs")  # fmt: skip
+            "tf2_sensor_msgs", "smach", "smach_ros")  # fmt: skip
 MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 STANDALONE = (

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any
 
 from pytest_tarl.ros.messages import class_of
@@ -59,11 +58,13 @@ class _Filling:
         self.summary(level if self._kind == "ros1" else bytes([level]), text)
 
 
+_WRAPPERS: dict[Kind, type[Any]] = {}
+
+
 def wrapper_of(kind: Kind) -> Any:
-    """Return `DiagnosticStatusWrapper`, a subclass of DiagnosticStatus in this ROS generation."""
-    return _wrapper(kind, class_of(kind, "diagnostic_msgs/DiagnosticStatus"))
-
-
-@lru_cache(maxsize=8)
-def _wrapper(kind: Kind, message: type[Any]) -> type[Any]:
-    return type("DiagnosticStatusWrapper", (_Filling, message), {"_kind": kind})
+    """Return `DiagnosticStatusWrapper`, a subclass of the generation's DiagnosticStatus."""
+    message = class_of(kind, "diagnostic_msgs/DiagnosticStatus")
+    known = _WRAPPERS.get(kind)
+    if known is None or message not in known.__mro__:
+        known = _WRAPPERS[kind] = type("DiagnosticStatusWrapper", (_Filling, message), {"_kind": kind})
+    return known

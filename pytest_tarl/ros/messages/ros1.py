@@ -93,12 +93,22 @@ def _equal(one: Any, other: Any) -> bool:
 
 def _rebuild(name: str, state: list[Any]) -> Message:
     """Unpickle a message by its type name, because its module exists only during an episode."""
-    built = message_class(*name.split("/"))
+    built = field_class(name) or _service_part(name)
     if built is None:
         raise FieldError(f"message type {name} is not known")
     message: Message = object.__new__(built)
     message.__setstate__(state)
     return message
+
+
+def _service_part(name: str) -> type[Message] | None:
+    """Return the class of a service's request or response by its type name, `package/NameRequest`."""
+    for suffix, part in (("Request", "_request_class"), ("Response", "_response_class")):
+        service = service_class(*name.removesuffix(suffix).split("/")) if name.endswith(suffix) else None
+        if service is not None:
+            built: type[Message] = getattr(service, part)
+            return built
+    return None
 
 
 def as_yaml(value: Any, indent: str = "") -> str:

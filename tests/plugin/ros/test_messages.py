@@ -74,6 +74,12 @@ def test_parts_of_services_and_actions_can_be_pickled(part: str) -> None:
     assert pickle.loads(pickle.dumps(made)) == made
 
 
+@pytest.mark.parametrize("part", ["_request_class", "_response_class"])
+def test_parts_of_services_of_ros_1_can_be_copied(part: str) -> None:
+    made = getattr(message_type("std_srvs/SetBool"), part)()
+    assert pickle.loads(pickle.dumps(made)) == made == copy.deepcopy(made)
+
+
 def test_ros1_constructor_takes_all_by_position_or_any_by_keyword() -> None:
     vector = message_type("geometry_msgs/Vector3")
     assert vector(1.0, 2.0, 3.0) == vector(x=1.0, y=2.0, z=3.0)

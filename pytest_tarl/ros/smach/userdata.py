@@ -1,0 +1,107 @@
+"""Userdata: named values that states pass on, and the view that a state has of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pytest_tarl.ros.smach.errors import InvalidUserCodeError
+
+
+class UserData:
+    """Values by key, as attributes and as items."""
+
+    def __init__(self) -> None:
+        self._data: dict[str, Any] = {}
+
+    def update(self, ud: UserData) -> None:
+        """Take all values of another userdata."""
+        self._data.update(ud._data)
+
+    def extract(self, keys: Iterable[str], remapping: Mapping[str, str]) -> UserData:
+        """Return the values of `keys`, stored under the remapped names."""
+        part = UserData()
+        part.merge(self, keys, remapping)
+        return part
+
+    def merge(self, ud: Any, keys: Iterable[str], remapping: Mapping[str, str]) -> None:
+        """Take the values of `keys` from another userdata, under the remapped names; skip keys without a value."""
+        for key in keys:
+            name = remapping.get(key, key)
+            if key in ud:
+                self[name] = ud[key]
+
+    def keys(self) -> list[str]:
+        """Return the keys."""
+        return list(self._data)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._data
+
+    def __getitem__(self, key: str) -> Any:
+        return self._data[key]
+
+    def __setitem__(self, key: str, item: Any) -> None:
+        self._data[key] = item
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a value; KeyError if there is none, as in smach. Names with an underscore are no values."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._data[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name.startswith("_"):
+            object.__setattr__(self, name, value)
+        else:
+            self._data[name] = value
+
+
+class Remapper:
+    """The view of a state: its own names for keys, reading its input keys and writing its output keys."""
+
+    def __init__(
+        self,
+        ud: Any,
+        input_keys: Iterable[str] = (),
+        output_keys: Iterable[str] = (),
+        remapping: Mapping[str, str] | None = None,
+    ) -> None:
+        self._ud = ud
+        self._input, self._output = set(input_keys), set(output_keys)
+        self._map = dict(remapping or {})
+
+    def keys(self) -> list[str]:
+        """Return the input keys that have a value."""
+        return [key for key in sorted(self._input) if key in self]
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._input and self._map.get(key, key) in self._ud
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self._input:
+            raise InvalidUserCodeError(
+                f"Reading from SMACH userdata key '{key}' but the only keys that were declared as input to this state "
+                f"were: {sorted(self._input)}."
+            )
+        return self._ud[self._map.get(key, key)]
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        if key not in self._output:
+            raise InvalidUserCodeError(
+                f"Writing to SMACH userdata key '{key}' but the only keys that were declared as output from this state "
+                f"were: {sorted(self._output)}."
+            )
+        self._ud[self._map.get(key, key)] = value
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the value of an input key."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name.startswith("_"):
+            object.__setattr__(self, name, value)
+        else:
+            self[name] = value

@@ -1,0 +1,22 @@
+"""smach_ros for ROS 1: states that use actions, services and topics, and containers as action servers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.smach_ros.actions import SimpleActionState
+from pytest_tarl.ros.smach_ros.introspection import IntrospectionServer
+from pytest_tarl.ros.smach_ros.monitoring import ConditionState, MonitorState, set_preempt_handler
+from pytest_tarl.ros.smach_ros.services import ServiceState
+from pytest_tarl.ros.smach_ros.serving import ActionServerWrapper
+
+__all__ = [
+    "ActionServerWrapper", "ConditionState", "IntrospectionServer", "MonitorState", "ServiceState", "SimpleActionState",
+    "set_preempt_handler",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Raise for a name that the stand-in lacks."""
+    raise refuse("smach_ros", name)

@@ -1,0 +1,110 @@
+"""States that watch a topic or a condition, and the link from the end of a node to its container."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from pytest_tarl.ros.rospy.node import is_shutdown, on_shutdown
+from pytest_tarl.ros.rospy.timing import Duration, get_time, sleep
+from pytest_tarl.ros.rospy.topics import Subscriber
+from pytest_tarl.ros.smach.state import State
+from pytest_tarl.ros.smach_ros import slots
+
+_LOOK = Duration(0.05)
+
+
+class MonitorState(State):
+    """Calls `cond_cb(userdata, message)` for each message of a topic, until it returns a false value.
+
+    Outcomes: "invalid" then, "valid" after `max_checks` messages, "preempted".
+    """
+
+    def __init__(
+        self,
+        topic: str,
+        msg_type: Any,
+        cond_cb: Callable[..., Any],
+        max_checks: int = -1,
+        input_keys: Iterable[str] = (),
+        output_keys: Iterable[str] = (),
+    ) -> None:
+        super().__init__(["valid", "invalid", "preempted"], input_keys, output_keys)
+        self._topic, self._type, self._condition = topic, msg_type, cond_cb
+        self._most = max_checks
+        slots.declare(self, [cond_cb], (), ())
+
+    def execute(self, ud: Any) -> str:
+        """Watch the topic, and return the outcome."""
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        ended: list[str] = []
+        count = [0]
+
+        def take(message: Any) -> None:
+            if ended:
+                return
+            count[0] += 1
+            if 0 < self._most <= count[0]:
+                ended.append("valid")
+            elif not self._condition(ud, message):
+                ended.append("invalid")
+
+        subscriber = Subscriber(self._topic, self._type, take)
+        while not ended and not self.preempt_requested() and not is_shutdown():
+            sleep(_LOOK)
+        subscriber.unregister()
+        if self.preempt_requested():
+            self.service_preempt()
+            return "preempted"
+        return ended[0] if ended else "preempted"
+
+
+class ConditionState(State):
+    """Calls `cond_cb(userdata)` until it returns a true value.
+
+    Outcomes: "true" then, "false" after `max_checks` calls or `timeout`, "preempted".
+    """
+
+    def __init__(
+        self,
+        cond_cb: Callable[..., Any],
+        input_keys: Iterable[str] = (),
+        poll_rate: Any = None,
+        timeout: Any = None,
+        max_checks: int = 1,
+    ) -> None:
+        super().__init__(["true", "false", "preempted"], input_keys)
+        self._condition, self._most = cond_cb, max_checks
+        rate = slots.seconds(poll_rate)
+        self._pause = Duration(0.05 if rate is None else rate)
+        self._limit = slots.seconds(timeout)
+        slots.declare(self, [cond_cb], (), ())
+
+    def execute(self, ud: Any) -> str:
+        """Check the condition, and return the outcome."""
+        began, checks = get_time(), 0
+        while not is_shutdown():
+            if self.preempt_requested():
+                self.service_preempt()
+                return "preempted"
+            if self._limit is not None and get_time() - began > self._limit:
+                return "false"
+            if self._condition(ud):
+                return "true"
+            checks += 1
+            if 0 < self._most <= checks:
+                return "false"
+            sleep(self._pause)
+        return "preempted"
+
+
+def set_preempt_handler(sc: Any) -> None:
+    """Ask a container to end when the node ends."""
+
+    def end() -> None:
+        if sc.is_running():
+            sc.request_preempt()
+
+    on_shutdown(end)
