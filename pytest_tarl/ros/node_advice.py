@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import linecache
 import re
-from collections.abc import Iterator
-from types import FrameType
+import sys
+from collections.abc import Iterator, Sequence
+from types import FrameType, TracebackType
 
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.launched import Given
@@ -75,10 +77,50 @@ def _of_arguments(error: BaseException) -> str:
         if module in ("argparse", "optparse") and frame.f_code.co_name == "error":
             said = frame.f_locals.get("message") or frame.f_locals.get("msg")
             return f"Its command line is incomplete ({said}): {hint}"
-    place = blame.of_traceback(error.__traceback__)
-    if place is not None and "argv" in linecache.getline(place[0], place[1]):
-        return f"The node reads its command line: {hint}"
-    return ""
+    looks = (
+        any(map(_checks_arguments, _of_program(error)))
+        if isinstance(error, SystemExit)
+        else _indexes_arguments(_of_program(error)[-1:])
+    )
+    return f"The node reads its command line: {hint}" if looks else ""
+
+
+def _of_program(error: BaseException) -> list[TracebackType]:
+    """Return the entries of an error's traceback that are in the node's own files."""
+    entries = [*_traceback(error)]
+    began = next(
+        (place for place, one in enumerate(entries) if one.tb_frame.f_globals.get("__name__") == "__main__"),
+        0,
+    )
+    return [one for one in entries[began:] if not blame.is_library(one.tb_frame.f_code.co_filename)]
+
+
+def _checks_arguments(entry: TracebackType) -> bool:
+    """Return whether the statement at which a frame stopped, or a condition around it, reads the arguments."""
+    code = entry.tb_frame.f_code
+    return any("argv" in text for text in _statement_and_conditions(code.co_filename, entry.tb_lineno))
+
+
+def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
+    """Return whether the line at which an index was too large names `argv`, or a variable that holds it."""
+    for entry in innermost:
+        line = linecache.getline(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
+        held = [name for name, value in entry.tb_frame.f_locals.items() if value == sys.argv]
+        if any(re.search(rf"\b{re.escape(name)}\b", line) for name in ("argv", *held)):
+            return True
+    return False
+
+
+def _statement_and_conditions(file: str, line: int) -> Iterator[str]:
+    """Yield the line of a file, and the conditions of the `if` statements around it."""
+    yield linecache.getline(file, line)
+    try:
+        tree = ast.parse("".join(linecache.getlines(file)))
+    except (SyntaxError, ValueError):
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and node.lineno <= line <= (node.end_lineno or node.lineno):
+            yield ast.unparse(node.test)
 
 
 def _innermost(error: BaseException) -> FrameType | None:
@@ -87,7 +129,12 @@ def _innermost(error: BaseException) -> FrameType | None:
 
 def _frames(error: BaseException) -> Iterator[FrameType]:
     """Yield the frames of an error's traceback, outermost first."""
-    traceback = error.__traceback__
-    while traceback is not None:
-        yield traceback.tb_frame
-        traceback = traceback.tb_next
+    yield from (entry.tb_frame for entry in _traceback(error))
+
+
+def _traceback(error: BaseException) -> Iterator[TracebackType]:
+    """Yield the entries of an error's traceback, outermost first."""
+    entry = error.__traceback__
+    while entry is not None:
+        yield entry
+        entry = entry.tb_next

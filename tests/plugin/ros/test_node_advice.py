@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,12 @@ CASES = {
     "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
     "argparse.ArgumentParser().parse_args(['--what'])": r"incomplete \(unrecognized arguments: --what\): pass argv=",
 }
+BLOCKS = {
+    "import sys\ndef usage():\n    sys.exit(1)\nif len(sys.argv) == 1:\n    usage()": "reads its command line",
+    "import sys\ndef main(args):\n    return args[1]\nmain(sys.argv)": "reads its command line",
+    "import sys\ndef main(args):\n    return [][0]\nmain(sys.argv)": r"in main\)\.$",
+    "import sys\nif sys.maxsize:\n    sys.exit(1)": r"line 3\)\.$",
+}
 SILENT = ["{}['key']", "[][0]", "None.name", "1 / 0", "sys.exit(3)", "undefined_name", "'a' + 1"]
 IMPORTS = "import argparse, os, sys, yaml\nimport rospy\nrospy.init_node('it')\n"
 
@@ -44,6 +51,13 @@ def test_an_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -
         start(IMPORTS + line)
     assert "line 4)" in str(error.value)
     assert str(error.value).count("\n") == 0
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_a_node_that_ends_without_arguments_is_told_to_get_them(block: str, start: Start) -> None:
+    with pytest.raises(NodeError) as error:
+        start(block)
+    assert re.search(BLOCKS[block], str(error.value))
 
 
 @pytest.mark.parametrize("line", SILENT)
