@@ -28,13 +28,20 @@ from pytest_tarl.ros.rclpy.context import Context, this_context
 from pytest_tarl.ros.rclpy.executors import Executor, SingleThreadedExecutor
 from pytest_tarl.ros.rclpy.node import Node
 from pytest_tarl.ros.rclpy.parameter import Parameter
+from pytest_tarl.ros.rclpy.qos import QoSProfile, qos_profile_rosout_default
 from pytest_tarl.ros.rclpy.signals import (
     SignalHandlerOptions,
     install_signal_handlers,
     uninstall_signal_handlers,
 )
 from pytest_tarl.ros.rclpy.task import Future
-from pytest_tarl.ros.rclpy.utilities import get_default_context, ok, shutdown, try_shutdown
+from pytest_tarl.ros.rclpy.utilities import (
+    get_default_context,
+    get_rmw_implementation_identifier,
+    ok,
+    shutdown,
+    try_shutdown,
+)
 
 clock = duration = clock_type = (
     time  # `import rclpy` is enough for rclpy.duration.Duration, as in rclpy itself
@@ -43,11 +50,13 @@ publisher = subscription = topics
 client = service
 
 __all__ = [
-    "Context", "Executor", "Future", "Node", "Parameter", "SignalHandlerOptions", "callback_groups", "client",
-    "clock", "clock_type", "context", "create_node", "duration", "exceptions", "executors", "get_default_context",
-    "get_global_executor", "init", "install_signal_handlers", "logging", "node", "ok", "parameter", "publisher",
-    "qos", "service", "shutdown", "signals", "spin", "spin_once", "spin_until_future_complete", "subscription",
-    "task", "time", "timer", "try_shutdown", "uninstall_signal_handlers", "utilities",
+    "Context", "Executor", "Future", "Node", "Parameter", "QoSProfile", "SignalHandlerOptions",
+    "callback_groups", "client", "clock", "clock_type", "context", "create_node", "duration", "exceptions",
+    "executors", "get_default_context", "get_global_executor", "get_rmw_implementation_identifier", "init",
+    "install_signal_handlers", "logging", "node", "ok", "parameter", "publisher", "qos",
+    "qos_profile_rosout_default", "service", "shutdown", "signals", "spin", "spin_once",
+    "spin_until_future_complete", "subscription", "task", "time", "timer", "try_shutdown",
+    "uninstall_signal_handlers", "utilities",
 ]  # fmt: skip
 
 

@@ -198,9 +198,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         raw: bool = False,
         content_filter_options: Any = None,
     ) -> Subscription:
-        """Create a subscription; raise for raw subscriptions and content filters, which the bus does not support."""
-        if raw:
-            raise unsupported("Node.create_subscription(raw=True)")
+        """Create a subscription; raise for filters of content, which the bus does not have."""
         if content_filter_options is not None:
             raise unsupported("Node.create_subscription(content_filter_options=…)")
         place = self.process.bus.topic(self.resolve_topic_name(topic))
@@ -208,7 +206,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         profile = overridden(
             self, "subscription", place.name, as_profile(qos_profile), qos_overriding_options
         )
-        made = Subscription(self, msg_type, place, callback, group, profile)
+        made = Subscription(self, msg_type, place, callback, group, profile, raw)
         self._add(made, self.subscriptions_)
         return made
 

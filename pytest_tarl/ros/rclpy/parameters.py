@@ -70,6 +70,7 @@ class NodeParameters:
             self._accept_declared(parameter, described)
         self._parameters[name] = parameter
         self._descriptors[name] = described
+        self.parameters_changed([parameter], set())
         return parameter
 
     def _description(self, name: str, wanted: Any, default: Any, given: Any, descriptor: Any) -> Any:

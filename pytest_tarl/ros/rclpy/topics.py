@@ -7,9 +7,10 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from pytest_tarl.ros.bus import Topic
+from pytest_tarl.ros.messages import ros2_wire
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.rclpy.exceptions import InvalidHandle
@@ -22,6 +23,15 @@ _VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 
 
 MsgType = TypeVar("MsgType")  # rclpy's name, for annotations of nodes
+
+
+class MessageInfo(TypedDict):
+    """Times (ns) and numbers that a callback gets with a message."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int | None
+    reception_sequence_number: int | None
 
 
 class Publisher:
@@ -47,9 +57,11 @@ class Publisher:
     topic = topic_name
 
     def publish(self, msg: Any) -> None:
-        """Publish a message. Raise TypeError for a message of another type."""
+        """Publish a message, or one in serialised form. Raise TypeError for a message of another type."""
         if self._destroyed:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        if isinstance(msg, bytes):
+            msg = ros2_wire.deserialize(msg, self.msg_type)
         if not isinstance(msg, self.msg_type):
             raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
         try:
@@ -87,10 +99,12 @@ class Subscription:
         callback: Callable[[Any], Any],
         group: Any,
         profile: QoSProfile,
+        raw: bool = False,
     ) -> None:
         _require_message_class(msg_type)
         self.process = node.process
         self.node = node
+        self.raw = raw
         self.msg_type = self.message_type = msg_type
         self.callback = callback
         self.callback_group = group
@@ -122,8 +136,10 @@ class Subscription:
         return bool(self.queue)
 
     def run(self) -> Any:
-        """Call the callback with the oldest message, and with its times if it takes two arguments."""
+        """Call the callback with the oldest message (its bytes if `raw`), and its times if it takes two arguments."""
         message = self.queue.popleft()
+        if self.raw:
+            message = ros2_wire.serialize(message)
         return self._callback(message, self._info()) if self._wants_info else self._callback(message)
 
     @property
@@ -136,7 +152,7 @@ class Subscription:
         self._callback = callback
         self._wants_info = _wants_info(callback)
 
-    def _info(self) -> dict[str, Any]:
+    def _info(self) -> MessageInfo:
         now = self.process.scheduler.time
         return {"source_timestamp": now, "received_timestamp": now, "publication_sequence_number": None,
                 "reception_sequence_number": None}  # fmt: skip
