@@ -12,6 +12,7 @@ from types import CodeType, FrameType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.environment import set_variables, variables_restored
+from pytest_tarl.ros.eventloops import virtual_event_loops
 from pytest_tarl.ros.exiting import exits_of_nodes
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.keyboard import terminals
@@ -221,6 +222,7 @@ def standins_installed(
     try:
         with (
             virtual_host_time(scheduler),
+            virtual_event_loops(scheduler),
             threads_as_tasks(),
             terminals(processes),
             variables_restored(),

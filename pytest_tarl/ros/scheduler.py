@@ -13,6 +13,10 @@ from functools import partial
 from heapq import heappop, heappush
 from typing import Any, Protocol
 
+try:  # the C part of asyncio, which costs no time to import
+    from _asyncio import _get_running_loop, _set_running_loop
+except ImportError:
+    from asyncio import _get_running_loop, _set_running_loop
 from greenlet import GreenletExit, getcurrent, greenlet
 
 from pytest_tarl.errors import NodeError, StuckNodeError
@@ -49,7 +53,7 @@ class Program(Protocol):
 class Task:
     """One thread of control of a process: its main program, a running callback, or a timer."""
 
-    __slots__ = ("args", "done", "function", "parked", "patience", "process", "ticket", "worker")
+    __slots__ = ("args", "done", "function", "loop", "parked", "patience", "process", "ticket", "worker")
 
     def __init__(self, process: Program, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
         self.process = process
@@ -59,6 +63,7 @@ class Task:
         self.parked = False
         self.patience = PATIENCE  # number of polls left until the task must wait
         self.done = False
+        self.loop: Any = None  # asyncio's running loop while the task waits inside of one
         self.worker: Worker | None = None
 
     def execute(self) -> None:
@@ -122,6 +127,9 @@ class Scheduler:
     def __init__(self) -> None:
         self.time = 0
         self.failure: BaseException | None = None
+        self.keeps_loops = (
+            False  # whether a task has run an event loop; asyncio has one running loop per thread
+        )
         self._sleeping: list[tuple[int, int, Task, int]] = []
         self._alarms: list[tuple[int, int, Callable[[], None]]] = []
         self._ready: deque[Callable[[], None]] = deque()
@@ -252,7 +260,14 @@ class Scheduler:
         self._running = task
         if self.entering is not None:
             self.entering(task.process)
+        outer = None
+        if self.keeps_loops:
+            outer = _get_running_loop()
+            _set_running_loop(task.loop)
         worker.switch(woken)
+        if self.keeps_loops:
+            task.loop = _get_running_loop()
+            _set_running_loop(outer)
 
 
 __all__ = ["Program", "Scheduler", "Spinning", "Task", "current_task", "running_task"]

@@ -18,11 +18,14 @@ from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
 _OWN = str(Path(__file__).parents[1])  # threads started by this package remain real threads
+_STDLIB = str(Path(threading.__file__).parent)
 _PASSED_THROUGH = (
     threading.__file__,
     queue.__file__,
+    f"{_STDLIB}/concurrent/futures/",
+    f"{_STDLIB}/asyncio/",
     __file__,
-)  # modules that create locks and threads for their callers
+)  # modules that create locks, queues and threads for their callers
 
 
 @contextmanager
@@ -32,6 +35,7 @@ def threads_as_tasks() -> Iterator[None]:
         (threading, "Lock", _instead(threading.Lock, Lock)),
         (threading, "RLock", _instead(threading.RLock, ReentrantLock)),
         (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # used by Condition.wait
+        (queue, "SimpleQueue", _simple_queue(queue.SimpleQueue)),  # used by concurrent.futures
         (threading.Thread, "start", _start(threading.Thread.start)),
         (threading.Thread, "join", _join(threading.Thread.join)),
         (threading.Thread, "is_alive", _is_alive(threading.Thread.is_alive)),
@@ -44,6 +48,16 @@ def threads_as_tasks() -> Iterator[None]:
     finally:
         for owner, name, value in saved:
             setattr(owner, name, value)
+        _forget_pools()
+
+
+def _forget_pools() -> None:
+    """Remove tasks from the threads that concurrent.futures joins at the end of the program."""
+    pools: Any = sys.modules.get("concurrent.futures.thread")
+    if pools is None:
+        return
+    for thread in [one for one in pools._threads_queues if "_tarl_task" in vars(one)]:
+        del pools._threads_queues[thread]
 
 
 class Lock:
@@ -142,10 +156,24 @@ def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Calla
     return make
 
 
+def _simple_queue(real: Callable[[], Any]) -> Callable[[], Any]:
+    """Return a function that makes queues in Python, whose locks suspend tasks, for nodes."""
+
+    def make() -> Any:
+        return queue._PySimpleQueue() if running_task() is not None and _asked_by_node() else real()  # type: ignore[attr-defined]
+
+    return make
+
+
 def _asked_by_node() -> bool:
-    """Return whether a node's own code is the caller. Locks of a library that is being imported outlive the episode."""
+    """Return whether a node's own code, or the start of a thread of it, is the caller.
+
+    Locks of a library that is being imported outlive the episode.
+    """
     frame: FrameType | None = sys._getframe(2)
-    while frame is not None and frame.f_code.co_filename in _PASSED_THROUGH:
+    while frame is not None and frame.f_code.co_filename.startswith(_PASSED_THROUGH):
+        if frame.f_code is _run_as_task.__code__:
+            return True
         frame = frame.f_back
     file = "<" if frame is None else frame.f_code.co_filename
     return not (file.startswith(_OWN) or blame.is_library(file))
@@ -163,16 +191,17 @@ def _start(real: Callable[[threading.Thread], None]) -> Callable[[threading.Thre
         vars(thread)["_tarl_joiners"] = joiners
         scheduler = task.process.scheduler
 
-        def run() -> None:
-            try:
-                thread.run()
-            finally:
-                for joiner in joiners:
-                    scheduler.wake(joiner)
-
-        vars(thread)["_tarl_task"] = scheduler.spawn(task.process, run)
+        vars(thread)["_tarl_task"] = scheduler.spawn(task.process, _run_as_task, thread, joiners, scheduler)
 
     return start
+
+
+def _run_as_task(thread: threading.Thread, joiners: list[Task], scheduler: Scheduler) -> None:
+    try:
+        thread.run()
+    finally:
+        for joiner in joiners:
+            scheduler.wake(joiner)
 
 
 def _join(real: Callable[..., None]) -> Callable[..., None]:

@@ -432,8 +432,8 @@ def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> Non
 def test_errors_name_missing_apis(start: Start) -> None:
     make = "import rclpy; rclpy.init(); node = rclpy.create_node('n');"
     for missing, line in {
-        r"rclpy\.serialization": "import rclpy.serialization",
-        r"rclpy\.experimental": "from rclpy.experimental import EventsExecutor",
+        r"rclpy\.waitable": "import rclpy.waitable",
+        r"rclpy\.type_hash": "from rclpy.type_hash import TypeHash",
         r"Node\.add_waitable": f"{make} node.add_waitable(print)",
     }.items():
         with pytest.raises(UnsupportedApiError, match=missing):
