@@ -198,7 +198,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         raw: bool = False,
         content_filter_options: Any = None,
     ) -> Subscription:
-        """Create a subscription; raise for filters of content, which the bus does not have."""
+        """Create a subscription; raise for content filters, which the bus does not support."""
         if content_filter_options is not None:
             raise unsupported("Node.create_subscription(content_filter_options=…)")
         place = self.process.bus.topic(self.resolve_topic_name(topic))
