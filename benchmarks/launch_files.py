@@ -28,6 +28,7 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_read import is_ros2_xml, read_launch
 from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.read import read
+from tarl_lint.workspace.ros_arguments import ros1, ros2
 from tarl_lint.workspace.ros_names import joined
 
 ORACLES = Path(__file__).parent / "launch_oracles"
@@ -89,7 +90,7 @@ def _compared(workspace: Workspace, files: Sequence[Path], python: str, name: st
         arguments: Any = request["arguments"]
         launch = read_launch(file, workspace, arguments)
         ours = set(_of_launch(launch, name == "ros2"))
-        others = set(_of_answer(theirs))
+        others = set(_of_answer(theirs, name == "ros2"))
         robots = {fact[:-1] for fact in others if fact[0] == "param" and _ROBOT.search(fact[-1])}
         counts["robot"] += len(robots)
         wrong = {
@@ -140,11 +141,11 @@ def _asked(workspace: Workspace, files: Sequence[Any], python: str, name: str) -
     return answers
 
 
-def _of_answer(answer: Mapping[str, Any]) -> Iterator[Fact]:
+def _of_answer(answer: Mapping[str, Any], two: bool) -> Iterator[Fact]:
     for package, executable, namespace, name, remaps, *more in answer["nodes"]:
         node = _node(package, executable, namespace, name)
         yield ("node", *node)
-        for old, new in dict(remaps).items():
+        for old, new in dict(reversed(remaps) if two else remaps).items():  # the first counts in ROS 2
             yield ("remap", *node, old, new)
         for key, value in (more[0] if more else {}).items():
             yield ("param", *node, key, _value(value))
@@ -162,7 +163,9 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
             continue
         name = _node(node.package, node.executable, node.namespace, node.name)
         yield ("node", *(_of_environment(one) for one in name))
-        for old, new in {_plain(old): _plain(new) for old, new in node.remaps}.items():
+        given = (ros2 if two else ros1)(node.arguments)  # arguments, which the originals pass on to the node
+        pairs = [pair for pair in node.remaps if pair not in given.remaps]
+        for old, new in {_plain(old): _plain(new) for old, new in pairs}.items():
             yield ("remap", *name, old, new)
         if two:
             for key, value in _of_ros2(node).items():
@@ -176,7 +179,8 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
 
 
 def _known(node: LaunchedNode) -> list[Setting]:
-    return [one for one in node.settings if not one.unknown]
+    given = {*ros1(node.arguments).parameters, *ros2(node.arguments).parameters}
+    return [one for one in node.settings if not one.unknown and (one.name, one.yaml) not in given]
 
 
 def _of_ros2(node: LaunchedNode) -> dict[str, Any]:

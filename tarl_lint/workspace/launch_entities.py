@@ -12,6 +12,7 @@ from tarl_lint.workspace.launch_values import (
     Choice,
     Comparison,
     Configuration,
+    Content,
     Expression,
     Here,
     Joined,
@@ -21,8 +22,9 @@ from tarl_lint.workspace.launch_values import (
 )
 
 _IGNORED: Final = frozenset(["executable", "set_env", "unset_env", "append_env", "reset_env", "log", "log_info",
-                             "shutdown", "keep", "env", "param", "remap"])  # fmt: skip
+                             "shutdown", "set_ros_log_dir", "keep", "env", "param", "remap"])  # fmt: skip
 
+_LOGIC: Final = {"not": "not", "and": "and", "or": "or", "all": "and", "any": "or"}
 _QUOTED: Final = re.compile(r"""(["'])((?:\\.|(?!\1)[^\\])*)\1""", re.DOTALL)
 _ESCAPED: Final = re.compile(r"""\\(["'])""")
 
@@ -179,8 +181,10 @@ def _substitution(inside: str) -> Any:
         return OnRobot(inside, default)
     if name in ("equals", "not-equals") and len(words) == 2:
         return Comparison(first, words[1], equal=name == "equals")
-    if name in ("not", "and", "or"):
-        return Logic(name, tuple(words))
+    if name in _LOGIC:
+        return Logic(_LOGIC[name], tuple(words))
+    if name == "file-content":
+        return Content(first)
     if name == "if" and len(words) > 1:
         return Choice(first, words[1], words[2] if len(words) > 2 else "")
     return OnRobot(inside)

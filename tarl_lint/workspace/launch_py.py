@@ -13,6 +13,7 @@ from tarl_lint.workspace.launch_values import (
     Choice,
     Comparison,
     Configuration,
+    Content,
     Context,
     Expression,
     Here,
@@ -90,10 +91,14 @@ class _File:
             "launch.actions.GroupAction": self._group,
             "launch.actions.OpaqueFunction": self._opaque,
             "launch.actions.TimerAction": self._action("group", "period"),
+            "launch_ros.actions.RosTimer": self._action("group", "period"),
             "launch.actions.RegisterEventHandler": self._handler,
             **{f"launch.actions.{name}": self._action("other") for name in (
                 "ExecuteProcess", "LogInfo", "SetEnvironmentVariable", "AppendEnvironmentVariable", "EmitEvent",
-                "UnsetEnvironmentVariable", "Shutdown", "ExecuteLocal")},
+                "UnsetEnvironmentVariable", "Shutdown", "ExecuteLocal", "ResetEnvironment", "PushEnvironment",
+                "PopEnvironment", "UnregisterEventHandler")},
+            **{f"launch_ros.actions.{name}": self._action("other") for name in (
+                "LifecycleTransition", "SetROSLogDir")},
             **{f"launch.event_handlers.{name}": self._action("event") for name in (
                 "OnProcessExit", "OnProcessStart", "OnShutdown", "OnExecutionComplete")},
             "launch_ros.event_handlers.OnStateTransition": self._action("event"),
@@ -119,7 +124,8 @@ class _File:
 
     def _packages(self) -> dict[str, Any]:
         models: dict[str, Any] = {
-            f"launch_ros.substitutions.{name}": Package for name in ("FindPackageShare", "FindPackage")
+            f"launch_ros.substitutions.{name}": lambda package: Package(package, self._folder)
+            for name in ("FindPackageShare", "FindPackage")
         }
         for module in ("ament_index_python", "ament_index_python.packages"):
             models[f"{module}.get_package_share_directory"] = self._folder
@@ -195,6 +201,9 @@ def _substitutions() -> dict[str, Any]:
         f"{module}.EqualsSubstitution": Comparison,
         f"{module}.NotEqualsSubstitution": lambda left, right: Comparison(left, right, equal=False),
         f"{module}.NotSubstitution": lambda value: Logic("not", (value,)),
+        f"{module}.AllSubstitution": lambda *values: Logic("and", values),
+        f"{module}.AnySubstitution": lambda *values: Logic("or", values),
+        f"{module}.FileContent": Content,
         f"{module}.AndSubstitution": lambda *values: Logic("and", values),
         f"{module}.OrSubstitution": lambda *values: Logic("or", values),
         f"{module}.IfElseSubstitution": _choice,

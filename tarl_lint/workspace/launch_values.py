@@ -6,10 +6,12 @@ A text known only on the robot stays symbolic: it contains what it depends on as
 from __future__ import annotations
 
 import posixpath
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.expressions import Library, Unknown, constant
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
@@ -97,7 +99,7 @@ class _Configurations(dict[str, Any]):
 class Substitution:
     """A text that depends on the context. Launch files call `perform` in an OpaqueFunction."""
 
-    readable: frozenset[str] = frozenset({"perform"})
+    readable: ClassVar = frozenset({"perform"})
 
     def text(self, context: Context, depth: int) -> str:
         """Return the text in a context."""
@@ -209,12 +211,18 @@ class Package(Substitution):
     """`FindPackageShare`: the source folder of a workspace package stands for its share directory."""
 
     name: Any
+    found: Callable[[Any], Any] | None = field(default=None, compare=False)  # returns the folder of a package
+    readable: ClassVar = frozenset({"perform", "find"})
 
     def text(self, context: Context, depth: int) -> str:
         """Return the folder."""
         name = performed(self.name, context, depth)
         found = context.workspace.package(name)
         return f"$(find-pkg-share {name})" if found is None else str(found.folder)
+
+    def find(self, name: Any) -> Any:
+        """Return the folder of a package; launch files call this before there is a context."""
+        return Unknown(0, "find") if self.found is None else self.found(name)
 
 
 @dataclass(frozen=True)
@@ -226,6 +234,25 @@ class Here(Substitution):
     def text(self, context: Context, depth: int) -> str:  # noqa: ARG002 - shared signature
         """Return the path of the launch file, or of its folder."""
         return str(context.file if self.whole else context.file.parent)
+
+
+@dataclass(frozen=True)
+class Content(Substitution):
+    """`FileContent`, `$(file-content path)`: the text of a file of the workspace."""
+
+    path: Any
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the text of the file."""
+        path = performed(self.path, context, depth)
+        if not symbolic(path) and Path(path).is_relative_to(context.workspace.root):
+            try:
+                found = read_text(Path(path), LONGEST)
+            except UnreadableError:
+                found = "$("
+            if not symbolic(found):
+                return found
+        return f"$(file-content {path})"
 
 
 @dataclass(frozen=True)

@@ -480,3 +480,23 @@ def test_substitutions_of_navigation_2_are_interpreted(tmp_path: Path) -> None:
     assert [one.executable for one in found.nodes] == ["b"]
     assert settings(found) == [("~", "/**:\n  ros__parameters:\n    kp: 2.0\n")]
     assert [one.reason for one in found.problems] == ["the parameter file $(RewrittenYaml) is not known here"]
+
+
+def test_the_content_of_a_file_is_known(tmp_path: Path) -> None:
+    text = """
+        from launch import LaunchDescription
+        from launch.substitutions import AnySubstitution, FileContent
+        from launch.conditions import IfCondition
+        from launch_ros.actions import Node, RosTimer
+        from launch_ros.substitutions import FindPackageShare
+        import os
+
+        def generate_launch_description():
+            text = FileContent(os.path.join(FindPackageShare("arm_base").find("arm_base"), "config", "ros2.yaml"))
+            return LaunchDescription([RosTimer(period=1.0, actions=[
+                Node(package="arm_base", executable="a", condition=IfCondition(AnySubstitution("false", "true")),
+                     parameters=[{"text": text, "other": FileContent("/etc/no")}])])])
+    """
+    found = launched(tmp_path, text, "x.launch.py")
+    assert settings(found)[0][1] == "/**:\n  ros__parameters:\n    kp: 2.0\n"
+    assert [one.reason for one in found.problems] == ["the parameter other is not constant"]
