@@ -137,7 +137,7 @@ def hops(instances: Sequence[Instance]) -> list[Hop]:
 def _through_servers(instances: Sequence[Instance], found: Sequence[Hop]) -> Iterator[Hop]:
     """Yield the possible flows of servers that were not read, from requests to responses that nodes use."""
     sinks, sources = {hop.sink for hop in found}, {hop.source for hop in found}
-    served = _names(instances, "serves")
+    served = _names(instances, "serves") | _names(instances, "performs")
     for asked, answered in PARTS:
         for sink in sorted(one for one in sinks - sources if one.endswith(asked)):
             name = sink.removesuffix(asked)

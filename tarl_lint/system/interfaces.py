@@ -26,7 +26,7 @@ from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.fields import misfits
-from tarl_lint.system.model import Endpoint, Interface
+from tarl_lint.system.model import Endpoint, Interface, Role
 from tarl_lint.system.parameters import deciding, reads_named_parameters, words
 from tarl_lint.system.qos import of_call
 from tarl_lint.system.quiet_imports import closed
@@ -34,6 +34,7 @@ from tarl_lint.system.service_calls import CLIENTS, called_services
 from tarl_lint.system.staleness import stale
 
 _OWN: Final = "__main__"
+_SERVED: Final[Mapping[str, Role]] = {"service": "serves", "action": "performs"}
 
 
 def interface(
@@ -132,8 +133,9 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
         if record.kind == "topic":
             qos = of_call(outlines[record.path], record.pos) if record.api.startswith("rclpy") else None
             yield Endpoint("subscribes", source.topics, source.type, source.span, qos, source.qualname)
-        elif record.kind == "service" and not record.api.startswith(CLIENTS):
-            yield Endpoint("serves", source.topics, source.type, source.span, None, source.qualname)
+        elif record.kind in _SERVED and not record.api.startswith(CLIENTS):
+            role = _SERVED[record.kind]
+            yield Endpoint(role, source.topics, source.type, source.span, None, source.qualname)
     yield from _publishers(machine, tracer, outlines)
 
 

@@ -14,7 +14,7 @@ from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined, remapped
 
-Role = Literal["publishes", "subscribes", "serves", "calls"]
+Role = Literal["publishes", "subscribes", "serves", "calls", "performs"]  # of topics, services, actions
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,9 @@ _SERVERS: Final = (
     "actionlib.ActionServer",
     "rclpy.action.ActionServer",
 )
-PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"))  # of services, of actions
+FEEDBACK: Final = (".publish_feedback", ".feedback")  # ends of the names of calls that send or receive it
+# What goes to the server of a service or action, and what may come back
+PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goal)", " (feedback)"))
 
 
 def part(api: str, *, sent: bool) -> str:
@@ -33,6 +35,8 @@ def part(api: str, *, sent: bool) -> str:
     client = api.startswith(CLIENTS)
     if not client and not api.startswith(_SERVERS):
         return ""
+    if api.endswith(FEEDBACK):
+        return PARTS[2][1]
     parts = PARTS[1] if "action" in api else PARTS[0]
     return parts[0] if client is sent else parts[1]
 

@@ -184,3 +184,130 @@ def test_a_node_with_clients_only_is_analysed(kind, arm, capsys):  # noqa: F811 
     _, out, _ = run(capsys, "--launch", str(arm / "arm/launch/a.launch"))
     ends = ("result", "goal") if "action" in kind else ("response", "request")
     assert any(f"/agent ({ends[0]}) → /only → /agent ({ends[1]})" in line for line in flows(out)), out
+
+
+FEEDBACK_OF_ROS1 = {
+    "server": """
+        import actionlib, rospy
+        from move_base_msgs.msg import *
+        from std_msgs.msg import Float64
+
+        nearest = 0.0
+        def on_scan(scan):
+            global nearest
+            nearest = scan.data
+
+        def execute(goal):
+            server.publish_feedback(MoveBaseFeedback(nearest))
+            server.set_succeeded(MoveBaseResult())
+
+        rospy.init_node("server")
+        rospy.Subscriber("scan", Float64, on_scan)
+        server = actionlib.SimpleActionServer("drive", MoveBaseAction, execute, False)
+        rospy.spin()
+        """,
+    "client": """
+        import actionlib, rospy
+        from move_base_msgs.msg import *
+        from std_msgs.msg import Float64
+
+        def done(state, result):
+            ended.publish(state)
+
+        def feedback(message):
+            heard.publish(message.base_position)
+
+        def on_goal(message):
+            client.send_goal(MoveBaseGoal(message.data), done, feedback_cb=feedback)
+
+        rospy.init_node("client")
+        ended = rospy.Publisher("ended", Float64, queue_size=1)
+        heard = rospy.Publisher("heard", Float64, queue_size=1)
+        client = actionlib.SimpleActionClient("drive", MoveBaseAction)
+        rospy.Subscriber("wish", Float64, on_goal)
+        rospy.spin()
+        """,
+}
+FEEDBACK_OF_ROS2 = {
+    "server": """
+        import rclpy
+        from rclpy.action import ActionServer
+        from rclpy.node import Node
+        from nav2_msgs.action import NavigateToPose
+        from std_msgs.msg import Float64
+
+        class Server(Node):
+            def __init__(self):
+                super().__init__("server")
+                self.nearest = 0.0
+                self.server = ActionServer(self, NavigateToPose, "drive", self.execute)
+                self.create_subscription(Float64, "scan", self.on_scan, 10)
+
+            def on_scan(self, scan):
+                self.nearest = scan.data
+
+            def execute(self, goal):
+                feedback = NavigateToPose.Feedback()
+                feedback.distance_remaining = self.nearest
+                goal.publish_feedback(feedback)
+                goal.succeed()
+                return NavigateToPose.Result()
+
+        rclpy.init()
+        rclpy.spin(Server())
+        """,
+    "client": """
+        import rclpy
+        from rclpy.action import ActionClient
+        from rclpy.node import Node
+        from nav2_msgs.action import NavigateToPose
+        from std_msgs.msg import Float64
+
+        class Client(Node):
+            def __init__(self):
+                super().__init__("client")
+                self.client = ActionClient(self, NavigateToPose, "drive")
+                self.ended = self.create_publisher(Float64, "ended", 10)
+                self.heard = self.create_publisher(Float64, "heard", 10)
+                self.create_subscription(Float64, "wish", self.on_wish, 10)
+
+            def on_wish(self, wish):
+                goal = NavigateToPose.Goal()
+                goal.pose.pose.position.x = wish.data
+                sent = self.client.send_goal_async(goal, feedback_callback=self.on_feedback)
+                sent.add_done_callback(lambda sent: sent.result().get_result_async().add_done_callback(self.done))
+
+            def done(self, future):
+                self.ended.publish(Float64(data=float(future.result().result.error_code)))
+
+            def on_feedback(self, message):
+                self.heard.publish(Float64(data=message.feedback.distance_remaining))
+
+        rclpy.init()
+        rclpy.spin(Client())
+        """,
+}
+
+
+@pytest.mark.parametrize("programs", [FEEDBACK_OF_ROS1, FEEDBACK_OF_ROS2], ids=["ROS 1", "ROS 2"])
+def test_feedback_of_an_action_is_not_its_result(programs, arm, capsys):  # noqa: F811 - the fixture
+    shebang = "#!/usr/bin/env python3\n"
+    write(arm, {f"arm/scripts/{name}.py": shebang + dedent(text) for name, text in programs.items()})
+    nodes = "".join(f'<node pkg="arm" type="{name}.py" name="{name}"/>' for name in programs)
+    write(arm, {"arm/launch/a.launch": f"<launch>{nodes}</launch>"})
+    _, out, _ = run(capsys, "--launch", str(arm / "arm/launch/a.launch"))
+    assert flows(out) == [
+        "/drive (result) → /client → /ended  explicit",
+        "/scan → /server → /drive (feedback) → /client → /heard  explicit",
+        "/wish → /client → /drive (goal)  explicit",
+    ]
+
+
+def test_a_server_that_is_not_read_may_send_feedback(arm, capsys):  # noqa: F811 - the fixture
+    write(arm, {"arm/scripts/client.py": "#!/usr/bin/env python3\n" + dedent(FEEDBACK_OF_ROS1["client"])})
+    write(arm, {"arm/launch/a.launch": '<launch><node pkg="arm" type="client.py" name="client"/></launch>'})
+    _, out, _ = run(capsys, "--launch", str(arm / "arm/launch/a.launch"), "--to", "/heard")
+    server_ = "[server of /drive, not read]"
+    assert flows(out) == [
+        f"/wish → /client → /drive (goal) → {server_} → /drive (feedback) → /client → /heard  not read"
+    ]

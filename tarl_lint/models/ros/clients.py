@@ -14,7 +14,7 @@ from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency
-from tarl_lint.memory.values import BOTTOM, Obj, Value, pointer
+from tarl_lint.memory.values import Obj, Value, pointer
 from tarl_lint.models import argument_parsers, launched
 from tarl_lint.models.ros import publications, services, subscriptions
 from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
@@ -39,6 +39,12 @@ BY_METHOD: Final[Mapping[str, Fact]] = {
 SENDING: Final = frozenset(
     ["__call__", "call", "call_async", "send_goal", "send_goal_and_wait", "send_goal_async"]
 )
+RESULT, FEEDBACK = "result", "feedback"
+# Callbacks of a goal, and what each of them gets: `send_goal` calls `done_cb` with the state and the result
+_CALLBACKS: Final[Mapping[str, Mapping[tuple[int, str], tuple[str, ...] | str]]] = {
+    "send_goal": {(1, "done_cb"): (RESULT, RESULT), (2, "active_cb"): (), (3, "feedback_cb"): FEEDBACK},
+    "send_goal_async": {(1, "feedback_callback"): FEEDBACK},
+}
 READING: Final = frozenset(["get_result"])
 
 
@@ -84,12 +90,18 @@ def _used(ctx: Interpreter, target: Obj, it: Invocation) -> Value | None:
 
 
 def _call_back(ctx: Interpreter, info: Publisher, it: Invocation, answer: Value) -> None:
-    """Run the callback of `send_goal` with the state and result that the server reports."""
-    done = it.argument((1, "done_cb")) if it.name == "send_goal" else BOTTOM
-    key = ("done", *ctx.end_key(it.frame.program.path, it.call.pos, it.frame), info.api)
-    for target in done.objects:
-        if target.kind in CALLABLE:
-            subscriptions.call_when(ctx, key, target, [answer, answer], "callback")
+    """Run the callbacks of a goal: for the state and result, for the feedback, and for the start of the action."""
+    key = (*ctx.end_key(it.frame.program.path, it.call.pos, it.frame), info.api)
+    for where, values in _CALLBACKS.get(it.name, {}).items():
+        for target in it.argument(where).objects:
+            if target.kind not in CALLABLE:
+                continue
+            if values == FEEDBACK:
+                record = _record(ctx, info, it, FEEDBACK)
+                given = [] if record is None else [pointer(subscriptions.message(ctx, record, target))]
+            else:
+                given = [answer] * values.count(RESULT)
+            subscriptions.call_when(ctx, (where[1], *key), target, given, "callback")
 
 
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
@@ -97,17 +109,25 @@ def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
 
     Whether it depends on the request is found by the analysis of the server's node.
     """
+    record = _record(ctx, info, it, "")
+    if record is None:
+        return Value(call_contexts.all_used(ctx, it.arguments))
+    return services.arrived(ctx, record, it)
+
+
+def _record(ctx: Interpreter, info: Publisher, it: Invocation, channel: str) -> SourceRecord | None:
+    """Return the source of the answers to a call, or of the feedback; None outside of statements."""
     frame, place = it.frame, (it.frame.program.path, it.call.pos)
-    key = ctx.end_key(*place, frame)
+    key = (*ctx.end_key(*place, frame), *([channel] if channel else []))
     record = ctx.sources.get(key)
     if record is None and frame.statement is not None:
         module = ctx.modules[place[0]].name
         qualname = publications.qualname(frame)
-        record = SourceRecord(*place, key, info.api, module, qualname, frame.statement, frame)
+        api = f"{info.api}.{channel}" if channel else info.api
+        record = SourceRecord(*place, key, api, module, qualname, frame.statement, frame)
         record.kind = info.kind
         ctx.sources[key] = record
-    if record is None:
-        return Value(call_contexts.all_used(ctx, it.arguments))
-    record.topics.update(info.topics)
-    record.types.update(info.types)
-    return services.arrived(ctx, record, it)
+    if record is not None:
+        record.topics.update(info.topics)
+        record.types.update(info.types)
+    return record
