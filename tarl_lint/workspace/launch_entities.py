@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
+    Anonymous,
     Choice,
     Comparison,
     Configuration,
@@ -175,7 +176,7 @@ def _substitution(inside: str) -> Any:
     if name in ("dirname", "filename"):
         return Here(whole=name == "filename")
     if name == "anon":
-        return first
+        return Anonymous(first)
     if name in ("env", "optenv"):
         default = words[1] if len(words) > 1 else "" if name == "optenv" else None
         return OnRobot(inside, default)

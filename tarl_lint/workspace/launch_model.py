@@ -33,7 +33,8 @@ class Setting:
 class LaunchedNode:
     """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
-    The first `inherited` remappings are those of the groups around the node.
+    The first `inherited` remappings are those of the groups around the node. `unique` is False if the name is made
+    unique on the robot, or if an event starts the node, possibly in place of another one.
 
     Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is a condition that only the robot can
     evaluate; "" if the node is started in any case. For a component, `executable` is its class.
@@ -51,6 +52,7 @@ class LaunchedNode:
     kind: Kind = "node"
     condition: str = ""
     inherited: int = 0
+    unique: bool = True
 
 
 @dataclass(frozen=True, slots=True)

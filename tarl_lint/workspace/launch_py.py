@@ -10,6 +10,7 @@ from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
 from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
+    Anonymous,
     Choice,
     Comparison,
     Configuration,
@@ -159,7 +160,9 @@ class _File:
         """Return the actions of an event handler, which start when the event occurs."""
         handler = keywords.pop("event_handler", handler)
         values = handler.values if isinstance(handler, Action) else {}
-        return self._action("group", "actions")([values[key] for key in _EVENTS if key in values], **keywords)
+        return self._action("group", "actions")(
+            [values[key] for key in _EVENTS if key in values], **{"event": True, **keywords}
+        )
 
     def _opaque(self, function: Any = None, **keywords: Any) -> Action:
         line, args, named = self.file.line, keywords.pop("args", None), keywords.pop("kwargs", None)
@@ -197,7 +200,7 @@ def _substitutions() -> dict[str, Any]:
         f"{module}.EnvironmentVariable": _environment,
         f"{module}.Command": lambda *_, **__: OnRobot("command"),
         f"{module}.FindExecutable": lambda *_, **__: OnRobot("find-exec"),
-        f"{module}.AnonName": lambda name: Joined(_parts(name)),
+        f"{module}.AnonName": lambda name: Anonymous(_hashed(name)),
         f"{module}.EqualsSubstitution": Comparison,
         f"{module}.NotEqualsSubstitution": lambda left, right: Comparison(left, right, equal=False),
         f"{module}.NotSubstitution": lambda value: Logic("not", (value,)),

@@ -15,7 +15,15 @@ from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
-from tarl_lint.workspace.launch_values import Context, Substitution, performed, symbolic, truth
+from tarl_lint.workspace.launch_values import (
+    Anonymous,
+    Context,
+    Joined,
+    Substitution,
+    performed,
+    symbolic,
+    truth,
+)
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.python_values import FilePath
 from tarl_lint.workspace.ros_arguments import first_of_each
@@ -83,6 +91,7 @@ class Runner:
     arguments: set[str] = field(default_factory=set)  # declared names
     including: list[object] = field(default_factory=list)  # files around an action, with their arguments
     seen: int = 0
+    events: int = 0  # number of event handlers around an action
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:
         """Interpret actions in order; `condition` is an enclosing condition known only on the robot."""
@@ -127,7 +136,9 @@ class Runner:
             inner = context.inside() if scoped else context
             for name, value in _items(values.get("launch_configurations")):
                 inner.configurations[performed(name, context)] = performed(value, context)
+            self.events += bool(values.get("event"))
             self.run(values.get("actions"), inner, condition)
+            self.events -= bool(values.get("event"))
         elif action.kind in ("node", "container"):
             self._node(action, context, condition)
         elif action.kind == "load":
@@ -240,6 +251,7 @@ class Runner:
                 kind,
                 condition,
                 len(inherited),
+                not self.events and not _anonymous(values.get("name")),
             )
         )
 
@@ -316,6 +328,12 @@ def _command(values: Mapping[str, Any], context: Context) -> str:
         texts.append(shlex.quote(text) if listed and " " in text else text)
     more = [performed(one, context) for one in _listed(values.get("ros_arguments"))]
     return " ".join([*texts, *(["--ros-args", *more] if more else [])])
+
+
+def _anonymous(name: Any) -> bool:
+    """Return whether a name has a part that is made unique on the robot."""
+    parts = name.parts if isinstance(name, Joined) else name if isinstance(name, list | tuple) else (name,)
+    return any(isinstance(one, Anonymous) for one in parts)
 
 
 def _private(given: ros_arguments.Given) -> Iterator[tuple[str, str]]:

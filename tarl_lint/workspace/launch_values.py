@@ -140,6 +140,17 @@ class Joined(Substitution):
 
 
 @dataclass(frozen=True)
+class Anonymous(Substitution):
+    """`AnonName`, `$(anon name)`: a name that the robot makes unique; here without what makes it unique."""
+
+    name: Any
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the name."""
+        return performed(self.name, context, depth)
+
+
+@dataclass(frozen=True)
 class Expression(Substitution):
     """`PythonExpression([…])`, `$(eval …)`: evaluated if it is constant."""
 

@@ -159,6 +159,7 @@ class _Reader:
                 arguments,
                 condition=place.condition,
                 inherited=len(place.remaps),
+                unique="$(anon " not in element.get("name", ""),
             )
         )
 

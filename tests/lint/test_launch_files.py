@@ -500,3 +500,27 @@ def test_the_content_of_a_file_is_known(tmp_path: Path) -> None:
     found = launched(tmp_path, text, "x.launch.py")
     assert settings(found)[0][1] == "/**:\n  ros__parameters:\n    kp: 2.0\n"
     assert [one.reason for one in found.problems] == ["the parameter other is not constant"]
+
+
+def test_names_that_are_made_unique_and_nodes_of_events_are_marked(tmp_path: Path) -> None:
+    python = """
+        from launch import LaunchDescription
+        from launch.actions import RegisterEventHandler
+        from launch.event_handlers import OnProcessExit
+        from launch.substitutions import AnonName
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            first = Node(package="p", executable="a", name="first")
+            again = RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[first]))
+            return LaunchDescription([first, again, Node(package="p", executable="a", name=[AnonName("x"), "_y"])])
+    """
+    xml = '<launch><let name="a" value="b"/><node pkg="p" exec="e" name="$(anon x)"/></launch>'
+    ros1 = '<launch><node pkg="p" type="e" name="$(anon x)"/><node pkg="p" type="e" name="x"/></launch>'
+    found = [launched(tmp_path, text, name).nodes for text, name in
+             ((python, "x.launch.py"), (xml, "x.launch.xml"), (ros1, "x.launch"))]  # fmt: skip
+    assert [[(one.name, one.unique) for one in nodes] for nodes in found] == [
+        [("first", True), ("first", False), ("x_y", False)],
+        [("x", False)],
+        [("x", False), ("x", True)],
+    ]

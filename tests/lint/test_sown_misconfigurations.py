@@ -39,6 +39,10 @@ SECOND = """\
                 remappings=[("cmd_vel", "cmd_vel_raw")],
             ),
 """
+SAME = """\
+                remappings=[("cmd_vel", "cmd_vel_raw")],
+            ),
+"""
 SERVICE = '        self.create_service(Trigger, "~/release", lambda _, answer: answer)\n'
 
 SOWN: dict[str, tuple[str, str, list[Edit]]] = {
@@ -101,6 +105,10 @@ SOWN: dict[str, tuple[str, str, list[Edit]]] = {
     "a parameter is spelled wrong": (
         "TARL307", "/scout/detector has no parameter farhtest",
         [(PERCEPTION, '<param name="farthest"', '<param name="farhtest"')],
+    ),
+    "a node is started twice": (
+        "TARL310", "/scout/planner is started twice",
+        [(BRINGUP, PLANNED, PLANNED + SAME + PLANNED)],
     ),
     "a field is that of another type": (
         "TARL309", "LaserScan has no field angle_start",

@@ -1,0 +1,84 @@
+"""TARL310: two nodes of a launch file have the same name.
+
+ROS 1 refuses the launch file as a whole: *roslaunch file contains multiple nodes named …*. In ROS 2 both nodes start
+and share their parameters and services, so a request reaches one of them by chance. The launch files of a perception
+stack could not be started with one combination of arguments, because two nodes were named `to_pose_array`
+(https://github.com/strands-project/strands_perception_people/issues/212).
+
+Names are compared with their namespaces. The rule does not cover nodes with `$(anon …)`, nodes without a name whose
+program was not read, nodes that an event starts, and nodes that are started under a condition known only on the robot,
+because one of them may replace the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.files import shown
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_node
+from tarl_lint.system.model import Instance, System
+
+CODE: Final = "TARL310"
+SUMMARY: Final = "two nodes of a launch file have the same name"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="filter.py" name="filter"/>
+      <group ns="/">
+        <node pkg="robot" type="filter.py" name="filter"/>
+      </group>
+    </launch>
+    --- scripts/filter.py
+    import rospy
+    from sensor_msgs.msg import LaserScan
+
+    rospy.init_node("filter")
+    pub = rospy.Publisher("filtered", LaserScan, queue_size=1)
+    rospy.Subscriber("scan", LaserScan, pub.publish)
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="filter.py" name="filter"/>
+      <node pkg="robot" type="filter.py" name="filter" ns="rear"/>
+      <node pkg="robot" type="filter.py" name="$(anon filter)"/>
+      <node pkg="robot" type="filter.py" name="$(anon filter)"/>
+    </launch>
+    --- scripts/filter.py
+    import rospy
+    from sensor_msgs.msg import LaserScan
+
+    rospy.init_node("filter")
+    pub = rospy.Publisher("filtered", LaserScan, queue_size=1)
+    rospy.Subscriber("scan", LaserScan, pub.publish)
+    rospy.spin()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each node that has the name of an earlier one."""
+    if system.file.is_dir():
+        return  # the nodes of several launch files
+    first: dict[str, Instance] = {}
+    for instance in system.instances:
+        other = first.setdefault(instance.name, instance) if _named(instance) else instance
+        if other is not instance:
+            place = f"{shown(other.node.file)}:{other.node.line}"
+            message = f"{instance.name} is started twice, also at {place}: give each node its own name"
+            yield at_node(CODE, instance, message, instance.name.rpartition("/")[2])
+
+
+def _named(instance: Instance) -> bool:
+    """Return whether a node is certainly started, and its name is known."""
+    node = instance.node
+    known = bool(node.name) or (instance.interface is not None and bool(instance.interface.name))
+    return known and node.unique and not node.condition and "$(" not in instance.name
