@@ -27,6 +27,7 @@ from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.smaller import EARLY, EPISODES, WORSE, smaller
+from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
 from tarl_lint.model import Operand
 
@@ -103,6 +104,7 @@ class Sweep:
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
+        self._unmasked_under: set[tuple[Unit, Guard]] = set()
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -167,6 +169,7 @@ class Sweep:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
         yield from self._leaders_together(guard)
+        yield from self._unmasked(guard)
 
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
         """Try the best units of other guards under this guard, because those guards may be too narrow."""
@@ -472,6 +475,19 @@ class Sweep:
         if leaders and leaders[0][0] > self.slack and not self.proposed:
             hidden = [unit for unit in self.units if not self._gains.moves(unit)]
             yield from self._joining({}).unions([part for _, part in leaders], guard, hidden)
+
+    def _unmasked(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the units without an effect once more, under the best unit, if its missions last longer."""
+        leaders = self._gains.leaders(guard)
+        if self.proposed or not leaders or leaders[0][0] < GAINED * self.goal.wanted:
+            return
+        unit, factor = leaders[0][1]
+        base, joining = Joint(((unit, factor),), guard), self._joining({})
+        if (unit, guard) in self._unmasked_under or not longer(base, joining):
+            return
+        self._unmasked_under.add((unit, guard))
+        hidden = [one for one in self.units if not self._gains.moves(one) and one.operands != unit.operands]
+        yield from unmasked(base, hidden, joining)
 
     def _joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None

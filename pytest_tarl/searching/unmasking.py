@@ -1,0 +1,82 @@
+"""Try constants that had no effect alone once more, under a change after which missions last longer.
+
+A mission that fails early never reaches the statements that come later, so their constants have no effect. For
+example, a film tears after a few turns of a pallet. With less tension it holds, but the few turns of it do not hold
+the load: the number of turns matters only under the smaller tension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Sequence
+from statistics import fmean
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.plainness import kind
+from pytest_tarl.searching.refining import between
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.units import NEAR, Unit
+
+GAINED = 0.3  # share of the wanted gain that a change must bring before others are tried under it
+LONGER = 1.2  # ratio by which its missions must last longer than before
+MOST = 24  # maximum number of constants to try under it
+FINER = (1.5, 0.65)  # factors for a constant that has an effect under it
+ROUNDS = 2  # number of times that the best factor of such a constant is refined
+
+
+def longer(base: Joint, selection: ForwardSelection) -> bool:
+    """Return whether the missions of a combination that ran last longer than those of the unrepaired program."""
+    candidate, pairs = base.candidate(selection.mutate), selection.goal.pairs
+    before = [pair.steps for pair in pairs if pair.steps is not None]
+    after = selection.trials.steps(candidate, pairs)
+    return bool(before) and bool(after) and fmean(after) >= LONGER * fmean(before)
+
+
+def unmasked(base: Joint, hidden: Sequence[Unit], selection: ForwardSelection) -> Iterator[Candidate]:
+    """Yield combinations of `base` and one of the `hidden` units that hold. Raise BudgetSpentError.
+
+    Each unit is tried with a larger value, then those without an effect with a smaller one. A unit with an effect is
+    tried at once with further factors.
+    """
+    gain = yield from selection.gain(base)
+    if gain is None:
+        return
+    waiting = sorted(hidden, key=kind)[:MOST]
+    for factor in NEAR:
+        selection.expect([base.with_part(unit, factor) for unit in waiting])
+        still: list[Unit] = []
+        for unit in waiting:
+            wider = base.with_part(unit, factor)
+            found = yield from selection.gain(wider)
+            if found is None:
+                continue
+            if _alike(wider, base, selection):
+                still.append(unit)
+            else:
+                yield from _refined(base, unit, {1.0: gain, factor: found}, selection)
+        waiting = still
+
+
+def _alike(one: Joint, other: Joint, selection: ForwardSelection) -> bool:
+    mutate, trials = selection.mutate, selection.trials
+    return bool(trials.same_as(one.candidate(mutate), other.candidate(mutate)))
+
+
+def _refined(
+    base: Joint, unit: Unit, gains: dict[float, float], selection: ForwardSelection
+) -> Generator[Candidate, None, None]:
+    """Try further factors of a unit, and those between the best ones while the best is not the unchanged value."""
+    yield from _tried(base, unit, FINER, gains, selection)
+    for _ in range(ROUNDS):
+        if max(gains, key=gains.__getitem__) == 1.0:
+            return
+        yield from _tried(base, unit, between(gains, selection.goal.wanted), gains, selection)
+
+
+def _tried(
+    base: Joint, unit: Unit, factors: Sequence[float], gains: dict[float, float], selection: ForwardSelection
+) -> Generator[Candidate, None, None]:
+    for factor in factors:
+        found = yield from selection.gain(base.with_part(unit, factor))
+        if found is not None:
+            gains[factor] = found
