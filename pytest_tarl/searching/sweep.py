@@ -18,6 +18,7 @@ from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
+from pytest_tarl.searching.families import families
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
@@ -105,6 +106,7 @@ class Sweep:
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._unmasked_under: set[tuple[Unit, Guard]] = set()
+        self._families: tuple[Unit, ...] = ()
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -112,6 +114,8 @@ class Sweep:
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
+        self._families = () if self.proposed else families(self.units)
+        self.units = (*self.units, *self._families)
         yield from self._in_large_steps(chief)
         gained = self._gains.anything()
         if gained:
@@ -138,7 +142,9 @@ class Sweep:
                 yield from self._near_ones(block, guard)
         for factor, before in FURTHER:
             for guard in chief:
-                yield from self._all(factor, guard, self._leading(before, guard, -self.slack))
+                leading = self._leading(before, guard, -self.slack)
+                still = [unit for unit in self._families if unit not in leading]
+                yield from self._all(factor, guard, [*leading, *still])
                 yield from self._leaders_together(guard)
         if not self._gains.anything():
             yield from self._late_ones(self.aside, chief)

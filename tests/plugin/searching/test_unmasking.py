@@ -80,7 +80,9 @@ def test_a_value_between_one_that_is_too_small_and_one_that_is_too_large_is_foun
         if factors.get("PULL", 1.0) > 0.75:
             return Outcome(0.0, False, steps=TORN)
         good = 1.7 < turns < 1.85
-        return Outcome(10.0 if good else 4.0 + (turns if turns < 2.0 else 0.0), good, steps=round(WRAPPED * turns))
+        return Outcome(
+            10.0 if good else 4.0 + (turns if turns < 2.0 else 0.0), good, steps=round(WRAPPED * turns)
+        )
 
     base = Joint(((Unit((PULL,)), 0.65),), ALWAYS)
     found = next(unmasked(base, [Unit((TURNS,))], selection(Trials(narrow, 300))))

@@ -1,0 +1,62 @@
+"""Group constants that stand for the same quantity of several axes, sides or joints.
+
+A drone has one stiffness for each axis; if the wind blows in all directions, none of them helps alone. Constants are a
+family if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`), or if their names differ only in a word such as
+`left` or `x`, and if their values are similar.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from pytest_tarl.searching.plainness import Oddness, kind
+from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
+
+SIMILAR = 4.0  # largest ratio between two values of a family
+FEWEST, MOST = 2, 8  # number of constants in a family
+PLACES = frozenset(
+    "x y z roll pitch yaw left right l r front rear back fl fr rl rr bl br upper lower top bottom "
+    "first second third 0 1 2 3 4 5 6 7 8".split()
+)
+_ENTRY = re.compile(r"""\[\s*(?:-?\d+|"[^"\]]*"|'[^'\]]*')\s*\]$""")
+
+
+def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
+    """Return a unit for each family among the named constants, in the order of its first constant."""
+    groups: dict[tuple[str, str, str], list[Operand]] = {}
+    for unit in apart:
+        if unit.chart is None and kind(unit) is Oddness.NAMED:
+            for operand in unit.operands:
+                key = (operand.span.path, operand.site.module, shared_name(operand.code))
+                groups.setdefault(key, []).append(operand)
+    return tuple(Unit(tuple(members)) for key, members in groups.items() if key[2] and _alike(members))
+
+
+def shared_name(code: str) -> str:
+    """Return what the names of a family have in common, with `*` for the place; an empty string if there is none.
+
+    >>> shared_name('STIFFNESS["x"]'), shared_name("self.kp_left"), shared_name("LEFT_KP"), shared_name("self.kp")
+    ('STIFFNESS[*]', 'self.kp_*', '*_kp', '')
+    """
+    if _ENTRY.search(code):
+        return _ENTRY.sub("[*]", code)
+    owner, dot, name = code.rpartition(".")
+    words = name.lower().split("_")
+    placed = ["*" if word in PLACES else word for word in words]
+    if placed == words or all(word == "*" for word in placed):
+        return ""
+    return f"{owner}{dot}{'_'.join(placed)}"
+
+
+def _alike(members: Sequence[Operand]) -> bool:
+    """Return whether the constants are several and their values similar, with the same sign."""
+    values = [one.value for one in members]
+    if any(value is None or isinstance(value, bool) or value == 0 for value in values):
+        return False
+    known = [float(value) for value in values if value is not None]
+    sizes = [abs(value) for value in known]
+    same_sign = all((value > 0) == (known[0] > 0) for value in known)
+    several = FEWEST <= len({one.definition for one in members}) <= MOST
+    return several and same_sign and max(sizes) <= SIMILAR * min(sizes)
