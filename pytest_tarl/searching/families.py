@@ -17,8 +17,12 @@ from tarl_lint.model import Operand
 SIMILAR = 4.0  # largest ratio between two values of a family
 FEWEST, MOST = 2, 8  # number of constants in a family
 PLACES = frozenset(
-    "x y z roll pitch yaw left right l r front rear back fl fr rl rr bl br upper lower top bottom "
-    "first second third 0 1 2 3 4 5 6 7 8".split()
+    (
+        *("x", "y", "z", "roll", "pitch", "yaw"),
+        *("left", "right", "l", "r", "front", "rear", "back", "fl", "fr", "rl", "rr", "bl", "br"),
+        *("upper", "lower", "top", "bottom", "first", "second", "third"),
+        *map(str, range(9)),
+    )
 )
 _ENTRY = re.compile(r"""\[\s*(?:-?\d+|"[^"\]]*"|'[^'\]]*')\s*\]$""")
 

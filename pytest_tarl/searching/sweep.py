@@ -23,19 +23,20 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Set
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
-from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
+from pytest_tarl.searching.plainness import Oddness, kind, named, oddness, plainer, writing
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.smaller import EARLY, EPISODES, WORSE, smaller
-from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
+from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
     import numpy as np
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
+FARTHEST = (*FURTHER, (10.0, 5.0), (0.05, 0.15))  # as FURTHER, while nothing gains
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
@@ -148,9 +149,20 @@ class Sweep:
                 yield from self._leaders_together(guard)
         if not self._gains.anything():
             yield from self._late_ones(self.aside, chief)
+            yield from self._across_a_plateau(chief)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self._gains.moving(self.units))
+
+    def _across_a_plateau(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
+        """While nothing gains, try ever larger steps on constants whose smaller step did not lose."""
+        for factor, before in () if self.proposed else FARTHEST:
+            for guard in chief:
+                if not self._gains.anything():
+                    leading = self._leading(before, guard, -self.slack)
+                    yield from self._all(
+                        factor, guard, [one for one in leading if kind(one) < Oddness.OFFSET]
+                    )
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator, Sequence
 from statistics import fmean
 
-from pytest_tarl.errors import RepairError
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.plainness import kind
 from pytest_tarl.searching.refining import between
