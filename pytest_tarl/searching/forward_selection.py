@@ -21,9 +21,10 @@ PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of
 # number of further units to combine with the first one, because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
-CLIMB = 4  # maximum number of such multiplications
-STRONG = 5.0  # factor for units that have no effect alone
+CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly
+CLIMB = 4  # maximum number of times that a fixed parameter is moved by such a factor
+AMPLE = 1.02  # a combination that gained more than this share of the wanted gain is not adjusted after its refusal
+STRONG = 5.0  # factor for parts that have no effect alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,7 +193,10 @@ class ForwardSelection:
             return
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Drop unneeded parts and yield the result if it is confirmed and new; otherwise adjust the factors."""
+        """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before.
+
+        If the caller refuses it, or if it does not hold on further seeds, its factors are adjusted.
+        """
         least = self._least(joint)
         fewer = least.candidate(self.mutate)
         if fewer in self.settled.held:
@@ -201,7 +205,9 @@ class ForwardSelection:
         for one in dict.fromkeys((fewer, candidate)):
             if self.settled.holds(one, self.trials, self.goal, 0):
                 yield one
-                return
+                if self.trials.gain(one, self.goal.pairs) > AMPLE * self.goal.wanted:
+                    return  # refused, but not because it earns too little
+                break
         yield from self._polished(least)
 
     def _polished(self, joint: Joint) -> Iterator[Candidate]:

@@ -73,6 +73,16 @@ def test_a_pair_that_earns_a_little_too_little_is_adjusted_until_it_holds() -> N
     assert not list(search.gain(Joint(((GRIP, 0.8), (ANGLE, 1.5)), ALWAYS)))  # each combination only once
 
 
+def test_a_pair_that_barely_earns_enough_is_adjusted_after_its_refusal() -> None:
+    first, better = list(selection().gain(Joint(((GRIP, 0.66), (ANGLE, 1.5)), ALWAYS)))
+    assert first.mutations[0].value == 0.66
+    assert better.mutations[0].value == pytest.approx(0.6, rel=0.08)
+
+
+def test_a_pair_that_earns_more_than_enough_is_not_adjusted_after_its_refusal() -> None:
+    assert len(list(selection().gain(Joint(((GRIP, 0.61), (ANGLE, 1.5)), ALWAYS)))) == 1
+
+
 def test_a_pair_whose_missions_fail_is_not_adjusted() -> None:
     search = selection()
     assert not list(search.gain(Joint(((GRIP, 0.4), (ANGLE, 1.5)), ALWAYS)))
