@@ -136,7 +136,7 @@ def _restructure(
     """Spend the remaining episodes on structural changes, because no change of constants was accepted."""
     trials = purse.phase(mutants, "structure", watch)
     chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
-    structures = Structures(mutants.order, chief, trials)
+    structures = Structures(mutants.order, chief, trials, found.effects or {})
     examiner.turns += 1
     try:
         found.accepted = examiner.first(structures.candidates(), trials)

@@ -9,6 +9,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
+from types import MappingProxyType
 
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.document import Document, document
@@ -32,10 +33,10 @@ MOST = {
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
+RESPONDS = 0.2  # a statement responds if one of its constants gained this share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-# minimum number of episodes for templates with a telling sensor, but at most a third of the budget
-LEAST = 50
+LEAST = 50  # minimum number of episodes for templates with a telling sensor; at most a third of the budget
 
 
 class Structures:
@@ -43,10 +44,19 @@ class Structures:
 
     Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
     parameters. If one of its templates gains much, the group also gets half of the episodes left for the other groups.
+    The statements whose constants gained come first (`effects`, by the statement's id), and the best of them has a
+    group of its own.
     """
 
-    def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
+    def __init__(
+        self,
+        order: Order,
+        guards: Sequence[Guard],
+        trials: Trials,
+        effects: Mapping[str, Sequence[OperandEffect]] = MappingProxyType({}),
+    ) -> None:
         self.order = order
+        self.responding = _responding(effects, order.goal.wanted)
         self.guards = guards
         self.trials = trials
         self._sweeps: list[Sweep] = []
@@ -54,9 +64,10 @@ class Structures:
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
-        known, places = templates(self.order.root), list(spots(self.order))
+        known, places = templates(self.order.root), list(spots(self.order, self.responding))
         told = self._told(known, places)
-        groups = [*([told] if told else []), *self._groups(known, places)]
+        near = self._responding(known, places)
+        groups = [group for group in (told, near) if group] + self._groups(known, places)
         whole = self.trials.budget
         sizes = [len(operands) for operands in groups]
         for number, operands in enumerate(groups):
@@ -69,12 +80,15 @@ class Structures:
                 proposed=True,
                 weaker=self.weaker,
                 given=self.given,
+                responding=self.responding,
             )
             self._sweeps.append(sweep)
             left = whole - self.trials.spent
             share = left * sizes[number] // sum(sizes[number:])
             if operands is told:
                 share = min(max(share, LEAST), left // 3)
+            elif operands is near:
+                share = max(share, left // 2)
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
             try:
@@ -146,6 +160,12 @@ class Structures:
                         found += [] if _fixed(form) else [operand]
         return found
 
+    def _responding(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
+        """Return the operands of the templates that need no sensor at the statement that responds most."""
+        here = [spot for spot in among if str(spot.site) in self.responding[:1]]
+        fitting = [one for one in known if one.on not in OF_SENSORS]
+        return [operand for one in fitting for operand in self._at(one, here, first=True)]
+
     def _groups(self, known: Sequence[Template], among: Sequence[Spot]) -> list[list[Operand]]:
         groups: list[list[Operand]] = []
         for first in (True, False):
@@ -163,6 +183,13 @@ class Structures:
                         self._found[operand] = form
                         if not _fixed(form):
                             yield operand
+
+
+def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -> tuple[str, ...]:
+    """Return the ids of the statements that respond (see RESPONDS), largest gain first."""
+    gains = {site: max((one.effect for one in each), default=0.0) for site, each in effects.items()}
+    found = [site for site, gain in gains.items() if gain > 0.0 and gain >= RESPONDS * wanted]
+    return tuple(sorted(found, key=lambda site: -gains[site]))
 
 
 def form_words(order: Order, mutation: Mutation) -> str:

@@ -37,14 +37,17 @@ class Spot:
     hears: bool
 
 
-def spots(order: Order) -> Iterator[Spot]:
-    """Yield the expressions in the statements of flows, in the order of the statements."""
+def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
+    """Yield the expressions in the statements of flows, in the order of the statements.
+
+    The statements whose ids are in `responding` come first, in that order.
+    """
     sizes = TypicalSizes(order)
     drifted = TypicalSizes(order, order.online.recorded.sample)
     seen: set[tuple[str, int]] = set()
     away = _away(order)
     hearing = {flow.source.span.path for flow in order.analysis.flows}
-    for step in _steps(order, away):
+    for step in _steps(order, away, responding):
         try:
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
@@ -61,15 +64,17 @@ def spots(order: Order) -> Iterator[Spot]:
                 yield Spot(step.site, source, node, kind, usual, larger, away[step.site], hears)
 
 
-def _steps(order: Order, away: Mapping[SiteId, int]) -> list[Step]:
-    """Return the flows' statements, alternately in the order of the slices and backwards from the publish calls.
+def _steps(order: Order, away: Mapping[SiteId, int], responding: Sequence[str]) -> list[Step]:
+    """Return the flows' statements: those in `responding`, then alternately by slice and backwards from publish calls.
 
     Publish calls matter because limits, filters and offsets of a command belong where the command is sent.
     """
     rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
     ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     late = sorted(order.analysis.sites, key=lambda step: away[step.site])
-    return list(dict.fromkeys(step for pair in zip(ranked, late, strict=True) for step in pair))
+    first = {site: at for at, site in enumerate(responding)}
+    steps = dict.fromkeys(step for pair in zip(ranked, late, strict=True) for step in pair)
+    return sorted(steps, key=lambda step: first.get(str(step.site), len(first)))
 
 
 def _away(order: Order) -> dict[SiteId, int]:

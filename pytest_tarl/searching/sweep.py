@@ -8,7 +8,7 @@ reduce the reward, best gain first. If no single operand suffices, the search co
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -59,11 +59,11 @@ SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noi
 class Sweep:
     """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
-    If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
-    only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
-    yet. They are first tried with their own values. If the change has no effect, factors that make it `weaker` are
-    skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on every operand. If
-    a search for structural changes follows, only the nearest of these steps are tried, on named constants.
+    The first two guards are used throughout, the others only at the end. With `proposed`, the operands are parameters
+    of a change that the program does not contain yet. They are first tried with their own values. If the change has no
+    effect, factors that make it `weaker` are skipped. Only parameters of the same change are combined. The last steps
+    of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of these steps
+    are tried, on named constants. `responding` are the ids of statements whose constants gained.
     """
 
     def __init__(
@@ -81,7 +81,9 @@ class Sweep:
         structure_follows: bool = False,
         charts: Mapping[Operand, Chart] = MappingProxyType({}),
         given: Callable[[Operand], Sequence[Operand]] = lambda _: (),
+        responding: Collection[str] = (),
     ) -> None:
+        self.responding = responding
         self.structure_follows = structure_follows
         self.units = charted(units(operands), charts)
         self.late = units(late)
@@ -177,9 +179,7 @@ class Sweep:
         yield from self._carried_over(guard)
         if self.proposed:
             yield from self._all(1.0, guard, moving)
-            for factor in NEAR:  # first the proposals that were too weak to have an effect
-                idle = [unit for unit in moving if self._gains.idle(unit)]
-                yield from self._all(factor, guard, idle) if idle else ()
+            yield from self._strengthened(guard, moving)
         for factor in (FLIP, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._narrow(guard, moving)
@@ -188,6 +188,14 @@ class Sweep:
             yield from self._all(factor, guard, leading[:LEADING])
         yield from self._leaders_together(guard)
         yield from self._unmasked(guard)
+
+    def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Make proposals stronger that were too weak to have an effect, most of all at statements that respond."""
+        for factor in (*NEAR, *(factor for factor, _ in FURTHER)):
+            idle = [unit for unit in among if self._gains.idle(unit)]
+            if factor not in NEAR:
+                idle = [unit for unit in idle if str(unit.operands[0].site) in self.responding]
+            yield from self._all(factor, guard, idle) if idle else ()
 
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
         """Try the best units of other guards under this guard, because those guards may be too narrow."""

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.repairing import typical_sizes
+from pytest_tarl.model import OperandEffect
+from pytest_tarl.repairing import structural, typical_sizes
 from pytest_tarl.repairing.telling_sensors import telling, usual
 from pytest_tarl.repairing.template_places import spots
 from tarl_lint.api import analyse
@@ -112,3 +113,27 @@ def test_a_call_that_returns_a_number_is_a_place_for_templates(
     assert set(found) == {"elevation(msg.data)", "far * 0.5"}
     call, inner = found["elevation(msg.data)"], found["far * 0.5"]
     assert (call.typical, call.hears, inner.hears) == (12.0, True, False)
+
+
+def test_statements_that_respond_come_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "aiming.py").write_text(AIMING.replace("elevation(msg.data)", "elevation(msg.data - 1.0)"))
+    (tmp_path / "table.py").write_text(TABLE)
+    monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: {})
+    asked: Any = order(0, 5)
+    asked.analysis = analyse([tmp_path / "aiming.py", tmp_path / "table.py"], root=tmp_path)
+    asked.comparison.culprits = ()
+    sites = {str(spot.site): spot.source.source(spot.node) for spot in spots(asked)}
+    assert len(sites) > 1
+    for site, code in sites.items():
+        first = next(spots(asked, [site]))
+        assert first.source.source(first.node) == code
+
+
+def test_a_statement_responds_if_one_of_its_constants_gained_a_fifth_of_what_is_wanted() -> None:
+    effects = {"a": (effect(1.0), effect(2.1)), "b": (effect(6.0),), "c": (effect(1.9),), "d": ()}
+    assert structural._responding(effects, 10.0) == ("b", "a")
+    assert structural._responding({"a": (effect(0.0),)}, 0.0) == ()
+
+
+def effect(gain: float) -> OperandEffect:
+    return OperandEffect("1.0", 1.0, 2.0, gain)

@@ -73,3 +73,37 @@ def test_a_proposal_without_effect_is_made_stronger_before_others_are_moved() ->
     found = next(sweep.candidates())
     assert [(one.operand, one.value) for one in found.mutations] == [(RIGHT, 0.4)]
     assert tried[: len(proposals) + 1] == [*((one, 1.0) for one in proposals), (RIGHT, 0.4)]
+
+
+def test_while_nothing_gains_constants_get_ever_larger_steps() -> None:
+    found, spent = searched(8.0, 12.0, STEPS)
+    assert found is not None
+    assert {one.operand for one in found.mutations} == {RIGHT}
+    assert spent < 4 * (len(INERT) + 1)
+
+
+def test_a_proposal_without_effect_becomes_stronger_still_where_constants_gained() -> None:
+    """Only a limit of 0.15 has an effect; elsewhere proposals without an effect are dropped after 0.4."""
+    tried: list[tuple[Operand, float]] = []
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (one,) = candidate.mutations
+        tried.append((one.operand, float(one.value)))
+        won = one.operand == RIGHT and one.value < 0.3
+        return Outcome(10.0 if won else LOST, won, steps=STEPS)
+
+    pairs = tuple(Pair(seed, LOST, STEPS) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=LOST, passing=True)
+    sweep = Sweep(
+        [*INERT[:4], RIGHT],
+        Mutation,
+        (ALWAYS,),
+        Trials(run, 300),
+        goal,
+        proposed=True,
+        weaker=lambda _, by: by > 1.0,
+        responding=[str(RIGHT.site)],
+    )
+    found = next(sweep.candidates())
+    assert [(one.operand, one.value) for one in found.mutations] == [(RIGHT, 0.15)]
+    assert {value for one, value in tried if one != RIGHT} == {1.0, 0.4}
