@@ -116,7 +116,11 @@ def test_a_call_that_returns_a_number_is_a_place_for_templates(
 
 
 def test_statements_that_respond_come_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "aiming.py").write_text(AIMING.replace("elevation(msg.data)", "elevation(msg.data - 1.0)"))
+    moved = AIMING.replace(
+        "self.out.publish(elevation(msg.data))",
+        "far = msg.data - 1.0\n        self.out.publish(elevation(far))",
+    )
+    (tmp_path / "aiming.py").write_text(moved)
     (tmp_path / "table.py").write_text(TABLE)
     monkeypatch.setattr(typical_sizes, "_recorded", lambda *_: {})
     asked: Any = order(0, 5)
