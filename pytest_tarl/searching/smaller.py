@@ -16,11 +16,11 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-STEPS = (0.82, 1.22)  # factors to try on each constant
-LESS = 0.5  # maximum size of a small change (see `size`), as a share of the size of the change found
-EPISODES = 12  # number of episodes after which no further constant is tried
-EARLY = 0.5  # share of the budget after which a repair is no longer compared
-WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
+STEPS = ((0.82, 1.22), (0.74, 1.33))  # the first two are tried on each constant, then the others
+LESS = 0.5  # a change is small if its logarithm is at most this share of the other's
+EPISODES = 20  # episodes after which no further constant is tried
+EARLY = 0.5  # share of the budget; a repair found later is not compared
+WORSE = 0.02  # deviation from the designed missions by which a smaller change may exceed a larger one
 
 
 def size(unit: Unit, factor: float) -> float:
@@ -49,7 +49,8 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
     others.sort(key=lambda unit: (unit not in tried, -max(tried.get(unit, {1.0: 0.0}).values())))
     return [
         (unit, step)
+        for steps in STEPS
         for unit in others
-        for step in STEPS
+        for step in steps
         if size(unit, step) <= most and step not in tried.get(unit, {})
     ]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
+from pytest_tarl.searching import plateau
 from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
@@ -23,7 +24,7 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Set
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
-from pytest_tarl.searching.plainness import Oddness, kind, named, oddness, plainer, writing
+from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
-FARTHEST = (*FURTHER, (10.0, 5.0), (0.05, 0.15))  # as FURTHER, while nothing gains
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
@@ -157,14 +157,12 @@ class Sweep:
                 yield from self._all(factor, guard, self._gains.moving(self.units))
 
     def _across_a_plateau(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """While nothing gains, try ever larger steps on constants whose smaller step did not lose."""
-        for factor, before in () if self.proposed else FARTHEST:
-            for guard in chief:
-                if not self._gains.anything():
-                    leading = self._leading(before, guard, -self.slack)
-                    yield from self._all(
-                        factor, guard, [one for one in leading if kind(one) < Oddness.OFFSET]
-                    )
+        """Try the steps of `plateau` under the first guard while nothing gains."""
+        guard = chief[0]
+        for factor, before in () if self.proposed else plateau.STEPS:
+            if self._gains.anything():
+                return
+            yield from self._all(factor, guard, plateau.among(before, self.units, self._gains, guard))
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
@@ -362,6 +360,8 @@ class Sweep:
         for other, step in parts:
             if self.trials.spent - begun >= EPISODES:
                 return
+            if (other, found.guard) in self._refused:
+                continue
             candidate = self._holding(other, step, found.guard, pair)
             if candidate is None:
                 continue

@@ -1,0 +1,33 @@
+"""The steps to try while no change gains, because missions earn the same however they fail.
+
+Without a gradient, the search has to hit the range of good values. Most constants of a changed world are wrong by a
+factor of less than two, and good ranges are often narrow. The steps of named constants therefore become finer inward,
+up to the first ones (2.2 and 0.4). Between these steps, larger ones are tried on all constants that do not lose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plainness import Oddness, kind, named
+from pytest_tarl.searching.units import Unit
+
+INWARD = None  # marks a step that lies within the first ones
+# Each step with the smaller step that must not have lost reward, in the order to try them. Neighbouring inward steps
+# differ by at most 10 %.
+STEPS: tuple[tuple[float, float | None], ...] = (
+    *((1.5, INWARD), (0.65, INWARD), (5.0, 2.2), (0.15, 0.4), (1.22, INWARD), (0.82, INWARD)),
+    *((1.35, INWARD), (0.74, INWARD), (10.0, 5.0), (0.05, 0.15), (1.75, INWARD), (0.55, INWARD)),
+    *((1.28, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
+    *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
+)
+
+
+def among(before: float | None, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
+    """Return the units to try with a step; `before` is the smaller step that must not have lost, or `INWARD`."""
+    if before is INWARD:
+        return [unit for unit in named(units) if unit.chart is None and gains.moves(unit)]
+    leading = gains.leading(before, guard, units, -gains.slack)
+    return [unit for unit in leading if kind(unit) < Oddness.OFFSET]
