@@ -17,6 +17,7 @@ from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
 STEPS = ((0.82, 1.22), (0.74, 1.33))  # the first two are tried on each constant, then the others
+BESIDE = (1.06, 0.94)  # ratios to a step that earns nearly enough
 LESS = 0.5  # a change is small if its logarithm is at most this share of the other's
 EPISODES = 20  # episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget; a repair found later is not compared

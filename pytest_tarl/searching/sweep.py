@@ -28,7 +28,7 @@ from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, wr
 from pytest_tarl.searching.refining import ALMOST, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.smaller import EARLY, EPISODES, WORSE, smaller
+from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, smaller
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
 from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 from tarl_lint.model import Operand
@@ -360,15 +360,24 @@ class Sweep:
         for other, step in parts:
             if self.trials.spent - begun >= EPISODES:
                 return
-            if (other, found.guard) in self._refused:
-                continue
-            candidate = self._holding(other, step, found.guard, pair)
+            candidate = self._smaller_holding(other, step, found.guard, pair)
             if candidate is None:
                 continue
             if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
                 yield candidate
                 self._refused.add((other, found.guard))
                 return
+
+    def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a small step, and those beside it if it earns nearly enough; return the first candidate that holds."""
+        if (unit, guard) in self._refused:
+            return None
+        candidate = self._holding(unit, step, guard, pair)
+        gains = self._gains.of(unit, guard)
+        if candidate is not None or gains.get(step, 0.0) < ALMOST * self.goal.wanted:
+            return candidate
+        tried = (self._holding(unit, round(step * by, 3), guard, pair) for by in BESIDE)
+        return next((one for one in tried if one is not None), None)
 
     def _compared_on(self, pair: int) -> list[int]:
         """Return the seeds on which to compare the course of missions."""
