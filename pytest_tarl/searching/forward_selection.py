@@ -21,10 +21,10 @@ PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of
 # number of further units to combine with the first one, because a useful unit may gain little alone
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is moved repeatedly
-CLIMB = 4  # maximum number of times that a fixed parameter is moved by such a factor
+CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
+CLIMB = 4  # maximum number of such multiplications
 AMPLE = 1.02  # a combination that gained more than this share of the wanted gain is not adjusted after its refusal
-STRONG = 5.0  # factor for parts that have no effect alone
+STRONG = 5.0  # factor for units that have no effect alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,9 +193,9 @@ class ForwardSelection:
             return
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Drop the unneeded parts of a combination that holds; yield the result unless it was yielded before.
+        """Drop unneeded parts and yield the result if it is confirmed and new.
 
-        If the caller refuses it, or if it does not hold on further seeds, its factors are adjusted.
+        If it is not confirmed, or if the caller refuses it because it barely earns enough, adjust its factors.
         """
         least = self._least(joint)
         fewer = least.candidate(self.mutate)

@@ -16,12 +16,12 @@ from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
 from pytest_tarl.searching.units import Unit
 
-STEPS = ((0.82, 1.22), (0.74, 1.33))  # the first two are tried on each constant, then the others
-BESIDE = (1.06, 0.94)  # ratios to a step that earns nearly enough
-LESS = 0.5  # a change is small if its logarithm is at most this share of the other's
-EPISODES = 20  # episodes after which no further constant is tried
-EARLY = 0.5  # share of the budget; a repair found later is not compared
-WORSE = 0.02  # deviation from the designed missions by which a smaller change may exceed a larger one
+STEPS = ((0.82, 1.22), (0.74, 1.33))  # factors: the first pair is tried on each constant, then the second
+BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
+LESS = 0.5  # maximum size of a small change (see `size`), as a share of the size of the change found
+EPISODES = 20  # number of episodes after which no further constant is tried
+EARLY = 0.5  # share of the budget after which a repair is no longer compared
+WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
 def size(unit: Unit, factor: float) -> float:

@@ -36,7 +36,7 @@ from tarl_lint.model import Operand
 if TYPE_CHECKING:
     import numpy as np
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
@@ -59,11 +59,12 @@ SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noi
 class Sweep:
     """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
-    The first two guards are used throughout, the others only at the end. With `proposed`, the operands are parameters
-    of a change that the program does not contain yet. They are first tried with their own values. If the change has no
-    effect, factors that make it `weaker` are skipped. Only parameters of the same change are combined. The last steps
-    of the sweep are tried on every operand. If a search for structural changes follows, only the nearest of these steps
-    are tried, on named constants. `responding` are the ids of statements whose constants gained.
+    If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
+    only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
+    yet. They are first tried with their own values. If the change has no effect, factors that make it `weaker` are
+    skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on every operand. If
+    a search for structural changes follows, only the nearest of these steps are tried, on named constants.
+    `responding` contains the ids of statements whose constants increased the reward.
     """
 
     def __init__(
