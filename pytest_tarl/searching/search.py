@@ -218,7 +218,7 @@ class Trials:
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
         """Store a candidate that was near the goal on every seed but earned too little on average."""
-        self._short.append(self._totals(candidate, pairs))
+        self._short.append(self.totals_of(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
         """Return whether a candidate will probably earn too little, judging by earlier candidates that did.
@@ -226,7 +226,7 @@ class Trials:
         The estimate uses an earlier candidate as a control variate: the earlier candidate's mean total, plus the mean
         difference between the two candidates on their common seeds. At least `PAIRED` common seeds are needed.
         """
-        totals = self._totals(candidate, pairs)
+        totals = self.totals_of(candidate, pairs)
         for other in self._short:
             both = totals.keys() & other.keys()
             if len(both) >= PAIRED:
@@ -235,7 +235,8 @@ class Trials:
                     return True
         return False
 
-    def _totals(self, candidate: Candidate, pairs: Iterable[Pair]) -> dict[int, float]:
+    def totals_of(self, candidate: Candidate, pairs: Iterable[Pair]) -> dict[int, float]:
+        """Return the total rewards of a candidate by seed, for the seeds on which it has run."""
         known = ((pair.seed, self._known.get((candidate, pair.seed))) for pair in pairs)
         return {seed: outcome.total for seed, outcome in known if outcome is not None}
 

@@ -123,6 +123,7 @@ class Sweep:
         yield from self._in_large_steps(chief)
         gained = self._gains.anything()
         if gained:
+            yield from self._sharpened(chief)
             yield from self._jointly(chief)
             yield from self._together()
         yield from self._finely(chief)
@@ -511,6 +512,12 @@ class Sweep:
         if leaders and leaders[0][0] > self.slack and not self.proposed:
             hidden = [unit for unit in self.units if not self._gains.moves(unit)]
             yield from self._joining({}).unions([part for _, part in leaders], guard, hidden)
+
+    def _sharpened(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
+        """Adjust the best unit of each guard in small steps, before it is combined with others."""
+        for guard in () if self.proposed else chief:
+            for _, (unit, factor) in self._gains.leaders(guard)[:1]:
+                yield from self._joining({}).sharpened(unit, factor, guard)
 
     def _unmasked(self, guard: Guard) -> Iterator[Candidate]:
         """Try the units without an effect once more, under the best unit, if its missions last longer."""

@@ -87,3 +87,36 @@ def test_a_pair_whose_missions_fail_is_not_adjusted() -> None:
     search = selection()
     assert not list(search.gain(Joint(((GRIP, 0.4), (ANGLE, 1.5)), ALWAYS)))
     assert search.trials.spent == 1
+
+
+def narrow(width: float) -> ForwardSelection:
+    """Return a selection in a world where only grips near 0.6 earn anything; hard seeds need a closer one."""
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (change,) = candidate.mutations
+        away = abs(math.log(float(change.value) / 0.6))
+        passed = away < width / (1 + seed)
+        return Outcome(10.0 if passed else 10.0 - 60.0 * away, passed)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(4)), near=9.5, enough=9.5, online=0.0, passing=True)
+    return ForwardSelection((GRIP,), mutations, Trials(run, 300), goal, {}, 0.1)
+
+
+def test_a_single_constant_that_fails_on_hard_seeds_is_adjusted_on_them() -> None:
+    search = narrow(0.05)
+    near = Joint(((GRIP, 0.628),), ALWAYS).candidate(mutations)
+    totals = [search.trials(near, seed).total for seed in range(3)]
+    assert min(totals) < 9.5 <= max(totals)
+    (found,) = list(search.sharpened(GRIP, 0.628, ALWAYS))
+    assert found.mutations[0].value == pytest.approx(0.6, rel=0.0125)
+    assert all(search.trials(found, seed).passed for seed in range(4))
+
+
+@pytest.mark.parametrize(("factor", "seeds"), [(0.628, 2), (0.58, 0), (1.5, 3)])
+def test_a_constant_that_ran_seldom_or_earns_little_is_not_adjusted(factor: float, seeds: int) -> None:
+    search = narrow(0.05)
+    candidate = Joint(((GRIP, factor),), ALWAYS).candidate(mutations)
+    for seed in range(seeds):
+        search.trials(candidate, seed)
+    assert not list(search.sharpened(GRIP, factor, ALWAYS))
+    assert search.trials.spent == seeds
