@@ -16,19 +16,15 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
-from pytest_tarl.searching.calls_apart import calls_of
-from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
-from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
-from pytest_tarl.searching.refining import ALMOST, PROMISING, between
+from pytest_tarl.searching.plainness import Oddness, named, writing
+from pytest_tarl.searching.preferring import Preferences
+from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, smaller
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
 from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
 from tarl_lint.model import Operand
@@ -36,7 +32,6 @@ from tarl_lint.model import Operand
 if TYPE_CHECKING:
     import numpy as np
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
 LEADING = 3  # number of best units that get larger steps before the next guard is tried
 HINT = 0.005  # minimum gain of the `LEADING` units, as a share of the loss
 FLIP = -1.0  # factor that flips the sign
@@ -50,9 +45,6 @@ LAST = (10.0, 0.05)
 FLIPPED = 3
 REFINEMENTS = 3  # maximum number of consecutive refinements of one operand that gains `PROMISING`
 REFINED = 8  # maximum number of runs that refine one operand
-# number of refinements of each constant whose change a maintainer would prefer to the candidate found
-PLAINER_ROUNDS = 2
-PLAINER = 12  # maximum number of runs for all such constants
 SLACK = 0.1  # gains and losses up to this share of the wanted gain count as noise
 
 
@@ -98,16 +90,12 @@ class Sweep:
         self.generator = generator
         self.slack = SLACK * goal.wanted
         self.proposed = proposed
-        self._gains = Gains(self.slack, proposed)
+        self.gains = Gains(self.slack, proposed)
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
-        self._refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
-        self._compared = (
-            False  # whether rival constants were already compared by the course of their missions
-        )
-        self._reduced = False  # whether smaller changes of other constants were already tried
-        self._replaced: set[Unit] = set()  # units that were already compared with milder changes
+        self.refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
+        self.preferences = Preferences(self)
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._unmasked_under: set[tuple[Unit, Guard]] = set()
         self._families: tuple[Unit, ...] = ()
@@ -117,11 +105,11 @@ class Sweep:
         """Yield confirmed candidates."""
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
-            self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
+            self.units = yield from screened(self.joining({}), self.guards[0], self.generator)
         self._families = () if self.proposed else families(self.units)
         self.units = (*self.units, *self._families)
         yield from self._in_large_steps(chief)
-        gained = self._gains.anything()
+        gained = self.gains.anything()
         if gained:
             yield from self._sharpened(chief)
             yield from self._jointly(chief)
@@ -137,7 +125,7 @@ class Sweep:
             return
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
-                among = self._gains.moving(self.units) if self.proposed else self.units
+                among = self.gains.moving(self.units) if self.proposed else self.units
                 yield from self._all(factor, guard, among)
 
     def _in_large_steps(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
@@ -151,31 +139,31 @@ class Sweep:
                 still = [unit for unit in self._families if unit not in leading]
                 yield from self._all(factor, guard, [*leading, *still])
                 yield from self._leaders_together(guard)
-        if not self._gains.anything():
+        if not self.gains.anything():
             yield from self._late_ones(self.aside, chief)
             yield from self._across_a_plateau(chief)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
-                yield from self._all(factor, guard, self._gains.moving(self.units))
+                yield from self._all(factor, guard, self.gains.moving(self.units))
 
     def _across_a_plateau(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Try the steps of `plateau` under the first guard while nothing gains."""
         guard = chief[0]
         for factor, before in () if self.proposed else plateau.STEPS:
-            if self._gains.anything():
+            if self.gains.anything():
                 return
-            yield from self._all(factor, guard, plateau.among(before, self.units, self._gains, guard))
+            yield from self._all(factor, guard, plateau.among(before, self.units, self.gains, guard))
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
-        return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
+        return best_effects([(unit, gains) for (unit, _), gains in self.gains.items()], self.mutate)
 
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
         """Increase and decrease each unit, then try smaller steps if both lose, and combine the best units.
 
         Until a gain exceeds the slack, the `LEADING` best units get larger steps at once.
         """
-        moving = self._gains.moving(block)
+        moving = self.gains.moving(block)
         yield from self._carried_over(guard)
         if self.proposed:
             yield from self._all(1.0, guard, moving)
@@ -183,7 +171,7 @@ class Sweep:
         for factor in (FLIP, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._narrow(guard, moving)
-        for factor, before in () if self._gains.anything() else FURTHER:
+        for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
         yield from self._leaders_together(guard)
@@ -192,7 +180,7 @@ class Sweep:
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Make proposals stronger that were too weak to have an effect, most of all at statements that respond."""
         for factor in (*NEAR, *(factor for factor, _ in FURTHER)):
-            idle = [unit for unit in among if self._gains.idle(unit)]
+            idle = [unit for unit in among if self.gains.idle(unit)]
             if factor not in NEAR:
                 idle = [unit for unit in idle if str(unit.operands[0].site) in self.responding]
             yield from self._all(factor, guard, idle) if idle else ()
@@ -200,20 +188,20 @@ class Sweep:
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
         """Try the best units of other guards under this guard, because those guards may be too narrow."""
         pair = self._turn % len(self.goal.pairs)
-        for unit, factor in self._gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
-            yield from self._try(unit, guard, factor, pair)
+        for unit, factor in self.gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
+            yield from self.attempt(unit, guard, factor, pair)
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
-        among = self._gains.distinct(among)
+        among = self.gains.distinct(among)
         for at, unit in enumerate(among):
             self._expect([(each, guard, factor) for each in among[at:]], pair)
-            yield from self._try(unit, guard, factor, pair)
+            yield from self.attempt(unit, guard, factor, pair)
         if 0.0 < factor < 1.0:
             for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
-                yield from self._try(unit, guard, FLIP, pair)
+                yield from self.attempt(unit, guard, FLIP, pair)
         yield from self._refine(pair)
 
     def _late_ones(self, late: Sequence[Unit], guards: Sequence[Guard]) -> Iterator[Candidate]:
@@ -228,10 +216,10 @@ class Sweep:
 
         If the smaller steps lose as well and nothing else gained, try the `FINER` steps.
         """
-        lost = self._gains.lost_both_ways(guard, among, NEAR)
+        lost = self.gains.lost_both_ways(guard, among, NEAR)
         for factor in BETWEEN if lost else ():
             yield from self._all(factor, guard, lost)
-        still = [] if self._gains.anything() else self._gains.lost_both_ways(guard, lost, BETWEEN)
+        still = [] if self.gains.anything() else self.gains.lost_both_ways(guard, lost, BETWEEN)
         for factor in FINER if still else ():
             yield from self._all(factor, guard, still)
 
@@ -241,24 +229,25 @@ class Sweep:
         If no step gains, try the steps between these on named constants.
         """
         for factor in (*FINE, *BETWEEN_FINE):
-            if factor in BETWEEN_FINE and self._gains.anything():
+            if factor in BETWEEN_FINE and self.gains.anything():
                 return
             among = self.units if factor in FINE else named(self.units)
             for guard in guards:
-                moved = [unit for unit in self._gains.moving(among) if self._gains.moves(unit)]
+                moved = [unit for unit in self.gains.moving(among) if self.gains.moves(unit)]
                 yield from self._all(
                     factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
                 )
 
     def _leading(self, before: float, guard: Guard, least: float) -> list[Unit]:
-        return self._gains.leading(before, guard, self.units, least)
+        return self.gains.leading(before, guard, self.units, least)
 
-    def _try(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor of a unit; if it holds, yield the changes that are preferred to it, and then it."""
         mutations = unit.mutations(self.mutate, factor)
         candidate = Candidate(mutations, guard)
         if not mutations or candidate in self._tried:
             return
-        if self._gains.idle(unit) and self.weaker(unit.operands[0], factor):
+        if self.gains.idle(unit) and self.weaker(unit.operands[0], factor):
             return
         self._tried.add(candidate)
         near = self._near(candidate, pair)
@@ -267,125 +256,18 @@ class Sweep:
         self._learn(unit, candidate, factor)
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
         self._learn(unit, candidate, factor)
+        yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
         if holds:
-            yield from self._plainer(candidate, unit, pair)
-            yield from self._called(candidate, unit, factor)
-        if holds or (near and oddness(candidate.mutations) is Oddness.NATURE):
-            yield from self._instead(candidate, unit, pair)
-        if holds:
-            yield from self._truer(candidate, unit, factor, pair)
-            yield from self._smaller(candidate, unit, factor, pair)
             yield candidate
         if holds or (near and self.trials.loses(candidate)):
-            self._refused.add((unit, guard))
+            self.refused.add((unit, guard))
 
     def _learn(self, unit: Unit, candidate: Candidate, factor: float) -> None:
         pairs = self.goal.pairs
         gain, moved = self.trials.gain(candidate, pairs), self.trials.moved(candidate, pairs)
-        self._gains.enter((unit, candidate.guard), factor, gain, moved)
+        self.gains.enter((unit, candidate.guard), factor, gain, moved)
 
-    def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
-
-        If the candidate changes a literal, named constants also get larger steps, because small steps may have no
-        effect.
-        """
-        odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
-        # If the candidate is an offset, also refine units that were refused before.
-        before = set(self._refused if odd is Oddness.OFFSET else ())
-        others = [one for one in self.units if one != unit]
-        gains = self._gains.under(guard)
-        for other in plainer(odd, gains, others, PROMISING * self.goal.wanted, unit):
-            held = guard
-            for factor in NEAR if other not in gains else ():
-                yield from self._try(other, guard, factor, pair)
-            if not self._gains.of(other, guard) and ALWAYS in self.guards:
-                # the condition cannot be written at this place, for example in a helper function
-                held = ALWAYS
-                for factor in NEAR:
-                    yield from self._try(other, held, factor, pair)
-            yield from self._closer(other, held, before, pair)
-            if self.trials.spent - begun >= PLAINER:
-                return
-        for factor, nearer in FURTHER if odd is Oddness.INNER else ():
-            for other in self._gains.leading(nearer, guard, named(others), -self.slack, inert=True):
-                if self.trials.spent - begun < PLAINER:
-                    yield from self._try(other, guard, factor, pair)
-                    yield from self._closer(other, guard, before, pair)
-
-    def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
-        """If a candidate changes a function's return value, instead change as few calls of the function as suffice."""
-        calls = calls_of(unit, self.units)
-        if len(calls) > 1:
-            joint = Joint(tuple((call, factor) for call in calls), found.guard)
-            yield from self._joining({}).fewest(joint)
-
-    def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """If missions do not proceed as designed with the candidate, first try small steps of named constants."""
-        if unit in self._replaced or not another_way(found, self.trials, self.goal):
-            return
-        self._replaced.add(unit)
-        begun, promising = self.trials.spent, PROMISING * self.goal.wanted
-        for other, steps in gentler(unit, self.units, self._gains, found.guard, promising):
-            for step in steps:
-                if self.trials.spent - begun < PLAINER:
-                    yield from self._try(other, found.guard, step, pair)
-
-    def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a rival constant first if its missions are much closer to the designed ones.
-
-        It is then more likely to be the cause.
-        """
-        seeds = self._compared_on(pair)
-        if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
-            return
-        self._compared = True
-        begun = self.trials.spent
-        for other, step in rivals(unit, factor, self.units, self._gains, found.guard):
-            if self.trials.spent - begun >= RIVALS:
-                return
-            candidate = self._holding(other, step, found.guard, pair)
-            if candidate is None:
-                continue
-            if self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
-                yield candidate
-                self._refused.add((other, found.guard))
-                return
-
-    def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
-        """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
-        if self._reduced or self.proposed or self.trials.spent > EARLY * self.trials.budget:
-            return
-        parts = smaller(unit, factor, self.units, self._gains, found.guard)
-        self._reduced = bool(parts)
-        begun, seeds = self.trials.spent, self._compared_on(pair)
-        for other, step in parts:
-            if self.trials.spent - begun >= EPISODES:
-                return
-            candidate = self._smaller_holding(other, step, found.guard, pair)
-            if candidate is None:
-                continue
-            if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
-                yield candidate
-                self._refused.add((other, found.guard))
-                return
-
-    def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a small step, and those beside it if it earns nearly enough; return the first candidate that holds."""
-        if (unit, guard) in self._refused:
-            return None
-        candidate = self._holding(unit, step, guard, pair)
-        gains = self._gains.of(unit, guard)
-        if candidate is not None or gains.get(step, 0.0) < ALMOST * self.goal.wanted:
-            return candidate
-        tried = (self._holding(unit, round(step * by, 3), guard, pair) for by in BESIDE)
-        return next((one for one in tried if one is not None), None)
-
-    def _compared_on(self, pair: int) -> list[int]:
-        """Return the seeds on which to compare the course of missions."""
-        return [self.goal.pairs[(pair + i) % len(self.goal.pairs)].seed for i in range(COMPARED)]
-
-    def _holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
+    def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
         """Try a factor; return the candidate if it is new and confirmed, else None."""
         candidate = Candidate(unit.mutations(self.mutate, factor), guard)
         if not candidate.mutations or candidate in self._tried:
@@ -397,22 +279,6 @@ class Sweep:
         holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
         self._learn(unit, candidate, factor)
         return candidate if holds else None
-
-    def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
-        """Return the deviation of a candidate's missions from the designed ones, or 0 if it is unknown."""
-        try:
-            return self.trials.deviation(candidate, seeds)
-        except RepairError:
-            return 0.0
-
-    def _closer(
-        self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int
-    ) -> Iterator[Candidate]:
-        """Refine a unit for `PLAINER_ROUNDS` rounds while it gains at least `PROMISING` and was not refused."""
-        for _ in range(PLAINER_ROUNDS):
-            closed = (unit, guard) in self._refused - closed_before
-            if self._gains.most((unit, guard)) >= PROMISING * self.goal.wanted and not closed:
-                yield from self._between((unit, guard), pair)
 
     def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""
@@ -436,32 +302,32 @@ class Sweep:
         for _ in range(REFINEMENTS):
             open_to = [
                 tried
-                for tried, _ in self._gains.items()
-                if self._refined[tried] < _refinements(tried[0]) and tried not in self._refused
+                for tried, _ in self.gains.items()
+                if self._refined[tried] < _refinements(tried[0]) and tried not in self.refused
             ]
-            best = max(open_to, key=self._gains.most, default=None)
-            before = self._gains.most(best) if best is not None else 0.0
+            best = max(open_to, key=self.gains.most, default=None)
+            before = self.gains.most(best) if best is not None else 0.0
             if best is None or before <= self.slack:
                 return
             yield from self._adjusting(*best)
-            yield from self._between(best, pair)
-            gained = self._gains.most(best)
+            yield from self.between(best, pair)
+            gained = self.gains.most(best)
             if gained <= max(before, PROMISING * self.goal.wanted) and gained < ALMOST * self.goal.wanted:
                 return
 
-    def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
+    def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try factors between the operand's best factor and the neighbouring factors, on a log scale."""
         # A negative factor corrects the sign and needs no refinement, except for proposed values.
-        gains = {one: gain for one, gain in self._gains.of(*best).items() if one > 0 or self.proposed}
+        gains = {one: gain for one, gain in self.gains.of(*best).items() if one > 0 or self.proposed}
         steps = between(gains, self.goal.wanted)
         self._expect([(*best, one) for one in steps], pair)
         for one in steps:
             self._refined[best] += 1
-            yield from self._try(*best, one, pair)
+            yield from self.attempt(*best, one, pair)
 
     def _adjusting(self, unit: Unit, guard: Guard) -> Iterator[Candidate]:
         """Vary the fixed parameters of a proposal, such as a sensor's usual value, if the proposal gains much."""
-        gains = self._gains.of(unit, guard)
+        gains = self.gains.of(unit, guard)
         factor = max(gains, key=gains.__getitem__)
         given = self.given(unit.operands[0]) if self.proposed else ()
         if (unit, guard, factor) in self._adjusted or gains[factor] < PROMISING * self.goal.wanted:
@@ -469,14 +335,14 @@ class Sweep:
         self._adjusted.add((unit, guard, factor))
         for other in given:
             base = Joint(((unit, factor),), guard)
-            yield from self._joining({}).climbed(base, Unit((other,)))
+            yield from self.joining({}).climbed(base, Unit((other,)))
 
     def _together(self) -> Iterator[Candidate]:
         """Combine the best operand with others."""
         every = [
             (gain, *key, factor)
-            for key, gains in self._gains.items()
-            if key not in self._refused
+            for key, gains in self.gains.items()
+            if key not in self.refused
             for factor, gain in gains.items()
         ]
         gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
@@ -485,21 +351,21 @@ class Sweep:
         among = [
             one for one in self.units if not self.proposed or one.operands[0].span == unit.operands[0].span
         ]
-        joining = self._joining(self._gains.under(guard), among)
+        joining = self.joining(self.gains.under(guard), among)
         yield from joining.candidates(Joint(((unit, factor),), guard))
 
     def _jointly(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Jointly search the constants that change missions most, starting at the best points so far."""
         if self.generator is None or self.proposed:
             return
-        guard = max(chief, key=lambda one: max((gain for gain, _ in self._gains.leaders(one)), default=0.0))
+        guard = max(chief, key=lambda one: max((gain for gain, _ in self.gains.leaders(one)), default=0.0))
         united = whole_constants((*self.units, *self.late))
-        chosen, hidden = sensitive(united, self._gains, guard)
+        chosen, hidden = sensitive(united, self.gains, guard)
         if len(chosen) < LEAST:
             return
-        joining = self._joining({})
+        joining = self.joining({})
         jointly = Jointly(chosen, joining, self.trials, self.goal, self.generator, hidden)
-        leaders = [part for _, part in self._gains.leaders(guard) if part[0] in chosen and part[1] > 0]
+        leaders = [part for _, part in self.gains.leaders(guard) if part[0] in chosen and part[1] > 0]
         yield from jointly.candidates([Joint((part,), guard) for part in leaders[:LEADING]], guard)
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
@@ -507,34 +373,35 @@ class Sweep:
 
         This runs before refused operands are refined further, so combinations come before near-duplicates.
         """
-        self._refused -= {tried for tried in self._refused if tried[1] == guard}
-        leaders = self._gains.leaders(guard)
+        self.refused -= {tried for tried in self.refused if tried[1] == guard}
+        leaders = self.gains.leaders(guard)
         if leaders and leaders[0][0] > self.slack and not self.proposed:
-            hidden = [unit for unit in self.units if not self._gains.moves(unit)]
-            yield from self._joining({}).unions([part for _, part in leaders], guard, hidden)
+            hidden = [unit for unit in self.units if not self.gains.moves(unit)]
+            yield from self.joining({}).unions([part for _, part in leaders], guard, hidden)
 
     def _sharpened(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
         """Adjust the best unit of each guard in small steps, before it is combined with others."""
         for guard in () if self.proposed else chief:
-            for _, (unit, factor) in self._gains.leaders(guard)[:1]:
-                yield from self._joining({}).sharpened(unit, factor, guard)
+            for _, (unit, factor) in self.gains.leaders(guard)[:1]:
+                yield from self.joining({}).sharpened(unit, factor, guard)
 
     def _unmasked(self, guard: Guard) -> Iterator[Candidate]:
         """Try the units without an effect once more, under the best unit, if its missions last longer."""
-        leaders = self._gains.leaders(guard)
+        leaders = self.gains.leaders(guard)
         if self.proposed or not leaders or leaders[0][0] < GAINED * self.goal.wanted:
             return
         unit, factor = leaders[0][1]
-        base, joining = Joint(((unit, factor),), guard), self._joining({})
+        base, joining = Joint(((unit, factor),), guard), self.joining({})
         if (unit, guard) in self._unmasked_under or not longer(base, joining):
             return
         self._unmasked_under.add((unit, guard))
-        hidden = [one for one in self.units if not self._gains.moves(one) and one.operands != unit.operands]
+        hidden = [one for one in self.units if not self.gains.moves(one) and one.operands != unit.operands]
         yield from unmasked(base, hidden, joining)
 
-    def _joining(
+    def joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
     ) -> ForwardSelection:
+        """Return a selection that combines units, which are all units of the search unless `among` is given."""
         return ForwardSelection(
             self.units if among is None else among,
             self.mutate,

@@ -1,0 +1,201 @@
+"""Look for changes that a maintainer would prefer to a change that holds, before the change is yielded.
+
+Plainer, milder and smaller changes come first, and those with which missions proceed as designed. Each search of this
+kind takes a few episodes only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Protocol
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.calls_apart import calls_of
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gentler import another_way, gentler
+from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
+from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
+from pytest_tarl.searching.search import Candidate, Goal, Trials
+from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, smaller
+from pytest_tarl.searching.units import NEAR, Unit
+
+# number of refinements of each constant whose change reads plainer than the candidate found
+PLAINER_ROUNDS = 2
+PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
+
+
+class Search(Protocol):
+    """What the preferences need of the search that found the change."""
+
+    units: tuple[Unit, ...]
+    guards: Sequence[Guard]
+    trials: Trials
+    goal: Goal
+    proposed: bool
+    gains: Gains
+    refused: set[tuple[Unit, Guard]]
+
+    def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        """Try a factor; yield what holds."""
+
+    def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
+        """Try factors between the unit's best factor and its neighbours."""
+
+    def holding(self, unit: Unit, factor: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a factor; return the candidate if it is new and confirmed."""
+
+    def joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
+        """Return a selection that combines units."""
+
+
+class Preferences:
+    """The preferred changes of one search; some kinds are looked for only once."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        # whether rival constants were already compared by the course of their missions
+        self._compared = False
+        self._reduced = False  # whether smaller changes of other constants were already tried
+        self._replaced: set[Unit] = set()  # units that were already compared with milder changes
+
+    def before(
+        self, found: Candidate, unit: Unit, factor: float, pair: int, holds: bool, near: bool
+    ) -> Iterator[Candidate]:
+        """Yield the changes that come before a candidate; `near` says whether it reached the goal on its first seed."""
+        if holds:
+            yield from self._plainer(found, unit, pair)
+            yield from self._called(found, unit, factor)
+        if holds or (near and oddness(found.mutations) is Oddness.NATURE):
+            yield from self._instead(found, unit, pair)
+        if holds:
+            yield from self._truer(found, unit, factor, pair)
+            yield from self._smaller(found, unit, factor, pair)
+
+    def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
+        """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
+
+        If the candidate changes a literal, named constants also get larger steps, because small steps may have no
+        effect.
+        """
+        odd, guard, begun = oddness(found.mutations), found.guard, self.search.trials.spent
+        # If the candidate is an offset, also refine units that were refused before.
+        before = set(self.search.refused if odd is Oddness.OFFSET else ())
+        others = [one for one in self.search.units if one != unit]
+        gains = self.search.gains.under(guard)
+        for other in plainer(odd, gains, others, PROMISING * self.search.goal.wanted, unit):
+            held = guard
+            for factor in NEAR if other not in gains else ():
+                yield from self.search.attempt(other, guard, factor, pair)
+            if not self.search.gains.of(other, guard) and ALWAYS in self.search.guards:
+                # the condition cannot be written at this place, for example in a helper function
+                held = ALWAYS
+                for factor in NEAR:
+                    yield from self.search.attempt(other, held, factor, pair)
+            yield from self._closer(other, held, before, pair)
+            if self.search.trials.spent - begun >= PLAINER:
+                return
+        for factor, nearer in FURTHER if odd is Oddness.INNER else ():
+            for other in self.search.gains.leading(
+                nearer, guard, named(others), -self.search.gains.slack, inert=True
+            ):
+                if self.search.trials.spent - begun < PLAINER:
+                    yield from self.search.attempt(other, guard, factor, pair)
+                    yield from self._closer(other, guard, before, pair)
+
+    def _called(self, found: Candidate, unit: Unit, factor: float) -> Iterator[Candidate]:
+        """If a candidate changes a function's return value, instead change as few calls of the function as suffice."""
+        calls = calls_of(unit, self.search.units)
+        if len(calls) > 1:
+            joint = Joint(tuple((call, factor) for call in calls), found.guard)
+            yield from self.search.joining({}).fewest(joint)
+
+    def _instead(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
+        """If missions do not proceed as designed with the candidate, first try small steps of named constants."""
+        if unit in self._replaced or not another_way(found, self.search.trials, self.search.goal):
+            return
+        self._replaced.add(unit)
+        begun, promising = self.search.trials.spent, PROMISING * self.search.goal.wanted
+        for other, steps in gentler(unit, self.search.units, self.search.gains, found.guard, promising):
+            for step in steps:
+                if self.search.trials.spent - begun < PLAINER:
+                    yield from self.search.attempt(other, found.guard, step, pair)
+
+    def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """Yield a rival constant first if its missions are much closer to the designed ones.
+
+        It is then more likely to be the cause.
+        """
+        seeds = self._compared_on(pair)
+        if self._compared or self._deviation(found, seeds[:1]) <= EXACT:
+            return
+        self._compared = True
+        begun = self.search.trials.spent
+        for other, step in rivals(unit, factor, self.search.units, self.search.gains, found.guard):
+            if self.search.trials.spent - begun >= RIVALS:
+                return
+            candidate = self.search.holding(other, step, found.guard, pair)
+            if candidate is None:
+                continue
+            if self._deviation(candidate, seeds) <= CLOSER * self._deviation(found, seeds):
+                yield candidate
+                self.search.refused.add((other, found.guard))
+                return
+
+    def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
+        """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
+        if (
+            self._reduced
+            or self.search.proposed
+            or self.search.trials.spent > EARLY * self.search.trials.budget
+        ):
+            return
+        parts = smaller(unit, factor, self.search.units, self.search.gains, found.guard)
+        self._reduced = bool(parts)
+        begun, seeds = self.search.trials.spent, self._compared_on(pair)
+        for other, step in parts:
+            if self.search.trials.spent - begun >= EPISODES:
+                return
+            candidate = self._smaller_holding(other, step, found.guard, pair)
+            if candidate is None:
+                continue
+            if self._deviation(candidate, seeds) <= self._deviation(found, seeds) + WORSE:
+                yield candidate
+                self.search.refused.add((other, found.guard))
+                return
+
+    def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
+        """Try a small step, and those beside it if it earns nearly enough; return the first candidate that holds."""
+        if (unit, guard) in self.search.refused:
+            return None
+        candidate = self.search.holding(unit, step, guard, pair)
+        gains = self.search.gains.of(unit, guard)
+        if candidate is not None or gains.get(step, 0.0) < ALMOST * self.search.goal.wanted:
+            return candidate
+        tried = (self.search.holding(unit, round(step * by, 3), guard, pair) for by in BESIDE)
+        return next((one for one in tried if one is not None), None)
+
+    def _compared_on(self, pair: int) -> list[int]:
+        """Return the seeds on which to compare the course of missions."""
+        return [
+            self.search.goal.pairs[(pair + i) % len(self.search.goal.pairs)].seed for i in range(COMPARED)
+        ]
+
+    def _deviation(self, candidate: Candidate, seeds: Sequence[int]) -> float:
+        """Return the deviation of a candidate's missions from the designed ones, or 0 if it is unknown."""
+        try:
+            return self.search.trials.deviation(candidate, seeds)
+        except RepairError:
+            return 0.0
+
+    def _closer(
+        self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int
+    ) -> Iterator[Candidate]:
+        """Refine a unit for `PLAINER_ROUNDS` rounds while it gains at least `PROMISING` and was not refused."""
+        for _ in range(PLAINER_ROUNDS):
+            closed = (unit, guard) in self.search.refused - closed_before
+            if self.search.gains.most((unit, guard)) >= PROMISING * self.search.goal.wanted and not closed:
+                yield from self.search.between((unit, guard), pair)
