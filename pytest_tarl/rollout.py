@@ -71,7 +71,7 @@ class Pending(Protocol):
         """Cancel the episode if it has not started; return whether it was cancelled."""
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result once it exists, perhaps in another thread; never if there is an error."""
+        """Call a function with the result once there is one, perhaps in another thread; an error is no result."""
 
 
 class Rollout(Protocol):
