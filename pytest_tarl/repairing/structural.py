@@ -33,7 +33,7 @@ MOST = {
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
-RESPONDS = 0.2  # a statement responds if one of its constants gained this share of the wanted gain
+RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
 LEAST = 50  # minimum number of episodes for templates with a telling sensor; at most a third of the budget
@@ -186,7 +186,7 @@ class Structures:
 
 
 def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -> tuple[str, ...]:
-    """Return the ids of the statements that respond (see RESPONDS), largest gain first."""
+    """Return the IDs of the statements that respond (see RESPONDS), largest gain first."""
     gains = {site: max((one.effect for one in each), default=0.0) for site, each in effects.items()}
     found = [site for site, gain in gains.items() if gain > 0.0 and gain >= RESPONDS * wanted]
     return tuple(sorted(found, key=lambda site: -gains[site]))

@@ -12,7 +12,7 @@ from pytest_tarl.ros.keyboard import NodeInterruptedError
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
-_POLL = nanoseconds(0.01)  # ns, polling period of files and sockets
+_POLL = nanoseconds(0.01)  # polling period of files and sockets (ns)
 _KINDS: Final[tuple[type[Any], ...]] = tuple(
     getattr(selectors, name)
     for name in ("EpollSelector", "PollSelector", "KqueueSelector", "DevpollSelector", "SelectSelector")
@@ -34,7 +34,9 @@ def virtual_event_loops(scheduler: Scheduler) -> Iterator[None]:
 
 
 def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any]:
-    interrupted: set[int] = set()  # ids of the selectors whose loops know that the episode ends
+    interrupted: set[int] = (
+        set()
+    )  # IDs of the selectors whose event loops were told that the episode is ending
 
     def select(selector: Any, timeout: float | None = None) -> Any:
         task = running_task()

@@ -102,7 +102,7 @@ def _checks_arguments(entry: TracebackType) -> bool:
 
 
 def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
-    """Return whether the line at which an index was too large names `argv`, or a variable that holds it."""
+    """Return whether the line that raised the error contains `argv` or a variable with the same value."""
     for entry in innermost:
         line = linecache.getline(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
         held = [name for name, value in entry.tb_frame.f_locals.items() if value == sys.argv]

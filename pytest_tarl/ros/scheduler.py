@@ -63,7 +63,7 @@ class Task:
         self.parked = False
         self.patience = PATIENCE  # number of polls left until the task must wait
         self.done = False
-        self.loop: Any = None  # asyncio's running loop while the task waits inside of one
+        self.loop: Any = None  # asyncio's running loop while the task waits inside it
         self.worker: Worker | None = None
 
     def execute(self) -> None:
@@ -127,9 +127,8 @@ class Scheduler:
     def __init__(self) -> None:
         self.time = 0
         self.failure: BaseException | None = None
-        self.keeps_loops = (
-            False  # whether a task has run an event loop; asyncio has one running loop per thread
-        )
+        # whether a task has run an event loop; asyncio has one running loop per thread
+        self.keeps_loops = False
         self._sleeping: list[tuple[int, int, Task, int]] = []
         self._alarms: list[tuple[int, int, Callable[[], None]]] = []
         self._ready: deque[Callable[[], None]] = deque()

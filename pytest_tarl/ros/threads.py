@@ -52,7 +52,7 @@ def threads_as_tasks() -> Iterator[None]:
 
 
 def _forget_pools() -> None:
-    """Remove tasks from the threads that concurrent.futures joins at the end of the program."""
+    """Remove threads that run as tasks from those that concurrent.futures joins at the end of the program."""
     pools: Any = sys.modules.get("concurrent.futures.thread")
     if pools is None:
         return
@@ -157,7 +157,7 @@ def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Calla
 
 
 def _simple_queue(real: Callable[[], Any]) -> Callable[[], Any]:
-    """Return a function that makes queues in Python, whose locks suspend tasks, for nodes."""
+    """Return a function that gives nodes the Python implementation of queues, whose locks suspend tasks."""
 
     def make() -> Any:
         return queue._PySimpleQueue() if running_task() is not None and _asked_by_node() else real()  # type: ignore[attr-defined]
@@ -166,7 +166,7 @@ def _simple_queue(real: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def _asked_by_node() -> bool:
-    """Return whether a node's own code, or the start of a thread of it, is the caller.
+    """Return whether the caller is a node's own code or the start of one of its threads.
 
     Locks of a library that is being imported outlive the episode.
     """

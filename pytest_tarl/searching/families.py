@@ -14,8 +14,8 @@ from pytest_tarl.searching.plainness import Oddness, kind
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
 
-SIMILAR = 4.0  # largest ratio between two values of a family
-FEWEST, MOST = 2, 8  # number of constants in a family
+SIMILAR = 4.0  # maximum ratio of two values of a family
+FEWEST, MOST = 2, 8  # minimum and maximum number of constants in a family
 PLACES = frozenset(
     (
         *("x", "y", "z", "roll", "pitch", "yaw"),
@@ -39,7 +39,7 @@ def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
 
 
 def shared_name(code: str) -> str:
-    """Return what the names of a family have in common, with `*` for the place; an empty string if there is none.
+    """Return what the names of a family have in common, with `*` where they differ, or "" if nothing.
 
     >>> shared_name('STIFFNESS["x"]'), shared_name("self.kp_left"), shared_name("LEFT_KP"), shared_name("self.kp")
     ('STIFFNESS[*]', 'self.kp_*', '*_kp', '')
@@ -55,7 +55,7 @@ def shared_name(code: str) -> str:
 
 
 def _alike(members: Sequence[Operand]) -> bool:
-    """Return whether the constants are several and their values similar, with the same sign."""
+    """Return whether there are several constants with similar values of the same sign."""
     values = [one.value for one in members]
     if any(value is None or isinstance(value, bool) or value == 0 for value in values):
         return False

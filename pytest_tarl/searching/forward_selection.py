@@ -23,7 +23,7 @@ LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
 CLIMB = 4  # maximum number of such multiplications
-AMPLE = 1.02  # a combination that gained more than this share of the wanted gain is not adjusted after its refusal
+AMPLE = 1.02  # maximum gain of a refused combination that is adjusted, as a share of the wanted gain
 STRONG = 5.0  # factor for units that have no effect alone
 
 

@@ -1,8 +1,9 @@
-"""The steps to try while no change gains, because missions earn the same however they fail.
+"""Steps to try while no change gains reward, because all missions that fail earn the same.
 
 Without a gradient, the search has to hit the range of good values. Most constants of a changed world are wrong by a
-factor of less than two, and good ranges are often narrow. The steps of named constants therefore become finer inward,
-up to the first ones (2.2 and 0.4). Between these steps, larger ones are tried on all constants that do not lose.
+factor of less than two, and good ranges are often narrow. Therefore finer and finer steps between the first ones (2.2
+and 0.4) are tried on named constants. In between, larger steps are tried on all constants whose smaller step did not
+reduce the reward.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, kind, named
 from pytest_tarl.searching.units import Unit
 
-INWARD = None  # marks a step that lies within the first ones
-# Each step with the smaller step that must not have lost reward, in the order to try them. Neighbouring inward steps
-# differ by at most 10 %.
+INWARD = None  # marks a step between the first ones, 2.2 and 0.4
+# (step, smaller step that must not have reduced the reward), in the order in which they are tried. Neighbouring inward
+# steps differ by at most 10 %.
 STEPS: tuple[tuple[float, float | None], ...] = (
     *((1.5, INWARD), (0.65, INWARD), (5.0, 2.2), (0.15, 0.4), (1.22, INWARD), (0.82, INWARD)),
     *((1.35, INWARD), (0.74, INWARD), (10.0, 5.0), (0.05, 0.15), (1.75, INWARD), (0.55, INWARD)),
@@ -26,7 +27,7 @@ STEPS: tuple[tuple[float, float | None], ...] = (
 
 
 def among(before: float | None, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:
-    """Return the units to try with a step; `before` is the smaller step that must not have lost, or `INWARD`."""
+    """Return the units to try with a step; `before` is the smaller step that must not have reduced the reward."""
     if before is INWARD:
         return [unit for unit in named(units) if unit.chart is None and gains.moves(unit)]
     leading = gains.leading(before, guard, units, -gains.slack)

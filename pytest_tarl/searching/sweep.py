@@ -147,7 +147,7 @@ class Sweep:
                 yield from self._all(factor, guard, self.gains.moving(self.units))
 
     def _across_a_plateau(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try the steps of `plateau` under the first guard while nothing gains."""
+        """Try the steps of `plateau` under the first guard while no unit gains reward."""
         guard = chief[0]
         for factor, before in () if self.proposed else plateau.STEPS:
             if self.gains.anything():
@@ -386,7 +386,7 @@ class Sweep:
                 yield from self.joining({}).sharpened(unit, factor, guard)
 
     def _unmasked(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the units without an effect once more, under the best unit, if its missions last longer."""
+        """Retry the units without an effect together with the best unit, if its missions last longer."""
         leaders = self.gains.leaders(guard)
         if self.proposed or not leaders or leaders[0][0] < GAINED * self.goal.wanted:
             return

@@ -1,8 +1,8 @@
-"""Try constants that had no effect alone once more, under a change after which missions last longer.
+"""Retry constants that had no effect alone, together with a change after which missions last longer.
 
 A mission that fails early never reaches the statements that come later, so their constants have no effect. For
-example, a film tears after a few turns of a pallet. With less tension it holds, but the few turns of it do not hold
-the load: the number of turns matters only under the smaller tension.
+example, a film tears after a few turns of a pallet. With less tension the film does not tear, but so few turns do
+not hold the load: the number of turns matters only with the smaller tension.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pytest_tarl.searching.refining import between
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-GAINED = 0.3  # share of the wanted gain that a change must bring before others are tried under it
-LONGER = 1.2  # ratio by which its missions must last longer than before
-MOST = 24  # maximum number of constants to try under it
-FINER = (1.5, 0.65)  # factors for a constant that has an effect under it
+GAINED = 0.3  # minimum gain of a change under which others are tried, as a share of the wanted gain
+LONGER = 1.2  # minimum ratio of the lengths of its missions to those without the change
+MOST = 24  # maximum number of constants to try under the change
+FINER = (1.5, 0.65)  # factors for a constant that has an effect under the change
 ROUNDS = 2  # number of times that the best factor of such a constant is refined
 
 
@@ -32,7 +32,7 @@ def longer(base: Joint, selection: ForwardSelection) -> bool:
 
 
 def unmasked(base: Joint, hidden: Sequence[Unit], selection: ForwardSelection) -> Iterator[Candidate]:
-    """Yield combinations of `base` and one of the `hidden` units that hold. Raise BudgetSpentError.
+    """Yield confirmed combinations of `base` and one of the `hidden` units. Raise BudgetSpentError.
 
     Each unit is tried with a larger value, then those without an effect with a smaller one. A unit with an effect is
     tried at once with further factors.

@@ -17,7 +17,7 @@ _FORM = re.compile(
 
 
 class _Field(NamedTuple):
-    """A field: the type of its elements, and their length: 1, that of an array, or None for a sequence."""
+    """A field: the type of its elements, and their number: 1, the length of an array, or None for a sequence."""
 
     name: str
     base: str
@@ -49,14 +49,14 @@ def _read_fields(kind: type[Any]) -> list[_Field]:
 
 
 def serialize(message: Any) -> bytes:
-    """Return a message as bytes, with the header of the encapsulation."""
+    """Return a message as bytes, with the encapsulation header."""
     out = bytearray()
     _write_message(out, message)
     return _HEADER + bytes(out)
 
 
 def deserialize(data: bytes, kind: type[Any]) -> Any:
-    """Return the message of a class from its bytes. Raise ValueError if they are not one in little-endian CDR."""
+    """Return the message of class `kind` that the bytes encode. Raise ValueError unless they are little-endian CDR."""
     if bytes(data[:2]) != _HEADER[:2]:
         raise ValueError("the bytes are no message in little-endian CDR")
     try:
@@ -111,7 +111,7 @@ def _write_one(out: bytearray, base: str, element: Any) -> None:
 
 
 class _Reader:
-    """Reads values one after the other."""
+    """Read values one after the other."""
 
     def __init__(self, data: memoryview) -> None:
         self._data = data

@@ -1,4 +1,4 @@
-"""rclpy.parameter_event_handler: callbacks for changed parameters of any node, by /parameter_events."""
+"""rclpy.parameter_event_handler: callbacks for changed parameters of any node, from /parameter_events."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ParameterEventHandler:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], None]
     ) -> ParameterCallbackHandle:
-        """Call a function with the parameter, a message, whenever it changes."""
+        """Call a function with the parameter (a message) whenever it changes."""
         handle = ParameterCallbackHandle(parameter_name, self._full(node_name), callback)
         self._single.insert(0, handle)
         return handle
@@ -56,7 +56,7 @@ class ParameterEventHandler:
         self._single.remove(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[Any], None]) -> ParameterEventCallbackHandle:
-        """Call a function with each event, a message."""
+        """Call a function with each event (a message)."""
         handle = ParameterEventCallbackHandle(callback)
         self._all.insert(0, handle)
         return handle
@@ -67,7 +67,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
-        """Return a parameter of an event; None if the event is about others."""
+        """Return a parameter from an event, or None if the event does not contain it."""
         if event.node != node_name:
             return None
         parameters = ParameterEventHandler.get_parameters_from_event(event)

@@ -15,6 +15,6 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[T]) -> T:
-    """Return the message of a class from its bytes."""
+    """Return the message of class `message_type` that the bytes encode."""
     message: T = deserialize(serialized_message, message_type)
     return message

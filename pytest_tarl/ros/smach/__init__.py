@@ -38,5 +38,5 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Raise for a name that the stand-in lacks."""
+    """Raise an error for a name that the stand-in lacks."""
     raise refuse("smach", name)

@@ -16,7 +16,7 @@ Outcomes = Mapping[str, str | None]
 
 
 class Concurrence(Container):
-    """All states start together; the outcome depends on theirs: `outcome_cb`, `outcome_map`, else the default."""
+    """All states start together. `outcome_cb`, `outcome_map` or the default maps their outcomes to one outcome."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class Concurrence(Container):
         return list(self._states)
 
     def get_internal_edges(self) -> list[tuple[str, str, str]]:
-        """Return (outcome, from, to) for the states that the outcome map names."""
+        """Return (outcome, from, to) for the states in the outcome map."""
         return [
             (child, label, outcome)
             for outcome, wanted in self._map.items()

@@ -53,7 +53,7 @@ class Container(State):
 
     @classmethod
     def opened(cls) -> Any:
-        """Return the container that is open. Raise InvalidStateError unless it is one of this class."""
+        """Return the open container. Raise InvalidStateError if there is none or it is not of this class."""
         if not Container._open:
             raise InvalidStateError("Attempting to add to a container, but no container is currently open.")
         if not isinstance(Container._open[-1], cls):
@@ -78,10 +78,10 @@ class Container(State):
         return state
 
     def check_consistency(self) -> None:
-        """Raise InvalidTransitionError if the container is not complete."""
+        """Raise InvalidTransitionError if the container is incomplete."""
 
     def is_running(self) -> bool:
-        """Return whether the container is executed."""
+        """Return whether the container is running."""
         return self._is_running
 
     def get_children(self) -> dict[str, Any]:
@@ -121,7 +121,7 @@ class Container(State):
         self._callbacks.setdefault("termination", []).append((termination_cb, cb_args))
 
     def call_back(self, when: str, *values: Any) -> None:
-        """Call the functions registered for an event; an error in one is logged, and the container goes on."""
+        """Call the functions registered for an event; an error in one is logged, and the container continues."""
         for callback, rest in self._callbacks.get(when, ()):
             self._call_one(when, callback, (*values, *rest))
 
@@ -134,7 +134,7 @@ class Container(State):
             logerr(f"A {when} callback of a container raised {type(error).__name__}: {error}")
 
     def run_child(self, label: str) -> str:
-        """Execute a state, and return its outcome. Raise InvalidTransitionError if that is not declared."""
+        """Execute a state, and return its outcome. Raise InvalidTransitionError if the outcome is not declared."""
         state = self._states[label]
         reads, writes = state.get_registered_input_keys(), state.get_registered_output_keys()
         outcome = state.execute(Remapper(self.userdata, reads, writes, self._remappings[label]))

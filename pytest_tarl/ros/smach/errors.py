@@ -8,7 +8,7 @@ class SmachError(Exception):
 
 
 class InvalidStateError(SmachError):
-    """A state, or the state that a container is in, is not valid."""
+    """A state is invalid, or a container is in an invalid state."""
 
 
 class InvalidTransitionError(SmachError):
@@ -16,7 +16,7 @@ class InvalidTransitionError(SmachError):
 
 
 class InvalidConstructionError(SmachError):
-    """A container is used wrongly while states are added."""
+    """A container is used incorrectly while states are added."""
 
 
 class InvalidUserCodeError(SmachError):

@@ -1,4 +1,4 @@
-"""smach's log functions: they write to the log of rospy if the node has one."""
+"""smach's log functions, which write to rospy's log if the node uses rospy."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from pytest_tarl.ros.process import running_process
 
 
 def set_loggers(info: Any, warn: Any, debug: Any, error: Any) -> None:
-    """Accept other log functions; messages go to the log of the node."""
+    """Ignore other log functions; messages go to the node's log."""
 
 
 def set_shutdown_check(cb: Callable[[], bool]) -> None:
-    """Accept another check; state machines end when the node ends."""
+    """Ignore another check; state machines end when the node ends."""
 
 
 def is_shutdown() -> bool:
-    """Return whether the node ends."""
+    """Return whether the node is ending."""
     process = running_process()
     return process is not None and process.ending
 

@@ -14,7 +14,7 @@ Transitions = Mapping[str, str | None]
 
 
 class StateMachine(Container):
-    """States with transitions by outcome, to another state or to an outcome of the machine."""
+    """States whose outcomes lead to another state or to an outcome of the machine."""
 
     def __init__(
         self,
@@ -27,7 +27,7 @@ class StateMachine(Container):
         self._chained: tuple[str, list[str]] | None = (
             None  # last state of add_auto, and its outcomes to connect
         )
-        self._preempted: Any = None  # state to which the request was passed on
+        self._preempted: Any = None  # state to which the request to end was passed on
 
     @staticmethod
     def add(
@@ -97,7 +97,7 @@ class StateMachine(Container):
             )  # fmt: skip
 
     def get_internal_edges(self) -> list[tuple[str, str, str]]:
-        """Return (outcome, from, to) for each transition; to is "None" for an outcome that leads nowhere."""
+        """Return (outcome, from, to) for each transition; `to` is "None" for an outcome that leads nowhere."""
         return [
             (outcome, label, str(target))
             for label, transitions in self._transitions.items()
@@ -130,7 +130,7 @@ class StateMachine(Container):
         return outcome
 
     def _update(self, label: str) -> tuple[str, str | None]:
-        """Execute a state. Return it with the outcome of the machine, or the next state and None."""
+        """Execute a state. Return this state and the machine's outcome, or the next state and None."""
         if self.preempt_requested():
             self._pass_on_preempt(label)
         result = self.run_child(label)
@@ -159,7 +159,7 @@ class StateMachine(Container):
         self._preempted.request_preempt()
 
     def request_preempt(self) -> None:
-        """Ask the machine, and the state that it is in, to end."""
+        """Ask the machine and its current state to end."""
         super().request_preempt()
         if self._active:
             self._pass_on_preempt(self._active[0])
@@ -191,7 +191,7 @@ class Sequence(StateMachine):
         transitions: Transitions | None = None,
         remapping: Mapping[str, str] | None = None,
     ) -> Any:
-        """Add the next state. The last one ends the sequence by `connector_outcome`."""
+        """Add the next state. The last state ends the sequence with `connector_outcome`."""
         sequence: Sequence = Sequence.opened()
         added = sequence._add(label, state, transitions, remapping)
         if sequence._connector in state.get_registered_outcomes() and sequence._connector not in (

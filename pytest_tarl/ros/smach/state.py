@@ -7,7 +7,7 @@ from typing import Any
 
 
 class State:
-    """A state with its outcomes and its keys of userdata; subclasses implement `execute`."""
+    """A state with its outcomes and userdata keys; subclasses implement `execute`."""
 
     def __init__(
         self,

@@ -15,7 +15,7 @@ class UserData:
         self._data: dict[str, Any] = {}
 
     def update(self, ud: UserData) -> None:
-        """Take all values of another userdata."""
+        """Copy all values of another userdata."""
         self._data.update(ud._data)
 
     def extract(self, keys: Iterable[str], remapping: Mapping[str, str]) -> UserData:
@@ -25,7 +25,7 @@ class UserData:
         return part
 
     def merge(self, ud: Any, keys: Iterable[str], remapping: Mapping[str, str]) -> None:
-        """Take the values of `keys` from another userdata, under the remapped names; skip keys without a value."""
+        """Copy the values of `keys` from another userdata, under the remapped names; skip keys without a value."""
         for key in keys:
             name = remapping.get(key, key)
             if key in ud:
@@ -45,7 +45,7 @@ class UserData:
         self._data[key] = item
 
     def __getattr__(self, name: str) -> Any:
-        """Return a value; KeyError if there is none, as in smach. Names with an underscore are no values."""
+        """Return a value; KeyError if there is none, as in smach. Names that begin with an underscore are not keys."""
         if name.startswith("_"):
             raise AttributeError(name)
         return self._data[name]
@@ -58,7 +58,7 @@ class UserData:
 
 
 class Remapper:
-    """The view of a state: its own names for keys, reading its input keys and writing its output keys."""
+    """A state's view of userdata: it uses its own names, can read its input keys and can write its output keys."""
 
     def __init__(
         self,

@@ -13,7 +13,7 @@ from pytest_tarl.ros.rospy.timing import Duration, get_time
 from pytest_tarl.ros.smach.state import State
 from pytest_tarl.ros.smach_ros import slots
 
-_LOOK = 0.1  # s between looks at requests to end and at the time limit
+_LOOK = 0.1  # time between checks for requests to end and for the time limit (s)
 
 
 class SimpleActionState(State):
@@ -90,7 +90,7 @@ class SimpleActionState(State):
         return "aborted"
 
     def _wait_for_result(self) -> bool:
-        """Wait until the goal has ended, and cancel it on a request or at the time limit; return if requested."""
+        """Wait for the end of the goal; cancel it on request or at the time limit. Return whether it was requested."""
         began, cancelled, requested = get_time(), None, False
         while not is_shutdown() and not self._client.wait_for_result(Duration(_LOOK)):
             now = get_time()

@@ -12,7 +12,7 @@ from pytest_tarl.ros.smach.container import Container
 
 
 class IntrospectionServer:
-    """Publishes the structure of a container and of those in it, and their active states after each transition."""
+    """Publish the structure of a container and of nested ones, and their active states after each transition."""
 
     def __init__(self, server_name: str, state: Any, path: str) -> None:
         self._name, self._state, self._path = server_name, state, path
@@ -21,7 +21,7 @@ class IntrospectionServer:
         self._status: Any = None
 
     def start(self) -> None:
-        """Start to publish."""
+        """Start publishing."""
         root = f"{self._name}/smach"
         self._structure = Publisher(
             f"{root}/container_structure", class_of("ros1", "smach_msgs/SmachContainerStructure"), latch=True,
@@ -38,7 +38,7 @@ class IntrospectionServer:
             container.register_transition_cb(self._changed, [path, container])
 
     def stop(self) -> None:
-        """Stop to publish."""
+        """Stop publishing."""
         self._shown = []
 
     clear = stop
@@ -68,7 +68,7 @@ class IntrospectionServer:
 
 
 def _containers(path: str, state: Any) -> Iterator[tuple[str, Container]]:
-    """Yield a container and those in it, with their paths."""
+    """Yield a container and those nested in it, with their paths."""
     if not isinstance(state, Container):
         return
     yield path, state

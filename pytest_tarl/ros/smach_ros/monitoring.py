@@ -1,4 +1,4 @@
-"""States that watch a topic or a condition, and the link from the end of a node to its container."""
+"""States that watch a topic or a condition, and a function that ends a container when the node ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LOOK = Duration(0.05)
 class MonitorState(State):
     """Calls `cond_cb(userdata, message)` for each message of a topic, until it returns a false value.
 
-    Outcomes: "invalid" then, "valid" after `max_checks` messages, "preempted".
+    Its outcomes are "invalid" in that case, "valid" after `max_checks` messages, and "preempted".
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class MonitorState(State):
 class ConditionState(State):
     """Calls `cond_cb(userdata)` until it returns a true value.
 
-    Outcomes: "true" then, "false" after `max_checks` calls or `timeout`, "preempted".
+    Its outcomes are "true" in that case, "false" after `max_checks` calls or `timeout`, and "preempted".
     """
 
     def __init__(

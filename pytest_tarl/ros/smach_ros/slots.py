@@ -12,7 +12,7 @@ from pytest_tarl.ros.smach.userdata import Remapper
 
 
 def declare(state: State, callbacks: Iterable[Any], read: Iterable[str], written: Iterable[str]) -> None:
-    """Add the keys of slots and of callbacks with an interface to those of a state."""
+    """Add the keys of slots, and those that callbacks declare, to the keys of a state."""
     state.register_input_keys(read)
     state.register_output_keys(written)
     for callback in callbacks:
@@ -27,7 +27,7 @@ def build(
     slots: Sequence[str],
     callback: tuple[Callable[..., Any] | None, Sequence[Any], Mapping[str, Any]],
 ) -> Any:
-    """Return a message: that of `key` or a copy of `message`, its `slots` from userdata, then the callback's."""
+    """Return userdata[key] or a copy of `message`, with its `slots` from userdata; a callback may replace it."""
     made = ud[key] if key is not None else deepcopy(message)
     for slot in slots:
         setattr(made, slot, ud[slot])
@@ -46,7 +46,7 @@ def view(state: State, ud: Any, callback: Any) -> Any:
 
 
 def store(ud: Any, message: Any, key: str | None, slots: Sequence[str]) -> None:
-    """Put a message under `key`, and its `slots` under their names, into userdata."""
+    """Store a message under `key` in userdata, and its `slots` under their names."""
     if key is not None:
         ud[key] = message
     for slot in slots:
@@ -54,7 +54,7 @@ def store(ud: Any, message: Any, key: str | None, slots: Sequence[str]) -> None:
 
 
 def seconds(duration: Any) -> float | None:
-    """Return a rospy Duration or a number in seconds; None for no limit."""
+    """Return a rospy Duration or a number of seconds as a float, or None for no limit."""
     if duration is None:
         return None
     return float(duration.to_sec() if hasattr(duration, "to_sec") else duration)
