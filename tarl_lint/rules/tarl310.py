@@ -5,9 +5,9 @@ and share their parameters and services, so a request reaches one of them by cha
 stack could not be started with one combination of arguments, because two nodes were named `to_pose_array`
 (https://github.com/strands-project/strands_perception_people/issues/212).
 
-Names are compared with their namespaces. The rule does not cover nodes with `$(anon …)`, nodes without a name whose
-program was not read, nodes that an event starts, and nodes that are started under a condition known only on the robot,
-because one of them may replace the other.
+Names are compared with their namespaces. Two nodes `$(anon view)` in one file have the same name, too. The rule does
+not cover nodes without a name whose program was not read, nodes that an event starts, and nodes that are started under
+a condition known only on the robot, because one of them may replace the other.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ VALID: Final = (
       <node pkg="robot" type="filter.py" name="filter"/>
       <node pkg="robot" type="filter.py" name="filter" ns="rear"/>
       <node pkg="robot" type="filter.py" name="$(anon filter)"/>
-      <node pkg="robot" type="filter.py" name="$(anon filter)"/>
+      <node pkg="robot" type="filter.py" name="$(anon other)"/>
     </launch>
     --- scripts/filter.py
     import rospy
@@ -68,9 +68,10 @@ def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each node that has the name of an earlier one."""
     if system.file.is_dir():
         return  # the nodes of several launch files
-    first: dict[str, Instance] = {}
+    first: dict[tuple[str, str], Instance] = {}
     for instance in system.instances:
-        other = first.setdefault(instance.name, instance) if _named(instance) else instance
+        name = instance.name, instance.node.anonymous
+        other = first.setdefault(name, instance) if _named(instance) else instance
         if other is not instance:
             place = f"{shown(other.node.file)}:{other.node.line}"
             message = f"{instance.name} is started twice, also at {place}: give each node its own name"
@@ -81,4 +82,4 @@ def _named(instance: Instance) -> bool:
     """Return whether a node is certainly started, and its name is known."""
     node = instance.node
     known = bool(node.name) or (instance.interface is not None and bool(instance.interface.name))
-    return known and node.unique and not node.condition and "$(" not in instance.name
+    return known and not node.event and not node.condition and "$(" not in instance.name

@@ -33,8 +33,9 @@ class Setting:
 class LaunchedNode:
     """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
-    The first `inherited` remappings are those of the groups around the node. `unique` is False if the name is made
-    unique on the robot, or if an event starts the node, possibly in place of another one.
+    The first `inherited` remappings are those of the groups around the node. If the robot makes the name unique, as in
+    `$(anon name)`, nodes with the same `name` and `anonymous` have the same name there; otherwise `anonymous` is "".
+    `event` says that an event starts the node, possibly in place of another one.
 
     Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is a condition that only the robot can
     evaluate; "" if the node is started in any case. For a component, `executable` is its class.
@@ -52,7 +53,8 @@ class LaunchedNode:
     kind: Kind = "node"
     condition: str = ""
     inherited: int = 0
-    unique: bool = True
+    anonymous: str = ""
+    event: bool = False
 
 
 @dataclass(frozen=True, slots=True)

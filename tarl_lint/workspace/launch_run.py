@@ -251,7 +251,8 @@ class Runner:
                 kind,
                 condition,
                 len(inherited),
-                not self.events and not _anonymous(values.get("name")),
+                "anon" if _anonymous(values.get("name")) else "",
+                self.events > 0,
             )
         )
 

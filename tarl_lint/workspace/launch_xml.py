@@ -30,6 +30,7 @@ class _Place:
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters of all following nodes
     including: tuple[object, ...] = ()  # the files around, with their arguments, outermost first
+    visit: int = 0  # number of the file among all included ones
     condition: str = ""  # enclosing condition that is known only on the robot
 
 
@@ -41,6 +42,7 @@ class _Reader:
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names in the outermost file
     seen: int = 0
+    visits: int = 0  # number of included files
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
         """Read a launch file with its arguments."""
@@ -54,7 +56,9 @@ class _Reader:
                 said = "it includes itself" if here in place.including else "files include each other"
                 raise SymbolicError(f"{path.name}: {said}")
             else:
-                self.elements(root, replace(place, scope=scope, including=(*place.including, here)))
+                self.visits += 1
+                inside = replace(place, scope=scope, including=(*place.including, here), visit=self.visits)
+                self.elements(root, inside)
 
     def elements(self, parent: Iterable[Element], place: _Place) -> None:
         """Read the elements of a launch file or group, in order."""
@@ -159,7 +163,7 @@ class _Reader:
                 arguments,
                 condition=place.condition,
                 inherited=len(place.remaps),
-                unique="$(anon " not in element.get("name", ""),
+                anonymous=f"file {place.visit}" if "$(anon " in element.get("name", "") else "",
             )
         )
 

@@ -516,11 +516,14 @@ def test_names_that_are_made_unique_and_nodes_of_events_are_marked(tmp_path: Pat
             return LaunchDescription([first, again, Node(package="p", executable="a", name=[AnonName("x"), "_y"])])
     """
     xml = '<launch><let name="a" value="b"/><node pkg="p" exec="e" name="$(anon x)"/></launch>'
-    ros1 = '<launch><node pkg="p" type="e" name="$(anon x)"/><node pkg="p" type="e" name="x"/></launch>'
+    ros1 = """<launch><node pkg="p" type="e" name="$(anon x)"/><node pkg="p" type="e" name="$(anon x)"/>
+        <node pkg="p" type="e" name="x"/><include file="$(dirname)/y.launch"/></launch>"""
+    (tmp_path / "arm_base").mkdir()
+    (tmp_path / "arm_base/y.launch").write_text('<launch><node pkg="p" type="e" name="$(anon x)"/></launch>')
     found = [launched(tmp_path, text, name).nodes for text, name in
              ((python, "x.launch.py"), (xml, "x.launch.xml"), (ros1, "x.launch"))]  # fmt: skip
-    assert [[(one.name, one.unique) for one in nodes] for nodes in found] == [
-        [("first", True), ("first", False), ("x_y", False)],
-        [("x", False)],
-        [("x", False), ("x", True)],
+    assert [[(one.name, one.anonymous, one.event) for one in nodes] for nodes in found] == [
+        [("first", "", False), ("first", "", True), ("x_y", "anon", False)],
+        [("x", "anon", False)],
+        [("x", "file 0", False), ("x", "file 0", False), ("x", "", False), ("x", "file 1", False)],
     ]
