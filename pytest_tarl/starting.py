@@ -64,7 +64,7 @@ class Starter:
         from pytest_tarl.ros.launch_plan import launch_path, launch_plan, named
         from pytest_tarl.ros.stand_in import StandIn
 
-        _check_names(only)
+        _check(only, arguments, replaced, parameters)
         plan = launch_plan(launch_path(file, self._folder), arguments)
         chosen = plan.chosen(only, replaced)
         ros = self._ros()
@@ -92,9 +92,18 @@ class Starter:
         return program
 
 
-def _check_names(only: Sequence[str] | None) -> None:
+def _check(only: object, arguments: object, replaced: object, parameters: object) -> None:
+    """Raise SettingsError for an argument of `tarl.launch` that is no list or mapping as it should be."""
     if isinstance(only, str):
         raise SettingsError(f'tarl.launch: only takes a list of node names, such as only=["{only}"].')
+    for name, value in (("arguments", arguments), ("replace", replaced), ("parameters", parameters)):
+        if not isinstance(value, Mapping):
+            raise SettingsError(f"tarl.launch: {name} takes a mapping, not {value!r:.60}.")
+    for node, function in replaced.items() if isinstance(replaced, Mapping) else ():
+        if not callable(function):
+            raise SettingsError(
+                f"tarl.launch: replace takes a function for each node, but {node} has {function!r:.60}."
+            )
 
 
 def _left_out(file: Path, chosen: Sequence[Launched], replaced: Collection[str]) -> list[str]:

@@ -6,6 +6,7 @@ import ast
 import difflib
 import re
 import shlex
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -234,6 +235,13 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
     if problems:
         more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
         yield f"parts of {launch.file.name} could not be evaluated: {'; '.join(problems[:SHOWN])}{more}."
+    names = Counter((joined(one.namespace, one.name), one.anonymous) for one in launch.nodes if one.name)
+    twice = [name for (name, _), count in names.items() if count > 1 and "$(" not in name]
+    if twice:
+        effect = (
+            "in ROS 2 they share parameters and services" if launch.ros2 else "roslaunch refuses the file"
+        )
+        yield f"{launch.file.name} starts several nodes named {', '.join(twice[:SHOWN])}: {effect}."
 
 
 on_forget(_plan.cache_clear)

@@ -171,6 +171,14 @@ def test_ros1_nodes_get_names_parameters_and_modules_of_their_own(tarl: Tarl) ->
     )
 
 
+def test_a_note_names_nodes_that_have_one_name(tarl: Tarl, tmp_path: Path) -> None:
+    node = '<node pkg="one" type="relay.py" name="same"/>'
+    write(tmp_path, {"one/launch/twice.launch": f"<launch>{node}{node}</launch>"})
+    tarl.launch("twice.launch")
+    (note,) = tarl.ros.notes
+    assert note == "twice.launch starts several nodes named /same: roslaunch refuses the file."
+
+
 def test_a_node_of_a_hidden_package_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
     write(tmp_path, {"other/CATKIN_IGNORE": ""})
     workspace.forget()
@@ -249,6 +257,9 @@ def test_edited_parameter_files_are_read_anew(tarl: Tarl, tmp_path: Path) -> Non
         ("robot.launch", {"replace": {"lidar": print}}, r"replace names 'lidar', but robot\.launch starts no such"),
         ("robot.launch", {"only": ["laser"]}, r"only names /r1/laser, which is not a Python node of the workspace \("),
         ("robot.launch", {"only": "first"}, r'only takes a list of node names, such as only=\["first"\]'),
+        ("robot.launch", {"replace": {"laser": 5}}, "replace takes a function for each node, but laser has 5"),
+        ("robot.launch", {"arguments": ["camera"]}, r"arguments takes a mapping, not \['camera'\]"),
+        ("robot.launch", {"parameters": "gain"}, "parameters takes a mapping, not 'gain'"),
         ("robot.launch", {"arguments": {"camera": True}}, (r"the node /\$\(arg camera_ns\)/camera .*depends on "
          r"'/\$\(arg camera_ns\)', which has no value here: pass arguments=\{\"camera_ns\": …\}")),
         ("pair.launch.xml", {}, r"depends on '/\$\(var robot\)', .* pass arguments=\{\"robot\": …\}"),
