@@ -94,7 +94,9 @@ def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
 def script(repository: Path, path: Path, entry: str | None) -> Script | None:
     """Return the file as a node script, or None if it is not one."""
     text = path.read_text("utf-8", errors="replace")
-    if path.name == "setup.py" or path.name.endswith(".launch.py") or not MADE_BY.search(text):
+    if path.name == "setup.py" or path.name.endswith(".launch.py"):
+        return None
+    if not MADE_BY.search(text) and (entry is None or not makes_node(path, set())):
         return None
     try:
         tree = ast.parse(text)
@@ -111,6 +113,39 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
         if needed:
             return Script(repository, path, apart=f"needs a {kind}: {needed[0]}")
     return Script(repository, path, None if runs else entry)
+
+
+def makes_node(path: Path, seen: set[Path]) -> bool:
+    """Return whether a module, or one of its package that it imports, makes a node."""
+    if path in seen or not path.is_file():
+        return False
+    seen.add(path)
+    text = path.read_text("utf-8", errors="replace")
+    if MADE_BY.search(text):
+        return True
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError):
+        return False
+    return any(makes_node(one, seen) for one in _siblings(tree, path))
+
+
+def _siblings(tree: ast.AST, path: Path) -> Iterator[Path]:
+    """Yield the files of the modules that a file imports from its own package."""
+    inside = [one for one in path.parents if (one / "__init__.py").is_file()]
+    root = inside[-1].parent if inside else path.parent
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            bases = [root.joinpath(*alias.name.split(".")) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            start = path.parents[node.level - 1] if node.level else root
+            module = start.joinpath(*(node.module or "").split("."))
+            bases = [module, *(module / alias.name for alias in node.names)]
+        else:
+            continue
+        for base in bases:
+            yield base.with_suffix(".py")
+            yield base / "__init__.py"
 
 
 def imports(tree: ast.AST) -> Iterator[str]:
