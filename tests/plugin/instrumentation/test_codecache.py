@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,16 @@ def test_temporary_files_and_old_entries_are_removed(tmp_path):
     names = [entry.name for entry in tmp_path.iterdir()]
     assert len(names) == KEPT + 1
     assert other in names
+
+
+def test_the_newest_entries_of_a_file_are_kept(tmp_path: Path) -> None:
+    names = [entry_name(Path("node.py"), (number,)) for number in range(KEPT + 2)]
+    for age, name in enumerate(reversed(names)):  # the first name is the newest
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(b"")
+        os.utime(tmp_path / name, ns=(age, age))
+    codecache._forget_old(tmp_path / names[0])
+    assert {path.name for path in tmp_path.iterdir()} == {Path(name).name for name in names[:KEPT]}
 
 
 def test_entries_in_memory_are_bounded():

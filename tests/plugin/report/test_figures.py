@@ -3,13 +3,14 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from pytest_tarl.model import Region
 from pytest_tarl.report.figures import plane, reward_curves, utility_figure
-from pytest_tarl.report.slices import chart, scale
+from pytest_tarl.report.slices import Scale, chart, scale
 from pytest_tarl.sensors import Sensor
 
 
@@ -136,3 +137,29 @@ def test_scales_include_zero_and_all_values_and_have_few_ticks_at_round_numbers(
         assert 0 <= made.at(value) <= 100
     assert 0.0 in made.ticks
     assert 2 <= len(made.ticks) <= 7
+
+
+@pytest.mark.parametrize(
+    ("width", "step"),
+    [
+        (4.0, 1.0),
+        (4.1, 2.0),
+        (8.0, 2.0),
+        (12.0, 5.0),
+        (20.0, 5.0),
+        (21.0, 10.0),
+        (28.0, 10.0),
+        (40.0, 10.0),
+        (0.44, 0.2),
+    ],
+)
+def test_ticks_are_the_next_larger_round_number_apart(width: float, step: float) -> None:
+    ticks = Scale(-width / 2, width / 2).ticks
+    assert [round(later - earlier, 9) for earlier, later in pairwise(ticks)] == [step] * (len(ticks) - 1)
+    assert ticks[0] - step < -width / 2 <= ticks[0] < 0.0 < ticks[-1] <= width / 2 < ticks[-1] + step
+
+
+def test_a_scale_has_a_margin_of_a_twentieth_at_both_ends() -> None:
+    assert scale([4.0, -1.0]) == Scale(-1.25, 4.25)
+    assert scale([0.0, math.inf]) == Scale(-1.0, 1.0)
+    assert [Scale(-1.0, 3.0).at(value) for value in (-1.0, 0.0, 3.0)] == [0.0, 25.0, 100.0]

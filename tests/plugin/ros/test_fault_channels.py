@@ -177,6 +177,30 @@ def test_values_are_stored_in_mappings_sequences_tuples_and_attributes() -> None
     assert message.inner == 5
 
 
+class Both:
+    """A message whose fields are attributes, and which also has items."""
+
+    def __init__(self) -> None:
+        self.x = 1.0
+        self.items = [1.0, 2.0]
+
+    def __getitem__(self, at: int) -> float:
+        return self.items[at]
+
+    def __setitem__(self, at: int, value: float) -> None:
+        self.items[at] = value
+
+
+def test_a_message_with_items_also_has_attributes() -> None:
+    message = Both()
+    store(message, "x", 3.0)
+    store(message, "1", 4.0)
+    assert (message.x, message.items) == (3.0, [1.0, 4.0])
+    other = SimpleNamespace()
+    store(other, "0", 1.0)
+    assert vars(other) == {"0": 1.0}
+
+
 def test_sizes_begin_at_none_and_the_nominal_size_is_no_fault() -> None:
     assert faults.bias("/t", "x", -1, 2).extent == Span(-1.0, 2.0, 0.0)
     assert faults.scale("/t", "x", 1, 2).extent == Span(1.0, 2.0, 1.0)
