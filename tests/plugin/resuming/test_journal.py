@@ -116,3 +116,17 @@ def test_removing_the_file_also_removes_its_empty_folder(tmp_path: Path) -> None
     assert second.path.exists()
     second.remove()
     assert not second.path.parent.exists()
+
+
+def test_keeping_episodes_leaves_no_file_open(tmp_path: Path) -> None:
+    handles = Path("/proc/self/fd")
+    if not handles.is_dir():
+        pytest.skip("needs /proc")
+    before = len(list(handles.iterdir()))
+    for number in range(3):
+        written(tmp_path / "a.episodes", [(number, b"x")])
+    again = continued(tmp_path / "a.episodes")
+    again.taken(key(2), 0)
+    assert conditions_of(tmp_path / "a.episodes") is not None
+    again.close()
+    assert len(list(handles.iterdir())) == before
