@@ -4,12 +4,13 @@ import json
 import math
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pytest_tarl.model import Region
-from pytest_tarl.report.figures import plane, reward_curves, utility_figure
+from pytest_tarl.report.figures import _axis, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import Scale, chart, scale
 from pytest_tarl.sensors import Sensor
 
@@ -163,3 +164,28 @@ def test_a_scale_has_a_margin_of_a_twentieth_at_both_ends() -> None:
     assert scale([4.0, -1.0]) == Scale(-1.25, 4.25)
     assert scale([0.0, math.inf]) == Scale(-1.0, 1.0)
     assert [Scale(-1.0, 3.0).at(value) for value in (-1.0, 0.0, 3.0)] == [0.0, 25.0, 100.0]
+
+
+@pytest.mark.parametrize(
+    ("bins", "outside"), [([0, 1, 2, 3], False), ([-1, 0], True), ([2, 4], True), ([0, 3, 2, 5], True)]
+)
+def test_an_axis_says_whether_values_lie_outside_the_range_of_the_sensor(
+    bins: list[int], outside: bool
+) -> None:
+    sensor = Sensor("x", topic="/x", field="data", low=0.0, high=8.0, bins=4, unit="m")
+    words = SimpleNamespace(bin=lambda at, one: f"{at}:{one}", value=lambda *_: "value")
+    axis = _axis(sensor, 3, bins, words)
+    assert axis["outside"] is outside
+    assert axis["title"] == "x (m)"
+    assert axis["names"] == [f"3:{one}" for one in bins]
+    assert axis["ticks"] is None
+    assert axis["centres"] == [2.0 * one + 1.0 for one in bins]
+
+
+def test_the_axis_of_a_category_has_a_tick_for_each_value() -> None:
+    sensor = Sensor("mode", topic="/mode", field="data", categories=("dry", "wet"))
+    words = SimpleNamespace(bin=lambda at, one: f"{at}:{one}", value=lambda at, one: f"{at}={one}")
+    axis = _axis(sensor, 1, [0, 1], words)
+    assert (axis["outside"], axis["title"]) == (False, "mode")
+    assert axis["ticks"] == ["1=0", "1=1"]
+    assert axis["centres"] == [0.0, 1.0]

@@ -105,3 +105,11 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
     search = Sweep((zero,), mutations, (ALWAYS,), trials, GOAL)
     assert list(search.candidates()) == []
     assert trials.spent < 40
+
+
+def test_before_a_combination_under_a_guard_its_refused_constants_count_again() -> None:
+    search = Sweep(GAINS[:2], mutations, (ALWAYS, WET), world(lambda *_: 0.0), GOAL)
+    first, second = search.units
+    search.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}
+    assert list(search._leaders_together(ALWAYS)) == []
+    assert search.refused == {(first, WET)}
