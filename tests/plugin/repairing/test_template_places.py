@@ -112,14 +112,24 @@ def test_the_distance_to_a_publish_call_is_the_shortest_of_all_flows() -> None:
 
 
 @pytest.mark.parametrize(
-    ("culprits", "names"), [(("b",), "bca"), (("a", "b"), "acb"), ((), "acb"), (("c", "a"), "cab")]
+    ("culprits", "responding", "names"),
+    [
+        ("b", "", "bca"),
+        ("ab", "", "acb"),
+        ("", "", "acb"),
+        ("ca", "", "cab"),
+        ("b", "a", "abc"),
+        ("b", "ac", "acb"),
+        ("b", "xb", "bca"),
+    ],
 )
-def test_statements_come_by_turns_from_the_ranking_and_from_the_publish_calls(
-    culprits: tuple[str, ...], names: str
+def test_statements_that_responded_come_first_and_the_others_by_turns(
+    culprits: str, responding: str, names: str
 ) -> None:
-    given = order([A, B, C], culprits=culprits)
+    given = order([A, B, C], culprits=tuple(culprits))
     away = _away(given)  # c, b, a from the publish call backwards
-    assert "".join(step.site.text for step in _steps(given, away)) == names
+    found = _steps(given, away, [f"a:<module>:{name}" for name in responding])
+    assert "".join(step.site.text for step in found) == names
 
 
 def spot(text: str, kind: str = "value", within: Any = None) -> Spot:
