@@ -123,6 +123,17 @@ def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_run():
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
 
+def test_a_method_of_a_lock_is_no_call_of_a_function_of_the_same_name():
+    """`Condition.wait` does not call the module's `wait`, unless the attribute may hold something else."""
+    waiting = LOCKED.replace("threading.Lock()", "threading.Condition()").replace(
+        "rospy.loginfo(self.last)",
+        "self.lock.wait()\n                rospy.loginfo(self.last)\n        def wait(self):\n            pass",
+    )
+    assert skipped(waiting)
+    assert not skipped(waiting.replace("self.lock.wait()", "self.wait()"))
+    assert not skipped(waiting.replace("self.last = None", "self.lock = self"))
+
+
 @pytest.mark.parametrize(
     "changed",
     [

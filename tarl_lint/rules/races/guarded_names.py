@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from tarl_lint.evidence import Outline
+from tarl_lint.evidence import LOCKS, Outline
 from tarl_lint.read.source import Module
 from tarl_lint.rules.races.accesses import Access, accesses
 from tarl_lint.rules.races.held_locks import FUNCTIONS, locks_around
@@ -16,7 +16,7 @@ def always_or_never_guarded(modules: Sequence[Module]) -> bool:
     """Return whether no attribute or global is used both under a lock and without one.
 
     Uses during construction do not count. If code under a lock calls a function of the modules, the answer is no,
-    since that function may use anything.
+    since that function may use anything. Methods of the locks themselves use nothing.
     """
     outlines = [Outline(module.tree) for module in modules]
     ours = {d.name for outline in outlines for d in outline.definitions}
@@ -32,8 +32,21 @@ def always_or_never_guarded(modules: Sequence[Module]) -> bool:
 
 
 def _under_locks(outline: Outline) -> Iterator[ast.Call]:
-    """Yield the calls that run while a lock is held."""
-    return (call for calls in outline.calls.values() for call in calls if locks_around(call, outline))
+    """Yield the calls that run while a lock is held, except those of the methods of locks."""
+    return (
+        call
+        for calls in outline.calls.values()
+        for call in calls
+        if locks_around(call, outline) and not _of_lock(call, outline)
+    )
+
+
+def _of_lock(call: ast.Call, outline: Outline) -> bool:
+    """Return whether a call is of a method of a lock, such as `Condition.wait`."""
+    if not isinstance(call.func, ast.Attribute):
+        return False
+    values = outline.assigned.get(last_name(call.func.value), [])
+    return bool(values) and all(isinstance(v, ast.Call) and last_name(v.func) in LOCKS for v in values)
 
 
 def _accesses(outline: Outline) -> Iterator[Access]:
