@@ -244,7 +244,7 @@ class ForwardSelection:
                 return
 
     def sharpened(self, unit: Unit, factor: float, guard: Guard) -> Iterator[Candidate]:
-        """Adjust the factor of a single unit that earns much on most seeds, most of all on those where it earns little.
+        """Adjust the factor of a single unit that gains much on average, on the seeds where it earns least.
 
         Unlike in a combination, failed missions count by their reward: near a narrow range, some missions fail.
         """

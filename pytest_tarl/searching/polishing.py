@@ -2,7 +2,7 @@
 
 A joint search uses large steps and usually one seed, so it finds only the good regions. The best point of a region
 often passes all missions but earns a few percent too little. Its neighbours are then better than any point elsewhere.
-The same holds for a single constant whose range of good values is narrow.
+This also applies to a single constant whose range of good values is narrow.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def polished(
 ) -> Factors:
     """Return the factors with the highest mean total found by coordinate ascent, or `begin` if none is better.
 
-    `earned` takes factors and a seed and returns the total reward of the episode, or None if its mission failed.
+    `earned` takes factors and a seed and returns the total reward of the episode, or None to reject the factors.
     `wanted` is the gain that a repair must bring.
     """
     search = _Ascent(earned, seeds[:SEEDS], BEHIND * wanted)
@@ -69,7 +69,7 @@ class _Ascent:
         return best, most
 
     def mean(self, factors: Factors, most: float) -> float | None:
-        """Return the mean total, or None if a mission fails or the first seeds earn clearly less than `most`."""
+        """Return the mean total, or None if the factors are rejected or earn clearly less than `most` at first."""
         if factors not in self._means:
             self._means[factors] = self._run(factors, most)
         return self._means[factors]

@@ -380,7 +380,7 @@ class Sweep:
             yield from self.joining({}).unions([part for _, part in leaders], guard, hidden)
 
     def _sharpened(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Adjust the best unit of each guard in small steps, before it is combined with others."""
+        """Adjust the best unit under each guard in small steps, before it is combined with others."""
         for guard in () if self.proposed else chief:
             for _, (unit, factor) in self.gains.leaders(guard)[:1]:
                 yield from self.joining({}).sharpened(unit, factor, guard)
