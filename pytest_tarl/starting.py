@@ -93,7 +93,7 @@ class Starter:
 
 
 def _check(only: object, arguments: object, replaced: object, parameters: object) -> None:
-    """Raise SettingsError for an argument of `tarl.launch` that is no list or mapping as it should be."""
+    """Raise SettingsError for an argument of `tarl.launch` that is not of the required type."""
     if isinstance(only, str):
         raise SettingsError(f'tarl.launch: only takes a list of node names, such as only=["{only}"].')
     for name, value in (("arguments", arguments), ("replace", replaced), ("parameters", parameters)):

@@ -1,7 +1,7 @@
-"""Look for changes that a maintainer would prefer to a change that holds, before the change is yielded.
+"""Before a confirmed change is yielded, look for changes that a maintainer would prefer to it.
 
-Plainer, milder and smaller changes come first, and those with which missions proceed as designed. Each search of this
-kind takes a few episodes only.
+Preferred changes are less unusual, milder or smaller, or let missions proceed as designed. Each search for one kind of
+them takes only a few episodes.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, smaller
 from pytest_tarl.searching.units import NEAR, Unit
 
-# number of refinements of each constant whose change reads plainer than the candidate found
+# number of refinements of each constant whose change a maintainer would prefer to the candidate found
 PLAINER_ROUNDS = 2
-PLAINER = 12  # maximum number of runs for all constants whose change reads plainer
+PLAINER = 12  # maximum number of episodes for all such constants
 
 
 class Search(Protocol):
-    """What the preferences need of the search that found the change."""
+    """The parts of the search that `Preferences` uses."""
 
     units: tuple[Unit, ...]
     guards: Sequence[Guard]
@@ -40,7 +40,7 @@ class Search(Protocol):
     refused: set[tuple[Unit, Guard]]
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor; yield what holds."""
+        """Try a factor; yield the candidates that are confirmed."""
 
     def between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try factors between the unit's best factor and its neighbours."""
@@ -53,7 +53,7 @@ class Search(Protocol):
 
 
 class Preferences:
-    """The preferred changes of one search; some kinds are looked for only once."""
+    """Look for the preferred changes of one search; some kinds are looked for only once."""
 
     def __init__(self, search: Search) -> None:
         self.search = search
@@ -65,7 +65,7 @@ class Preferences:
     def before(
         self, found: Candidate, unit: Unit, factor: float, pair: int, holds: bool, near: bool
     ) -> Iterator[Candidate]:
-        """Yield the changes that come before a candidate; `near` says whether it reached the goal on its first seed."""
+        """Yield the changes preferred to a candidate; `near` says whether it reached the goal on its first seed."""
         if holds:
             yield from self._plainer(found, unit, pair)
             yield from self._called(found, unit, factor)
@@ -168,7 +168,7 @@ class Preferences:
                 return
 
     def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
-        """Try a small step, and those beside it if it earns nearly enough; return the first candidate that holds."""
+        """Try a small step, and those beside it if it earns nearly enough; return the first confirmed candidate."""
         if (unit, guard) in self.search.refused:
             return None
         candidate = self.search.holding(unit, step, guard, pair)

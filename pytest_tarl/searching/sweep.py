@@ -242,7 +242,7 @@ class Sweep:
         return self.gains.leading(before, guard, self.units, least)
 
     def attempt(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        """Try a factor of a unit; if it holds, yield the changes that are preferred to it, and then it."""
+        """Try a factor; if the candidate is confirmed, yield the changes preferred to it, then the candidate."""
         mutations = unit.mutations(self.mutate, factor)
         candidate = Candidate(mutations, guard)
         if not mutations or candidate in self._tried:
@@ -401,7 +401,7 @@ class Sweep:
     def joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
     ) -> ForwardSelection:
-        """Return a selection that combines units, which are all units of the search unless `among` is given."""
+        """Return a selection that combines the units `among` (by default all units of the search)."""
         return ForwardSelection(
             self.units if among is None else among,
             self.mutate,
