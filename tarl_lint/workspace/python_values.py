@@ -83,7 +83,6 @@ class Function:
     defaults: dict[str, Any]
     file: Path
     kind: str = ""  # `staticmethod`, `classmethod` or `property`
-    generates: bool = False  # whether it has `yield`
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -34,6 +34,7 @@ __all__ = ["Function", "Interpreter", "parsed"]
 
 DEEPEST: Final = 30  # limit on nested calls of the file's own functions
 LARGEST: Final = 1_000_000  # bytes, limit on a file
+MODULES: Final = 20  # limit on the imported modules that are interpreted for a file
 _OWN: Final = "__class__"  # the class of a method, for `super()`
 _PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
 
@@ -71,9 +72,17 @@ class Interpreter(Evaluator):
         self.problems: list[Problem] = []
         self.line = 0  # line of the current call in this file
         self._found = found
+        self._modelled = {
+            ".".join(parts[:n])
+            for parts in (one.split(".") for one in self.models)
+            for n in range(len(parts))
+        }
         self._imported: dict[Path, Namespace] = {}
         self._depth = 0
         self._yielded: list[list[Any]] = []
+        self._generators: dict[
+            ast.FunctionDef, bool
+        ] = {}  # functions that were called: whether they have `yield`
         self._files = [file]  # the files of the functions that are being interpreted
 
     def run(self) -> dict[str, Any]:
@@ -168,7 +177,7 @@ class Interpreter(Evaluator):
         defaults = {one.arg: self.value(default, names) for one, default in pairs if default is not None}
         kinds = [one.id for one in node.decorator_list if isinstance(one, ast.Name)]
         kind = next((one for one in kinds if one in ("staticmethod", "classmethod", "property")), "")
-        return Function(node, names, defaults, self._files[-1], kind, _yields(node))
+        return Function(node, names, defaults, self._files[-1], kind)
 
     def _enter(
         self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
@@ -190,7 +199,9 @@ class Interpreter(Evaluator):
             self._depth -= 1
             self._files.pop()
             yielded = self._yielded.pop()
-        return yielded if function.generates else returned
+        if function.node not in self._generators:
+            self._generators[function.node] = _yields(function.node)
+        return yielded if self._generators[function.node] else returned
 
     def _made(self, kind: Class, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         """Return a new object of a class of the file."""
@@ -425,8 +436,8 @@ class Interpreter(Evaluator):
 
     def imported(self, module: str) -> Namespace | None:
         """Return an imported module that is interpreted too; None if it is not."""
-        file = self._found(module)
-        if file is None:
+        file = None if module in self._modelled else self._found(module)
+        if file is None or (file not in self._imported and len(self._imported) >= MODULES):
             return None
         if file not in self._imported:
             names = {"__file__": str(file), "__name__": module}

@@ -262,6 +262,15 @@ def test_a_submodule_of_an_imported_package_is_read(tmp_path: Path) -> None:
     assert "demo.nodes.made(kind)" in (HEAD + dedent(text)).splitlines()[node.line - 1]
 
 
+def test_a_file_with_the_name_of_a_library_does_not_replace_it(tmp_path: Path) -> None:
+    (tmp_path / "launch").mkdir()
+    for name in ("launch", "os", "launch_ros"):
+        (tmp_path / "launch" / f"{name}.py").write_text("raise SystemExit\n")
+    found = launched(tmp_path, STYLES["function of an OpaqueFunction"][0])
+    assert not found.problems
+    assert len(found.nodes) == 3
+
+
 def test_arguments_that_a_function_reads_are_known(tmp_path: Path) -> None:
     text = """
         def setup(context):
