@@ -11,11 +11,16 @@ import numpy as np
 import pytest
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.acceptance_numbers import NEVER, acceptance_numbers
+from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.halving import Halving
 from pytest_tarl.searching.refining import between
 from pytest_tarl.searching.screening import BLOCK, MANY, blocks, main_effects, worth_screening
-from pytest_tarl.searching.search import BudgetSpentError
+from pytest_tarl.searching.search import FACTORS, BudgetSpentError, Candidate, Goal, Pair, Trials
+from tests.plugin.searching.test_forward_selection import operand
 
 
 class Generator:
@@ -178,3 +183,19 @@ def test_the_next_factors_lie_halfway_to_the_neighbours(
     gains: dict[float, float], wanted: float, factors: list[float]
 ) -> None:
     assert between(gains, wanted) == factors
+
+
+def test_halving_confirms_a_candidate_on_the_seeds_after_the_first() -> None:
+    """All arms ran on the first seed, so the next ones, in order, are evidence that nothing was chosen by."""
+    ran: list[int] = []
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        ran.append(seed)
+        right = any(mutation.value == FACTORS[0] for mutation in candidate.mutations)
+        return Outcome(10.0 if right else 0.0, right)
+
+    pairs = tuple(Pair(seed, 0.0) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=0.0)
+    search = Halving((operand(3, "1.0", 1.0),), mutations, (ALWAYS,), Trials(run, 300), goal)
+    assert next(search.candidates()).mutations[0].value == FACTORS[0]
+    assert ran == [0] * len(FACTORS) + [1, 2, 3, 4, 5]
