@@ -5,7 +5,7 @@ The combinations are confirmed on fresh seeds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import inf, isclose
@@ -19,11 +19,12 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 
 # share of the distance to each boundary at which pairs are tested; each direction alone holds there
 INSIDE = 0.9
-FIRST = 0.5  # share of the budget for the first search for the nearest failing drift
-# share of the budget after which the search stops vetting its result, to keep episodes for confirmation
-VETTED = 0.55
+FIRST = 0.6  # share of the budget for the first search for the nearest failing drift
+CONFIRMED = (
+    0.9  # share of the budget after which no nearer failing drift is tested before the single directions
+)
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
-QUICK = SIZES[0]  # number of episodes per point of a ray before the first search
+QUICK = SIZES[0]  # number of episodes at a confirmed failure
 
 
 @dataclass
@@ -39,24 +40,31 @@ class Together:
     # drifts that fail according to the model but are not confirmed
     expected: list[Failure] = field(default_factory=list)
 
-    def confirm(self, chain: Sequence[Point], evaluator: Evaluator) -> None:
+    @property
+    def confirmed(self) -> list[Failure]:
+        """Return the confirmed failing drifts along single directions and in combination."""
+        return [*confirmed(self.curves), *self.found]
+
+    def confirm(self, chain: Iterable[Point], evaluator: Evaluator) -> bool:
         """Test drifts in order on fresh seeds until one is confirmed; the k-th test overall has risk / (k(k + 1)).
 
         No drift was chosen with the seeds of the rays, so all tests share these seeds. Stop at a drift that contains a
-        confirmed failure: one that changes the same values at least as much. Raise BudgetSpentError.
+        confirmed failure: one that changes the same values at least as much. Return whether a drift was confirmed.
+        Raise BudgetSpentError.
         """
         for point in chain:
             one = failure(evaluator.space, point)
-            known = [*self.found, *confirmed(self.curves)]
-            if not one.names or any(_at_most(other.point, point, evaluator) for other in known):
-                return
+            known = any(_at_most(other.point, point, evaluator) for other in self.confirmed)
+            if not one.names or known:
+                return False
             self.tests += 1
             if evaluator.confirm(point, RAYS, self.risk / (self.tests * (self.tests + 1)), NEAREST):
                 if len(one.names) > 1:
                     self.found.append(one)
                 else:
                     self._along(one, evaluator)
-                return
+                return True
+        return False
 
     def _along(self, found: Failure, evaluator: Evaluator) -> None:
         """Add a confirmed failure along a single direction to its curve."""
@@ -91,18 +99,17 @@ class Combined:
         with self.evaluator.limited(FIRST):
             for curve in self.together.curves:
                 for t in curve.ray.places:
-                    curve.evidence[t] = self.evaluator.examine(curve.ray.point(t), QUICK)
+                    curve.evidence[t] = self.evaluator.glance(curve.ray.point(t))
             self.nearest.approach()
-        with self.evaluator.limited(VETTED):
-            self.nearest.vet()
-        self._confirm(FIRM)
+        if self._confirm(FIRM):
+            with self.evaluator.limited(CONFIRMED):
+                self._confirm(NEAR)
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
         proposed: list[Point] = []
         with self.evaluator.limited(LAST):
             self.nearest.improve()
-            self.nearest.vet()
             pairs(self.evaluator, self.together, proposed)
         self._confirm(NEAR)
         for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
@@ -115,9 +122,12 @@ class Combined:
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
 
-    def _confirm(self, steps: Steps) -> None:
-        self.together.tried = len(self.nearest.tried)
-        self.together.confirm(self.nearest.chain(steps), self.evaluator)
+    def _confirm(self, steps: Steps) -> bool:
+        limit = min((one.distance for one in self.together.confirmed), default=inf)
+        try:
+            return self.together.confirm(self.nearest.candidates(steps, limit), self.evaluator)
+        finally:
+            self.together.tried = len(self.nearest.tried)
 
 
 def pairs(evaluator: Evaluator, together: Together, proposed: list[Point]) -> None:

@@ -23,9 +23,12 @@ from pytest_tarl.stressing.guarantee import (
 
 SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
+GLANCE = 2  # episodes at a drift of the search in several directions; a model compares the drifts
+TURNS = 16  # the drifts of this search take turns in starting with another one of this many seeds
 # numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
 # confirm failures nearer to the boundary
 NEAREST = (16, 32, 64)
+SEARCH = "search"  # name of the seeds of the search
 RAYS = "rays"  # name of the fresh seeds that all rays share
 
 Progress = Callable[[int, int, str], None]
@@ -54,6 +57,7 @@ class Evaluator:
     seconds: float | None = None  # time limit in seconds, in addition to the number of episodes
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
     _known: dict[tuple[str | float, ...], list[Outcome]] = field(default_factory=dict)
+    _first: dict[tuple[float, ...], int] = field(default_factory=dict)
     _measured: dict[tuple[float, ...], tuple[float, float]] = field(default_factory=dict)
 
     @contextmanager
@@ -78,6 +82,16 @@ class Evaluator:
             return self.budget - self.spent
         passed = monotonic() - self.begun
         return int(self.spent * max(self.seconds - passed, 0.0) / max(passed, 1e-9))
+
+    def glance(self, point: Point, turn: int = 0) -> Evidence:
+        """Return the evidence at a point from GLANCE episodes; `turn` selects the seeds if it is a new point.
+
+        If many drifts take turns, the chance of a few seeds does not shift the result of all of them. Raise
+        BudgetSpentError.
+        """
+        if point != self.space.nominal and not self._known.get((SEARCH, *point.values())):
+            self._first[tuple(point.values())] = turn * GLANCE % TURNS
+        return self._evidence(point, GLANCE)
 
     def examine(self, point: Point, most: int) -> Evidence:
         """Return the evidence at a point from at most `most` episodes; stop once it is decided.
@@ -110,20 +124,29 @@ class Evaluator:
 
     def _evidence(self, point: Point, count: int) -> Evidence:
         # run these first, because each outcome is paired with a nominal one
-        nominal = self.common(self.space.nominal, count)
+        nominal = self._paired(point, count)
         return examined(self.guarantee, self.common(point, count), nominal)
+
+    def rows(self, point: Point, count: int) -> list[int]:
+        """Return the numbers of the first `count` seeds that the search uses at a point."""
+        first = self._first.get(tuple(point.values()), 0)
+        return [*range(first, TURNS), *range(first), *range(TURNS, count)][:count]
+
+    def _paired(self, point: Point, count: int) -> list[Outcome]:
+        """Return the nominal outcomes with the first `count` seeds of a point. Raise BudgetSpentError."""
+        rows = self.rows(point, count)
+        nominal = self._of(SEARCH, self.space.nominal, max(rows) + 1)
+        return [nominal[row] for row in rows]
 
     def measured(self, point: Point) -> tuple[float, float]:
         """Return the margin at a point and its approximate standard deviation, from all episodes of the search.
 
         Raise KeyError if the search ran no episode there.
         """
-        outcomes = self._known[("search", *point.values())]
+        outcomes = self._known[(SEARCH, *point.values())]
         key = (len(outcomes), *point.values())
         if key not in self._measured:
-            self._measured[key] = margin_of(
-                self.guarantee, outcomes, self.common(self.space.nominal, len(outcomes))
-            )
+            self._measured[key] = margin_of(self.guarantee, outcomes, self._paired(point, len(outcomes)))
         return self._measured[key]
 
     def losses(self, point: Point) -> tuple[list[float], int]:
@@ -132,19 +155,19 @@ class Evaluator:
         A loss is the difference from the nominal episode with the same seed, in units of the tolerated loss; it is
         positive if the episode earned less. Raise KeyError if the search ran no episode there.
         """
-        outcomes = self._known[("search", *point.values())]
+        outcomes = self._known[(SEARCH, *point.values())]
         unit = self.guarantee.tolerance
-        pairs = zip(outcomes, self.common(self.space.nominal, len(outcomes)), strict=True)
+        pairs = zip(outcomes, self._paired(point, len(outcomes)), strict=True)
         lost = [before.total - after.total for after, before in pairs]
         shares = [one / unit if unit > 0.0 else 2.0 * (one > 0.0) for one in lost]
         return shares, sum(not one.passed for one in outcomes)
 
     def common(self, point: Point, count: int) -> Sequence[Outcome]:
-        """Return the outcomes of the first `count` seeds of the search.
+        """Return the outcomes of the first `count` seeds of the search at a point.
 
         Raise BudgetSpentError if the budget does not cover the missing ones.
         """
-        return self._of("search", point, count)
+        return self._of(SEARCH, point, count)
 
     def fresh(self, point: Point, count: int) -> Sequence[Outcome]:
         """Return the outcomes of the first `count` confirmation seeds of the rays. Raise BudgetSpentError."""
@@ -164,10 +187,15 @@ class Evaluator:
     def _of(self, pool: str, point: Point, count: int) -> Sequence[Outcome]:
         known = self._known.setdefault((pool, *point.values()), [])
         if len(known) < count:
-            seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", count)
-            missing = seeds[len(known) :]
+            missing = self._seeds(pool, point, count)[len(known) :]
             known += self._run([point] * len(missing), missing)
         return known[:count]
+
+    def _seeds(self, pool: str, point: Point, count: int) -> list[int]:
+        """Return the first `count` seeds of a pool at a point, in the order in which they run."""
+        rows = self.rows(point, count) if pool == SEARCH else range(count)
+        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", max(rows, default=-1) + 1)
+        return [seeds[row] for row in rows]
 
     def recalled(self, pool: str, point: Point) -> list[tuple[EpisodePlan, bool]]:
         """Return the plan of each episode that a pool ran at a point, and whether the episode failed.
@@ -176,15 +204,16 @@ class Evaluator:
         seed by more than the tolerated loss.
         """
         known = self._known.get((pool, *point.values()), [])
-        nominal = self._known.get((pool, *self.space.nominal.values()), [])
-        seeds = episode_seeds(self.seed, f"stress {self.drift} {pool}", len(known))
+        rows = self.rows(point, len(known)) if pool == SEARCH else range(len(known))
+        usual = self._known.get((pool, *self.space.nominal.values()), [])
+        seeds = self._seeds(pool, point, len(known))
         return [
             (
                 EpisodePlan(seed, self.drift, point=point),
                 not one.passed
-                or (place < len(nominal) and nominal[place].total - one.total > self.guarantee.tolerance),
+                or (row < len(usual) and usual[row].total - one.total > self.guarantee.tolerance),
             )
-            for place, (seed, one) in enumerate(zip(seeds, known, strict=True))
+            for row, seed, one in zip(rows, seeds, known, strict=True)
         ]
 
     def singly(self, pool: str, points: Sequence[Point], rows: Sequence[int]) -> list[Outcome]:

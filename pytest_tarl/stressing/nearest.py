@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from math import sqrt
-from statistics import fmean, median, variance
+from statistics import fmean, median
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from pytest_tarl.stressing.mapping import margin_map
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
-from pytest_tarl.stressing.spreading import spread
+from pytest_tarl.stressing.spreading import around, spread
 
 NEARER = 0.98  # maximum distance of the next failing drift, as a share of the best distance
 LARGEST = 2.0  # maximum distance of the drifts that are searched
@@ -42,18 +42,24 @@ SURE = 0.5
 # number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
 CLEAR = 4.0
 GENERATED = 24  # maximum number of drifts from Hypothesis
-ROUNDS, EXPLORED = 8, 8  # rounds of the first search, and drifts explored in each round
+ROUNDS, EXPLORED = 24, 4  # rounds of the first search, and drifts explored in each round without the model
+GUIDED, AMONG = (
+    4,
+    4,
+)  # drifts explored in each round that the model chooses, and the number it chooses each from
+HOPE = 1.0  # standard deviations by which the model may be wrong in favour of a drift that it chooses
+DESCENDED = 2  # drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
-VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before confirmation
+VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 SAME = 0.02  # relative difference of drifts below which they count as the same
 TRIES = 24  # number of consecutive drifts without a nearer failure after which CMA-ES stops
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
 # Steps by which drifts are chosen: the errors of the model to allow for, in standard deviations, and the
 # excess over the guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation,
 # NEAR for the second, and EXPECTED for drifts that are reported without confirmation.
-FIRM = ((0.0, 1.0), (0.3, 1.4), (1.0, 2.0))
-NEAR = ((0.0, 0.8), (0.2, 1.1), (0.5, 1.4))
-EXPECTED = ((0.0, 0.85), (0.0, 1.0), (0.2, 1.2), (0.5, 1.5), (1.0, 2.0))
+FIRM = ((0.5, 1.2), (1.0, 1.8), (1.5, 2.5))
+NEAR = ((0.2, 0.9),)
+EXPECTED = ((0.2, 0.9), (0.4, 1.0), (0.6, 1.2), (0.8, 1.5), (1.0, 2.0), (1.5, 2.5))
 # excess of a loss over the tolerated one, in standard errors, that fresh episodes show 4 times in 5
 STANDARD = 4.1
 # excess of a failure rate, in standard errors, that fresh episodes show 4 times in 5; maximum failure rate
@@ -125,21 +131,62 @@ class Nearest:
             ]
         return min(other, key=self._distance, default=None)
 
-    def chain(self, steps: Steps) -> list[Point]:
-        """Return candidates for confirmation, nearest first.
+    def candidates(self, steps: Steps, limit: float) -> Iterator[Point]:
+        """Yield drifts to confirm, nearer than `limit`: one for each of `steps`, then drifts that failed farther away.
 
         At the boundary, even many episodes rarely show a failure. The candidates therefore lie beyond the boundary, as
-        far as noise and errors of the model require.
+        far as noise and errors of the model require. Each is vetted before. Raise BudgetSpentError.
         """
+        for point in self._candidates(steps):
+            if self._distance(point) >= NEARER * limit:
+                return
+            yield point
+
+    def _candidates(self, steps: Steps) -> Iterator[Point]:
         best = self.best
         if best is None:
-            return []
-        near = self.expected(steps) or [best]
-        return (
-            [*near, *self._farther(max(map(self._distance, near)))]
-            if self._nominal().covers(best)
-            else [best]
-        )
+            return
+        if not self._nominal().covers(best):
+            yield best
+            return
+        last = 0.0
+        for errors, depth in steps:
+            point = self._vetted(errors, depth)
+            if point is not None and self._distance(point) > (1.0 + SAME) * last:
+                last = self._distance(point)
+                yield point
+        if last == 0.0:
+            last = self._distance(best)
+            yield best
+        yield from self._farther(last)
+
+    def _vetted(self, errors: float, depth: float) -> Point | None:
+        """Return the nearest drift that fails according to the model, even after further episodes there.
+
+        The nearest of many predicted drifts is often one at which the model errs. `errors` and `depth` are as in
+        `expected`. Return None if no drift fails. Raise BudgetSpentError.
+        """
+        evaluator, coordinates = self.evaluator, self._nominal()
+        draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} vetting {len(self.tried)}")
+        point: Point | None = None
+        for _ in range(VETTED):
+            point = self._nearest(errors, depth, draws)
+            if point is None or evaluator.left < SIZES[2] + 2 * NEAREST[-1]:
+                break
+            evaluator.common(point, SIZES[2])
+            self.tried.append(point)
+            vector = coordinates.vector(point)
+            if self._model().deeper(depth).excess(vector[None, :], errors)[0] >= 0.0:
+                break
+        return point
+
+    def _nearest(self, errors: float, depth: float, draws: np.random.Generator) -> Point | None:
+        """Return the nearest drift that fails according to the model, or None; parameters as in `expected`."""
+        model = self._model().deeper(depth)
+        vector = model.shortest(errors, LARGEST, draws)
+        if vector is None:
+            return None
+        return self._nominal().point(_without_trifles(vector, model, errors))
 
     def expected(self, steps: Steps) -> list[Point]:
         """Return for each step the nearest drift that fails according to the model.
@@ -153,12 +200,11 @@ class Nearest:
         draws = seeds.generator(self.evaluator.seed, f"stress {self.evaluator.drift} chain {len(self.tried)}")
         near: list[Point] = []
         for errors, depth in steps:
-            model = self._model().deeper(depth)
-            vector = model.shortest(errors, LARGEST, draws)
-            if vector is not None:
-                point = coordinates.point(_without_trifles(vector, model, errors))
-                if not near or self._distance(point) > (1.0 + SAME) * self._distance(near[-1]):
-                    near.append(point)
+            point = self._nearest(errors, depth, draws)
+            if point is not None and (
+                not near or self._distance(point) > (1.0 + SAME) * self._distance(near[-1])
+            ):
+                near.append(point)
         return near
 
     def map(self) -> MarginMap | None:
@@ -206,7 +252,11 @@ class Nearest:
             typical = _typical([losses for losses, _ in measured])
             samples = [
                 Sample(
-                    coordinates.vector(point), fmean(losses), _spread(losses, typical), failed, len(losses)
+                    coordinates.vector(point),
+                    fmean(losses),
+                    _spread(losses, typical),
+                    failed,
+                    evaluator.rows(point, len(losses)),
                 )
                 for point, (losses, failed) in zip(points, measured, strict=True)
             ]
@@ -238,10 +288,12 @@ class Nearest:
 
     def _probe(self, point: Point) -> float:
         """Run the first episodes of a drift, and more if they fail; return its margin."""
-        found = self.evaluator.examine(point, SIZES[0])
+        found = self.evaluator.glance(point, len(self.tried))
         self.tried.append(point)
-        if found.failing:
-            found = self.evaluator.examine(point, SIZES[1])
+        if found.failing and found.result == "open":
+            found = self.evaluator.examine(point, SIZES[0])
+            if found.failing:
+                found = self.evaluator.examine(point, SIZES[1])
         return found.margin
 
     def _predict(self) -> None:
@@ -261,43 +313,34 @@ class Nearest:
                     continue
             self._probe(coordinates.point(vector))
 
-    def vet(self) -> None:
-        """Run more episodes at the nearest predicted failure, until the prediction no longer moves.
-
-        Raise BudgetSpentError.
-        """
-        if len(self._nominal().spans) < 2 or self.best is None:
-            return
-        draws = seeds.generator(
-            self.evaluator.seed, f"stress {self.evaluator.drift} vetting {len(self.tried)}"
-        )
-        last: Vector | None = None
-        for _ in range(VETTED):
-            vector = self._model().shortest(0.0, LARGEST, draws)
-            if vector is None or (
-                last is not None and np.linalg.norm(vector - last) < SAME * np.linalg.norm(vector)
-            ):
-                return
-            last, point = vector, self._nominal().point(vector)
-            self.evaluator.common(point, SIZES[2])
-            self.tried.append(point)
-
     def _explore_and_predict(self, rounds: int) -> None:
         for _ in range(rounds):
             self._explore()
             self._predict()
 
     def _explore(self) -> None:
-        """Try drifts nearer than the best one in all directions, to find other failing regions."""
+        """Try drifts nearer than the best one in all directions, to find other failing regions.
+
+        Some are chosen by the model, because losses that are tolerated show where a failing region may be. Then try a
+        few drifts around the best one.
+        """
         evaluator, coordinates = self.evaluator, self._nominal()
         if len(coordinates.spans) < 2:
             return
         if self._spread is None:
             draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} exploration")
             self._spread = spread(coordinates, draws)
-        for vector in islice(self._spread, EXPLORED):
-            limit = min(self._limit(), LARGEST)
-            self._probe(coordinates.point(vector * limit))
+        limit, best = min(self._limit(), LARGEST), self.best
+        vectors = [limit * vector for vector in islice(self._spread, EXPLORED)]
+        among = np.array([limit * vector for vector in islice(self._spread, GUIDED * AMONG)])
+        hopes = self._model().excess(np.clip(among, coordinates.low, coordinates.high), -HOPE)
+        vectors += [among[place] for place in np.argsort(-hopes, kind="stable")[:GUIDED]]
+        for vector in vectors:
+            self._probe(coordinates.point(vector))
+        if best is not None and coordinates.covers(best):
+            draws = seeds.generator(evaluator.seed, f"stress {evaluator.drift} descent {len(self.tried)}")
+            for vector in islice(around(coordinates, coordinates.vector(best), draws), DESCENDED):
+                self._probe(coordinates.point(vector))
 
     def _generate(self) -> None:
         """Let Hypothesis search for a first failing drift."""
@@ -341,14 +384,14 @@ class Nearest:
 
 def _typical(every: Sequence[Sequence[float]]) -> float:
     """Return the mean variance of losses over the drifts, with a cap so that noisy drifts do not dominate."""
-    found = [variance(losses) for losses in every if len(losses) > 1]
+    found = [float(np.var(losses, ddof=1)) for losses in every if len(losses) > 1]
     return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6)
 
 
 def _spread(losses: Sequence[float], typical: float) -> float:
     """Return the standard error of the mean loss; the variance is shrunk towards the typical one."""
     count = len(losses)
-    squares = variance(losses) * (count - 1) if count > 1 else 0.0
+    squares = float(np.var(losses)) * count
     return sqrt((squares + PRIOR * typical) / (count - 1 + PRIOR) / count)
 
 

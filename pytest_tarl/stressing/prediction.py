@@ -23,7 +23,7 @@ DRAWN = 400  # number of random drifts that the model compares
 PART = 0.75  # probability that a direction changes in a random drift
 # number of refinements around the best drift; initial standard deviation, which each refinement halves
 ROUNDS, SPREAD = 5, 0.15
-STRETCHED = (0.9, 1.1)  # multiples of the vectors of tried drifts that are compared as well
+STRETCHED = (0.9, 1.0, 1.1)  # multiples of the vectors of tried drifts that are compared as well
 RAREST = 0.007  # minimum failure rate that the model assumes at nominal
 # possible prior variances of the logit, relative to that of the loss; the one with the most evidence is used
 SCALES = (9.0, 36.0, 144.0)
@@ -33,7 +33,7 @@ LOGIT = 4.0  # difference of logits that counts as much as the whole tolerated l
 
 @dataclass(frozen=True)
 class Sample:
-    """A tried drift: its vector, mean loss and number of failed episodes.
+    """A tried drift: its vector, mean loss, number of failed episodes, and the numbers of the seeds of its episodes.
 
     `loss` is in units of the tolerated loss, and `spread` is its standard error.
     """
@@ -42,7 +42,7 @@ class Sample:
     loss: float
     spread: float
     failed: int
-    episodes: int
+    rows: Sequence[int]
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,12 @@ class Prediction:
             len(samples), len(coordinates.spans)
         )
         losses = np.array([min(max(one.loss, LOWEST), 1.0 - LOWEST) for one in samples])
-        counts = np.array([float(one.episodes) for one in samples])
-        # all drifts share the nominal episodes, so their errors are correlated
-        common = typical / 2.0 / np.maximum(counts[:, None], counts)
+        counts = np.array([float(len(one.rows)) for one in samples])
+        # drifts with the same seeds share the nominal episodes, so their errors are correlated
+        used = np.zeros((len(samples), 1 + max((max(one.rows) for one in samples), default=0)))
+        for row, one in zip(used, samples, strict=True):
+            row[list(one.rows)] = 1.0 / len(one.rows)
+        common = typical / 2.0 * (used @ used.T)
         own = np.maximum(
             np.array([one.spread**2 for one in samples]) - typical / 2.0 / counts, typical / 8.0 / counts
         )

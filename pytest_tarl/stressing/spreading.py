@@ -12,6 +12,8 @@ from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
 CLOSEST = 0.4  # length of the shortest vectors; the longest have length 1
 PART = 0.8  # share of the vectors in which a given direction changes
+SHORTER = (0.8, 0.98)  # lengths of vectors around another one, as shares of its length
+ASIDE = 0.25  # standard deviation of their coordinates, as a share of its length
 
 
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
@@ -31,6 +33,17 @@ def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vec
         length = float(np.linalg.norm(vector))
         if length > 0.0:
             yield vector / length * (CLOSEST + (1.0 - CLOSEST) * drawn[-1])
+
+
+def around(coordinates: Coordinates, vector: Vector, draws: np.random.Generator) -> Iterator[Vector]:
+    """Yield vectors endlessly that are a little shorter than another one and have a similar direction."""
+    length = float(np.linalg.norm(vector))
+    while True:
+        moved = vector + ASIDE * length * draws.standard_normal(len(vector))
+        moved = np.clip(moved, coordinates.low, coordinates.high)
+        size = float(np.linalg.norm(moved))
+        if size > 0.0:
+            yield moved / size * min(draws.uniform(*SHORTER) * length, size)
 
 
 def _inverse(number: int, base: int) -> float:

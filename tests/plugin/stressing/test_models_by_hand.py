@@ -111,7 +111,7 @@ def test_the_prior_covariance_of_two_drifts_equals_the_formula() -> None:
 def model(samples: list[tuple[float, float]], failed: int = 0) -> prediction.Prediction:
     """Return the model of drifts along mud, each by its coordinate and its mean loss of 32 episodes."""
     coordinates = Coordinates(SPACE, SPACE.nominal)
-    tried = [prediction.Sample(np.array([-t, 0.0]), loss, 0.01, failed, 32) for t, loss in samples]
+    tried = [prediction.Sample(np.array([-t, 0.0]), loss, 0.01, failed, range(32)) for t, loss in samples]
     return prediction.Prediction(coordinates, GIVEN, tried, prediction.Shown(0.1, 0.5), 0.01)
 
 

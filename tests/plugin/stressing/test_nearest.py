@@ -45,10 +45,10 @@ def test_coordinates_are_distances_in_units_of_the_ranges(a: float, b: float, ca
     assert coordinates.within(np.array([a, b]), 0.9) is None or camera == 0.0
 
 
-def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, int]:
-    """Return the mean loss, its standard deviation, the number of failed episodes and the number of episodes."""
+def measured(evaluator: Evaluator, point: Point) -> tuple[float, float, int, range]:
+    """Return the mean loss, its standard deviation, the number of failed episodes and the numbers of the seeds."""
     losses, failed = evaluator.losses(point)
-    return fmean(losses), 0.05, failed, len(losses)
+    return fmean(losses), 0.05, failed, range(len(losses))
 
 
 def test_the_prediction_finds_the_nearest_failure_where_losses_add_up() -> None:

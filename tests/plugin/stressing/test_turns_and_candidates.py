@@ -1,0 +1,124 @@
+"""Seeds that drifts of the search take turns in, drifts chosen by the model, and candidates that are vetted."""
+
+from __future__ import annotations
+
+from itertools import islice
+from math import inf
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Drift
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.spaces import Point
+from pytest_tarl.stressing.coordinates import Coordinates
+from pytest_tarl.stressing.evaluating import GLANCE, SEARCH, TURNS
+from pytest_tarl.stressing.findings import Curve
+from pytest_tarl.stressing.nearest import DESCENDED, EXPLORED, FIRM, GUIDED, NEAR, Nearest
+from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
+from pytest_tarl.stressing.rays import rays
+from pytest_tarl.stressing.spreading import SHORTER, around
+from tests.plugin.stressing.worlds import evaluator_of, space_of
+
+SQUARE = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "ab"})
+
+
+def sloping(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
+    """Lose the tolerated reward at 0.8 a + 0.6 b = 0.5."""
+    return True, 10.0 - 0.8 * point["a"] - 0.6 * point["b"] + float(draws.normal(0.0, 0.05))
+
+
+def test_drifts_take_turns_in_the_seeds_and_are_paired_with_the_same_nominal_seeds() -> None:
+    evaluator = evaluator_of(lambda _, draws: (True, float(draws.normal(0.0, 5.0))), SQUARE)
+    seeds = list(episode_seeds(evaluator.seed, "stress world search", 2 * TURNS))
+    for turn in (0, 3, TURNS // GLANCE - 1, TURNS // GLANCE):
+        point = {"a": 0.01 * (turn + 1), "b": 0.5}
+        evaluator.glance(point, turn)
+        first = turn * GLANCE % TURNS
+        ran = [plan.seed for plan, _ in evaluator.recalled(SEARCH, point)]
+        assert ran == seeds[first : first + GLANCE]
+        assert evaluator.losses(point)[0] == [0.0] * GLANCE  # the reward depends on the seed alone
+        evaluator.common(point, TURNS + 1)
+        ran = [plan.seed for plan, _ in evaluator.recalled(SEARCH, point)]
+        assert sorted(ran) == sorted(seeds[: TURNS + 1])
+        assert not any(failed for _, failed in evaluator.recalled(SEARCH, point))
+
+
+def test_a_second_glance_keeps_the_seeds_of_a_drift() -> None:
+    evaluator = evaluator_of(sloping, SQUARE)
+    point = {"a": 0.5, "b": 0.5}
+    evaluator.glance(point, 3)
+    spent = evaluator.spent
+    evaluator.glance(point, 5)
+    assert evaluator.spent == spent
+    assert evaluator.rows(point, GLANCE) == [3 * GLANCE, 3 * GLANCE + 1]
+    assert evaluator.rows(SQUARE.nominal, GLANCE) == [0, 1]
+
+
+def test_drifts_with_different_seeds_tell_the_model_more() -> None:
+    coordinates = Coordinates(SQUARE, SQUARE.nominal)
+    vectors = [np.array([0.5, 0.5]), np.array([0.51, 0.5])]
+    given = evaluator_of(sloping, SQUARE).guarantee
+
+    def deviation(rows: list[list[int]]) -> float:
+        samples = [Sample(vector, 1.0, 0.2, 0, row) for vector, row in zip(vectors, rows, strict=True)]
+        model = Prediction(coordinates, given, samples, Shown(0.05, 0.2), typical=0.08)
+        return float(model.moments(np.array([[0.5, 0.5]]))[1][0])
+
+    assert deviation([[0, 1], [2, 3]]) < 0.95 * deviation([[0, 1], [0, 1]])
+
+
+def test_vectors_around_another_one_are_shorter_and_similar() -> None:
+    coordinates = Coordinates(SQUARE, SQUARE.nominal)
+    best = np.array([0.3, 0.9])
+    found = np.array(list(islice(around(coordinates, best, np.random.default_rng(0)), 100)))
+    lengths = np.linalg.norm(found, axis=1)
+    assert (found >= 0.0).all()
+    assert (found <= 1.0).all()
+    assert lengths.max() <= SHORTER[1] * np.linalg.norm(best)
+    assert np.quantile(lengths, 0.1) >= SHORTER[0] * np.linalg.norm(best) - 1e-9
+    assert np.median(found @ best / lengths / np.linalg.norm(best)) > 0.9
+
+
+def test_half_of_the_explored_drifts_lie_where_the_model_expects_losses() -> None:
+    """Only `a` changes the reward, and at the end of its range the loss is just tolerated."""
+    evaluator = evaluator_of(lambda point, _: (True, 10.0 - 0.4 * point["a"]), SQUARE)
+    nearest = Nearest(evaluator, [])
+    for a in (0.3, 0.6, 0.9):
+        for b in (0.3, 0.6, 0.9):
+            nearest._probe({"a": a, "b": b})
+    known = len(nearest.tried)
+    nearest._explore()
+    explored = nearest.tried[known:]
+    assert len(explored) == EXPLORED + GUIDED  # nothing fails, so there is no best drift to go around
+    spread, guided = explored[:EXPLORED], explored[EXPLORED:]
+    assert min(point["a"] for point in guided) > np.mean([point["a"] for point in spread])
+
+
+def test_drifts_around_the_best_one_are_tried() -> None:
+    evaluator = evaluator_of(sloping, SQUARE)
+    nearest = Nearest(evaluator, [], [{"a": 0.9, "b": 0.6}])
+    evaluator.examine(nearest.tried[0], 16)
+    assert nearest.best == nearest.tried[0]
+    nearest._explore()
+    assert len(nearest.tried) == 1 + EXPLORED + GUIDED + DESCENDED
+    for point in nearest.tried[-DESCENDED:]:
+        assert SHORTER[0] - 0.01 < np.hypot(point["a"], point["b"]) / np.hypot(0.9, 0.6) < SHORTER[1] + 0.01
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+def test_candidates_are_vetted_with_further_episodes_and_lie_beyond_the_boundary(seed: int) -> None:
+    evaluator = evaluator_of(sloping, SQUARE, seed=seed)
+    curves = [Curve(ray) for ray in rays(SQUARE, {})]
+    for curve in curves:
+        curve.evidence.update({t: evaluator.glance(curve.ray.point(t)) for t in curve.ray.places})
+    nearest = Nearest(evaluator, curves)
+    nearest.approach()
+    candidates = list(islice(nearest.candidates(FIRM, inf), len(FIRM)))
+    assert candidates
+    for point in candidates:
+        assert len(evaluator.losses(point)[0]) >= TURNS
+        assert 0.8 * point["a"] + 0.6 * point["b"] > 0.5
+    distances = [np.hypot(point["a"], point["b"]) for point in candidates]
+    assert distances == sorted(distances)
+    assert list(nearest.candidates(NEAR, 0.5)) == []  # the boundary is at a distance of 0.5
