@@ -25,6 +25,7 @@ JUDGING = (
     "drift_judging_8",
     "drift_judging_9",
     "drift_judging_10",
+    "drift_judging_11",
     "drift_structure",
 )
 TASKS = sorted(
@@ -185,6 +186,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "sparse reward",
         "two constants",
     ],
+    "drift_judging_11": [
+        "narrow window",
+        "one constant",
+        "one constant",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "two constants",
+    ],
 }
 
 
@@ -233,6 +244,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_8",
         "drift_judging_9",
         "drift_judging_10",
+        "drift_judging_11",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
