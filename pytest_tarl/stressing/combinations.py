@@ -20,9 +20,8 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 # share of the distance to each boundary at which pairs are tested; each direction alone holds there
 INSIDE = 0.9
 FIRST = 0.6  # share of the budget for the first search for the nearest failing drift
-CONFIRMED = (
-    0.9  # share of the budget after which no nearer failing drift is tested before the single directions
-)
+# share of the budget after which no nearer failing drift is tested before the single directions
+CONFIRMED = 0.9
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 QUICK = SIZES[0]  # number of episodes at a confirmed failure
 

@@ -23,8 +23,9 @@ from pytest_tarl.stressing.guarantee import (
 
 SIZES = (4, 8, 16, 32)  # numbers of episodes at a drift after which the search checks for a decision
 FRESH = (16, 32)  # numbers of fresh episodes after which a test along a ray checks for a decision
-GLANCE = 2  # episodes at a drift of the search in several directions; a model compares the drifts
-TURNS = 16  # the drifts of this search take turns in starting with another one of this many seeds
+GLANCE = 2  # number of episodes at a drift of the search in several directions; a model compares the drifts
+# number of seeds among which the drifts of this search choose their first seed in turn
+TURNS = 16
 # numbers of fresh episodes after which a test of a combination checks for a decision; more episodes can
 # confirm failures nearer to the boundary
 NEAREST = (16, 32, 64)
@@ -86,7 +87,7 @@ class Evaluator:
     def glance(self, point: Point, turn: int = 0) -> Evidence:
         """Return the evidence at a point from GLANCE episodes; `turn` selects the seeds if it is a new point.
 
-        If many drifts take turns, the chance of a few seeds does not shift the result of all of them. Raise
+        If many drifts use different seeds in turn, a few unusual seeds do not shift the results of all drifts. Raise
         BudgetSpentError.
         """
         if point != self.space.nominal and not self._known.get((SEARCH, *point.values())):

@@ -42,13 +42,14 @@ SURE = 0.5
 # number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
 CLEAR = 4.0
 GENERATED = 24  # maximum number of drifts from Hypothesis
-ROUNDS, EXPLORED = 24, 4  # rounds of the first search, and drifts explored in each round without the model
-GUIDED, AMONG = (
+ROUNDS, EXPLORED = (
+    24,
     4,
-    4,
-)  # drifts explored in each round that the model chooses, and the number it chooses each from
-HOPE = 1.0  # standard deviations by which the model may be wrong in favour of a drift that it chooses
-DESCENDED = 2  # drifts near the best one that are tried in each round
+)  # number of rounds of the first search; number of drifts explored in each without the model
+# number of drifts that the model chooses in each round; number of candidates for each choice
+GUIDED, AMONG = 4, 4
+HOPE = 1.0  # number of standard deviations of the model that count in favour of a drift
+DESCENDED = 2  # number of drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
 VETTED = 4  # maximum number of drifts that run SIZES[2] episodes before a confirmation
 SAME = 0.02  # relative difference of drifts below which they count as the same

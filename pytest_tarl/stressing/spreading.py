@@ -12,8 +12,10 @@ from pytest_tarl.stressing.coordinates import Coordinates, Vector
 
 CLOSEST = 0.4  # length of the shortest vectors; the longest have length 1
 PART = 0.8  # share of the vectors in which a given direction changes
-SHORTER = (0.8, 0.98)  # lengths of vectors around another one, as shares of its length
-ASIDE = 0.25  # standard deviation of their coordinates, as a share of its length
+SHORTER = (0.8, 0.98)  # minimum and maximum length of vectors around another one, as shares of its length
+ASIDE = (
+    0.25  # standard deviation of the difference in each coordinate, as a share of the other vector's length
+)
 
 
 def spread(coordinates: Coordinates, draws: np.random.Generator) -> Iterator[Vector]:
