@@ -53,7 +53,8 @@ class Script:
         pytest imports the `__init__.py` of each folder above a test before the in-process ROS is installed.
         """
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
-        outer = next((one for one in inside if not (one / "__init__.py").is_file()), self.repository)
+        packages = [place for place, one in enumerate(inside) if (one / "__init__.py").is_file()]
+        outer = next(iter(inside[packages[-1] + 1 :] if packages else inside), self.repository)
         return next((one for one in inside if (one / "package.xml").is_file()), outer)
 
 

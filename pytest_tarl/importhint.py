@@ -18,11 +18,17 @@ def package_hint(error: BaseException | None) -> str | None:
 
 def import_hint(error: BaseException | None) -> str | None:
     """Return advice for an import that failed during collection; None for any other error."""
-    while error is not None and not isinstance(error, ModuleNotFoundError):
+    while error is not None:
+        advice = _of_module(error.name) if isinstance(error, ModuleNotFoundError) and error.name else None
+        if advice is not None:
+            return advice
         error = error.__cause__ or error.__context__
-    if error is None or not error.name:
-        return None
-    package = error.name.partition(".")[0]
+    return None
+
+
+def _of_module(name: str) -> str | None:
+    """Return advice for a module of ROS; None for any other module."""
+    package = name.partition(".")[0]
     if package in STANDINS:
         return (
             f"{package} is not installed, and TARL provides it only to nodes while a test runs: import the node "

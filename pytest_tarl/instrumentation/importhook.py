@@ -5,6 +5,7 @@ This is the only file that touches `sys.meta_path`.
 
 from __future__ import annotations
 
+import ast
 import builtins
 import contextlib
 import sys
@@ -146,7 +147,14 @@ class NodeImports:
             module.__package__ = package
         code = self.compile_file(path)
         sys.modules[name] = module
-        on_search_path(path.parent, root)
+        on_search_path(root)
+        if (
+            package
+            and (path.parent / f"{package.partition('.')[0]}.py").is_file()
+            and _imports_relatively(path)
+        ):
+            import_module(package)  # a module in the folder of the script has the package's name
+        on_search_path(path.parent)
         self.prepare(module, path)
         exec(code, module.__dict__)  # noqa: S102 - running the node is the purpose
         return module
@@ -264,6 +272,12 @@ class NodeImports:
             return True
         within = any(file.is_relative_to(project) for project in self._projects)
         return within and _INSTALLED.isdisjoint(file.parts) and not of_tests(file)
+
+
+def _imports_relatively(path: Path) -> bool:
+    """Return whether a file imports from its own package by dots."""
+    tree = ast.parse(path.read_bytes())
+    return any(isinstance(node, ast.ImportFrom) and node.level > 0 for node in ast.walk(tree))
 
 
 class NodeLoader(SourceFileLoader):

@@ -50,6 +50,22 @@ def test_the_error_of_a_test_inside_a_package_that_imports_ros_advises_moving_th
     )
 
 
+def test_the_advice_appears_if_the_package_tries_another_import_after_that_of_ros(
+    tank: pytest.Pytester,
+) -> None:
+    package = tank.mkpydir("robot")
+    (package / "__init__.py").write_text(
+        "try:\n    import rospy\nexcept ImportError:\n    import no_such_driver\n"
+    )
+    tests = package / "tests"
+    tests.mkdir()
+    (tests / "test_driver.py").write_text(
+        "import pytest\n@pytest.mark.tarl(nodes=['../driver.py'])\ndef test_driver(tarl):\n    pass\n"
+    )
+    result = tank.runpytest(str(tests))
+    result.stdout.fnmatch_lines(["*whose __init__.py imports ROS*"])
+
+
 def test_another_error_in_the_package_of_a_test_gets_no_advice_on_ros(tank: pytest.Pytester) -> None:
     package = tank.mkpydir("robot")
     (package / "__init__.py").write_text("import no_such_driver\n")

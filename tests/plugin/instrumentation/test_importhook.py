@@ -415,6 +415,18 @@ def test_a_script_in_a_package_supports_relative_imports(project, package):
     assert not [name for name in sys.modules if name.startswith("robot")]
 
 
+def test_a_module_may_have_the_name_of_its_package(project: Path) -> None:
+    package = project / "viewer"
+    package.mkdir()
+    (package / "__init__.py").write_text("from .viewer import main\n")
+    (package / "viewer.py").write_text("from . import size\ndef main():\n    return size.SIZE\n")
+    (package / "size.py").write_text("SIZE = 3\n")
+    (package / "__main__.py").write_text("from . import main\nfound = main()\n")
+    for _ in range(2):
+        with imports(project, Recorder(), plan={}) as node:
+            assert node.run_script(package / "__main__.py").found == 3
+
+
 def test_an_entry_point_runs_in_its_module_under_its_own_name(project, package):
     plan = {package.parent.parent / "limits.py": LIMIT, package: {(7, 5): 1}}
     for _ in range(2):
