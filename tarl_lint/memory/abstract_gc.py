@@ -22,11 +22,13 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     """Return the changes of a frame that are visible after it returns.
 
     `returned` are the objects that the frame returns, yields or raises; `given` are arguments of roots. Both stay
-    reachable.
+    reachable. The variables of the frame stay only if a reachable function is defined inside it.
     """
     local = {owner for owner, name in delta if name == BORN and owner.kind in TEMPORARY}
-    if not local:
-        return delta if frame.captured else {k: v for k, v in delta.items() if k[0] is not frame}
+    if frame.captured:
+        local.add(frame)
+    elif not local:
+        return {k: v for k, v in delta.items() if k[0] is not frame}
     kept: Delta = {}
     inside: dict[Obj, list[frozenset[Obj]]] = {}
     pending = [*returned, *(local & given)]
@@ -66,8 +68,7 @@ def _reached(
                 if pts not in followed:
                     followed.add(pts)
                     pending += pts
-            if root.info is not None:
-                pending += _about(root.info)
+            pending += _beyond(root)
     return seen
 
 
@@ -79,8 +80,16 @@ def together(objects: Iterable[Obj]) -> Set[Obj]:
         obj = pending.pop().whole
         if obj not in found:
             found.add(obj)
-            pending += _about(obj.info)
+            pending += _beyond(obj)
     return found
+
+
+def _beyond(obj: Obj) -> Iterator[Obj]:
+    """Yield the objects that an object refers to, apart from its fields; a frame refers to the enclosing one."""
+    if obj.info is not None:
+        yield from _about(obj.info)
+    if isinstance(obj, Frame) and obj.outer is not None:
+        yield obj.outer
 
 
 def _about(info: object) -> Iterator[Obj]:

@@ -17,6 +17,7 @@ from tarl_lint.memory import (
     updates,
     userdata,
 )
+from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.shared import BORN
@@ -470,15 +471,32 @@ def test_temporary_objects_are_kept_only_if_a_kept_object_refers_to_them(ctx, fr
     assert list(ctx.store.reads.facts) == [(given.isdisjoint, frozenset([objects["gone"]]))]
     frame.captured = True
     kept = abstract_gc.lasting(ctx.store.since(0), frame, [], frozenset(), ctx.store.reads)
-    assert (objects["gone"], "x") in kept  # a closure may read the variable
+    assert (objects["gone"], "x") not in kept
+    inner = Obj("closure", "inner")
+    inner.info = (None, frame)
+    kept = abstract_gc.lasting(ctx.store.since(0), frame, [inner], frozenset(), ctx.store.reads)
+    assert (objects["gone"], "x") in kept  # the returned closure may read the variable
 
 
 def test_if_no_object_was_created_only_variables_are_dropped(ctx, frame):
     delta = {(frame, "x"): ONE, (recency.intern(ctx, "module", "m"), "y"): TWO}
     kept = abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads)
     assert [name for _, name in kept] == ["y"]
+
+
+def test_variables_last_while_a_function_inside_is_reachable_or_called_by_ros(ctx, frame):
+    """A function that is defined two levels deeper keeps the variables of all frames around it."""
+    between = Frame("between", 2, frame.function, frame.program, frame.module)
+    between.outer = frame
+    inner = Obj("closure", "inner")
+    inner.info = (None, between)
     frame.captured = True
-    assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) is delta
+    delta = {(frame, "x"): ONE}
+    assert abstract_gc.lasting(delta, frame, [inner], frozenset(), ctx.store.reads) == delta
+    given = abstract_gc.together([inner])
+    assert given == {inner, between, frame}
+    assert abstract_gc.lasting(delta, frame, [], given, ctx.store.reads) == delta
+    assert abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads) == {}
 
 
 def test_a_reachable_part_keeps_its_enclosing_object_and_definition_alive():
