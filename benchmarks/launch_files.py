@@ -145,7 +145,9 @@ def _of_answer(answer: Mapping[str, Any], two: bool) -> Iterator[Fact]:
     for package, executable, namespace, name, remaps, *more in answer["nodes"]:
         node = _node(package, executable, namespace, name)
         yield ("node", *node)
-        for old, new in dict(reversed(remaps) if two else remaps).items():  # the first counts in ROS 2
+        for old, new in dict(
+            reversed(remaps) if two else remaps
+        ).items():  # in ROS 2, the first remapping of a name wins
             yield ("remap", *node, old, new)
         for key, value in (more[0] if more else {}).items():
             yield ("param", *node, key, _value(value))

@@ -66,7 +66,7 @@ class Belt:
         self.sorted += 1
         self.wrong += not right
         if self.wrong > WRONG:
-            self.failure = "sorted like a coin"
+            self.failure = "sorted no better than a coin toss"
         return 10.0 / FRUITS if right else -10.0 / FRUITS
 
 

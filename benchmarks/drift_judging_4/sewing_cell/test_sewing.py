@@ -70,7 +70,7 @@ class Table:
             self.bad += made * (not (long and locked))
 
     def judge(self, faulty):
-        """Return the reward of the step: half for the length of the stitches, half for their lock."""
+        """Return the reward of the step: half for stitches of the right length, half for locked stitches."""
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.finished and faulty > 0.1 * self.length:

@@ -3,7 +3,7 @@
 import dataclasses
 
 GRAVITY = 9.81
-FULL_BIN = 78.0  # kg, heavier is refused by the scale of the arm
+FULL_BIN = 78.0  # kg; the arm's scale refuses heavier bins
 
 
 @dataclasses.dataclass(frozen=True)

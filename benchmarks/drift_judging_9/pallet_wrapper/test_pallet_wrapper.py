@@ -33,7 +33,7 @@ class Turntable:
 
     @property
     def done(self):
-        """Return whether the film is cut."""
+        """Return whether the film is cut or the episode has failed."""
         return self.wrapped or bool(self.failure)
 
     def publish(self, bus):

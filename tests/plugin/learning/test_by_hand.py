@@ -94,7 +94,7 @@ def test_the_tolerated_loss_is_five_percent_of_the_reward_unless_a_larger_one_is
     assert tolerated(sample, 0.4) == 0.4
 
 
-def test_the_region_of_the_paper_has_the_cells_with_half_of_the_largest_difference() -> None:
+def test_the_region_of_the_paper_has_the_cells_with_at_least_half_of_the_largest_difference() -> None:
     offline = np.array([[1.0, 1.0], [1.0, nan], [0.0, 0.0], [5.0, 5.0]])
     online = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 0.0], [nan, nan]])
     assert paper_region(offline, online).tolist() == [0, 1]

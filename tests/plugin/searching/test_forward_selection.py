@@ -29,7 +29,7 @@ def test_the_uses_of_a_constant_within_a_statement_are_one_unit() -> None:
     assert [unit.operands for unit in units([first, elsewhere, second])] == [(first, second), (elsewhere,)]
 
 
-def test_limits_symmetric_about_zero_change_together_and_equal_literals_separately() -> None:
+def test_a_symmetric_pair_of_limits_changes_together_but_equal_literals_do_not() -> None:
     low, high = operand(3, "-2.0", -2.0, 5), operand(3, "2.0", 2.0, 20)
     half, other = operand(4, "0.5", 0.5, 5), operand(4, "0.5", 0.5, 20)
     assert [len(unit.operands) for unit in units([low, high, half, other])] == [2, 1, 1]
