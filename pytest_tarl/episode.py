@@ -170,10 +170,10 @@ class Tarl:
         timeout: float = 60.0,
         patience: float = 10.0,
     ) -> Simulator:
-        """Start a simulator that uses a real ROS as the world of this episode; call this before `start`.
+        """Start a simulator as the world of this episode; call this before `start`.
 
-        Nodes receive what the simulator publishes, and the simulator receives what they publish. `tarl.step`
-        runs both.
+        The simulator uses a real ROS. Nodes receive what the simulator publishes, and the simulator receives what
+        they publish. `tarl.step` runs both.
 
         Args:
             command: The program, run in the test's folder. Its environment sets TARL_SEED and a private ROS domain

@@ -265,7 +265,10 @@ def as_number(value: Any) -> float | None:
 
 
 def field_value(message: Any, field: str) -> Any:
-    """Follow a dotted field; a number indexes a sequence (`ranges.0`). Raise AttributeError or IndexError."""
+    """Follow a dotted field; a number indexes a sequence (`ranges.0`).
+
+    Raise AttributeError or IndexError if the message has no such field or element, and KeyError if a mapping has none.
+    """
     for part in field.split("."):
         if isinstance(message, Mapping):
             message = message[part]

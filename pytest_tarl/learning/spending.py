@@ -35,8 +35,8 @@ class Standing:
 def schedule(total: int, comparisons: int, looks: int) -> tuple[Look, ...]:
     """Return the looks of each comparison; the first looks of all comparisons fit into `total` episodes.
 
-    A comparison first gets the looks of an even share. One more look follows after MOST times the even share, provided
-    that every other comparison can still reach its first look.
+    Each comparison first gets the looks that fit into an even share of the episodes. One more look follows after MOST
+    times that share, provided that every other comparison can still reach its first look.
     """
     even = total // comparisons
     ends = [look.episodes for look in planned(even, looks)]

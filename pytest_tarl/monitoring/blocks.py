@@ -28,8 +28,8 @@ RECORDS = 3  # number of records of a mission that matches `_AT_ONCE`
 Spot = tuple[int, int, int]  # offset of a record in its log, and length and checksum of its payload
 
 
-# a mission in three consecutive records: its time and its cells (JSON), the cells and the rewards of its steps
-# (base64), whether it passed (JSON), and the spot of its last record
+# a mission in three consecutive records: the time and the table of cells (both JSON), the cell of each step and the
+# reward of each step (both base64), whether the mission passed (JSON), and the place of the last record in the log
 AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
 
 

@@ -203,8 +203,8 @@ class Examiner:
     def _acting_alike(self, candidate: Candidate, trials: Trials) -> Tried | None:
         """Return a tested candidate that earned too little and equals this candidate on all known seeds.
 
-        Tested candidates whose missions failed are ignored: two values with equal outcomes on known seeds may still
-        differ on hard seeds.
+        Tested candidates whose missions failed do not count: a candidate with the same outcomes on the known seeds may
+        still pass on harder ones.
         """
         return next(
             (

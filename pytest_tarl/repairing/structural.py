@@ -36,7 +36,9 @@ MOST = {
 RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
-LEAST = 50  # minimum number of episodes for templates with a telling sensor; at most a third of the budget
+# minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
+# of the episodes left
+LEAST = 50
 
 
 class Structures:

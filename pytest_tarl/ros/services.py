@@ -37,7 +37,7 @@ class ServiceDirectory:
     def find(self, name: str) -> Endpoint | None:
         """Return the endpoint of a service, or None if there is none."""
         if name not in self._endpoints and name in self._offers:
-            self._offers[name]()  # `make` adds the endpoint
+            self._offers[name]()  # this call adds the endpoint
         return self._endpoints.get(name)
 
     def add(self, name: str, endpoint: Endpoint) -> None:

@@ -23,10 +23,10 @@ RIVALS = 8  # maximum number of episodes for rival constants
 
 
 def rivals(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> Iterator[Part]:
-    """Yield the function's other named constants with the reciprocal and the factor found, then with weaker factors.
+    """Yield the other named constants of the function that contains `found`, each with 1/factor and with factor.
 
-    The reciprocal suits constants that are divisors. Constants that never changed a mission are left out. So are
-    constants on another scale than `found`, for which the factor has no meaning.
+    Weaker factors follow. The reciprocal suits constants that are divisors. Constants that never changed a mission are
+    left out. So are constants on another scale than `found`, for which the factor has no meaning.
     """
     at = found.operands[0].site
     tried = gains.under(guard)

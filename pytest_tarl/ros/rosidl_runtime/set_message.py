@@ -17,7 +17,7 @@ __all__ = ["set_message_fields"]
 
 __getattr__ = refusing("rosidl_runtime_py.set_message")
 
-Stamp = Callable[[Any], None]  # takes the time to write into a field
+Stamp = Callable[[Any], None]  # called with a time, which it writes into a field
 _MESSAGES = re.compile(r"(sequence<)?(?P<element>\w+/(msg/)?\w+)(, *\d+)?(>|\[\d+\])$")
 
 
