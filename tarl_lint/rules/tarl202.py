@@ -1,9 +1,9 @@
 """TARL202: a command follows a sensor without limit.
 
 A command for actuators (a velocity, a throttle, an angle) is computed from a number in a received message, and
-nothing on the way bounds it: no `min`, `max`, `clip` or function with such a name, no angle or sine, no comparison
-that replaces a value that is too large. Sensors sometimes send infinity, jumps or invalid values, and the command
-follows them. Clamp the value at the reported line, where it is computed.
+nothing on the way bounds it: no `min`, `max`, `clip` or similarly named function, no function with a bounded result
+(`sin`, `atan2`), and no comparison that replaces values that are too large. Sensors sometimes send infinity, jumps or
+invalid values, and the command follows them. Clamp the value at the reported line, where it is computed.
 
 A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
 
@@ -162,7 +162,7 @@ ASKED_FOR: Final = re.compile(
     r"cmd|command|setpoint|set_point|target|goal|desired|wish|reference|joy|teleop|key|param|request|plan|waypoint|mode"
     r"|drive|control|ctrl|throttle|steer",
     re.I,
-)  # topics of decisions, not of measurements
+)  # names of topics that carry decisions, not measurements
 
 
 def ruled_out(side: Side) -> bool:  # noqa: ARG001 - shared signature

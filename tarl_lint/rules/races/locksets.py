@@ -19,7 +19,7 @@ from tarl_lint.trees import last_name
 
 MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")
 RUNS_COROUTINES: Final = frozenset(["run", "run_until_complete"])
-State = tuple[object, str]  # (object, name of its attribute), or (module, name of its global)
+State = tuple[object, str]  # (object, name of an attribute) or (module, name of a global)
 
 
 @dataclass(frozen=True)
