@@ -8,8 +8,9 @@ from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.memory.frames import Frame
 from tarl_lint.models.ros.endpoints import SourceRecord
 
-Enclosing = dict[int, Written]  # statements in order, by identity
-Before = dict[tuple[int, int], None]  # pairs of statements: (enclosing one, step that it precedes)
+Enclosing = dict[int, Written]  # `id` of a statement → the statement, in order
+# keys: (`id` of an enclosing statement, `id` of the step that it precedes)
+Before = dict[tuple[int, int], None]
 
 
 class Surroundings:

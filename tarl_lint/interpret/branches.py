@@ -15,10 +15,12 @@ from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
-MAX_TURNS = 4  # a loop over at most this many known elements is unrolled
-MAX_EXACT_TURNS = 8  # the same limit in a run for one launched node
-SHORT = 3  # a loop of at most this many plain statements is unrolled over up to MAX_KNOWN elements
-MAX_PASSES = 12  # passes over a loop's body; only a safety limit, since the value domain is finite
+MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
+MAX_EXACT_TURNS = 8  # the same, in a run for one launched node
+# a loop whose body has at most this many plain statements is unrolled over up to MAX_KNOWN elements
+SHORT = 3
+# maximum number of passes over a loop's body; only a safety limit, since the value domain is finite
+MAX_PASSES = 12
 
 
 def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:

@@ -8,22 +8,25 @@ docs/analysis.md.
 
 from __future__ import annotations
 
-MAX_CALLS = 24  # depth of the call stack; deeper calls count as library calls
-READS_PER_STATEMENT = 20  # object reads or added edges that cost as much as one statement
-VALUES_PER_STATEMENT = 40  # values shared at a wait that cost as much as one statement
-MAX_FRAMES = 20_000  # call contexts of a program
-MAX_STATEMENTS = 25_000  # statements in one run of a root; later calls count as library calls
-# statements in one run of a root after which frequently called functions share a context
+MAX_CALLS = 24  # maximum depth of the call stack; deeper calls count as library calls
+READS_PER_STATEMENT = 20  # number of object reads or added edges that count as one statement of work
+VALUES_PER_STATEMENT = 40  # number of values shared at a wait that count as one statement of work
+MAX_FRAMES = 20_000  # maximum number of call contexts of a program
+# maximum number of statements in one run of a root; later calls count as library calls
+MAX_STATEMENTS = 25_000
+# number of statements in one run of a root after which the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000
-SEPARATE_CALLS = 8  # calls of one function after which its further calls share a context
-# statements of a program; beyond that, only roots that never ran are run; beyond twice that, none
+SEPARATE_CALLS = 8  # number of calls of a function in contexts of their own; its further calls share one
+# number of statements of a program after which only roots that never ran are run; after twice as many, none is run
 PROGRAM_LIMIT = 80_000
-LATE_RUN_LIMIT = 400  # statements in one run of a root once its program has reached PROGRAM_LIMIT
-# statements of one call without data among its arguments, into a module that neither subscribes nor publishes
+# maximum number of statements in one run of a root once its program has reached PROGRAM_LIMIT
+LATE_RUN_LIMIT = 400
+# maximum number of statements in an irrelevant call: one that passes no data among its arguments and leads into a
+# module that neither subscribes nor publishes
 IRRELEVANT_CALL_LIMIT = 200
-IRRELEVANT_CALLS_LIMIT = 1_000  # statements of all such calls in one run of a root
-MAX_ROUNDS = 40  # fixpoint rounds over the roots
-LARGE_RUN = 500  # a root whose last run took this many statements waits for smaller ones
-MAX_GENERATIONS = 1  # nested restarts of threads and callbacks that start themselves
-# objects of one class that get separate roots for a method that a thread or framework runs
+IRRELEVANT_CALLS_LIMIT = 1_000  # maximum number of statements in all irrelevant calls of one run of a root
+MAX_ROUNDS = 40  # maximum number of fixpoint rounds over the roots
+LARGE_RUN = 500  # a root whose last run took at least this many statements is run after smaller ones
+MAX_GENERATIONS = 1  # maximum number of nested restarts of a thread or callback that starts itself
+# maximum number of objects of one class with separate roots for a method that a thread or framework runs
 MAX_ALIKE = 6

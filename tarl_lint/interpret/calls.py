@@ -12,7 +12,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, in_order, join, join_all, pointer
 from tarl_lint.models import sizes
 
-# library objects whose methods are called one by one; if there are more, they count as one receiver
+# maximum number of library objects whose method is called for each object; more objects count as one receiver
 MAX_ALIKE = 12
 
 

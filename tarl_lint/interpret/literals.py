@@ -12,8 +12,8 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
-MAX_EACH = 4  # a comprehension over at most this many known elements is unrolled
-MAX_ENTRIES = 32  # the same limit in a thorough analysis, enough for all parameters of a node
+MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
+MAX_ENTRIES = 32  # the same, in a thorough analysis: enough for all parameters of a node
 
 READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 

@@ -12,7 +12,8 @@ from tarl_lint.memory.heap import ANY, item_field
 from tarl_lint.memory.values import Key, Nodes, Obj, Value, lineage
 
 RETURNED = "<return>"  # pseudo-variable of a function's result
-COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may copy another variable's value
+# kinds of expressions that may copy the value of a variable
+COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:

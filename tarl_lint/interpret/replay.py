@@ -19,7 +19,7 @@ from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, Key, Value, join_all
 
-READS = 40  # compared facts that cost as much as one statement
+READS = 40  # number of compared facts that count as one statement of work
 
 Mode = tuple[object, ...]
 
@@ -31,7 +31,7 @@ class Run:
     passed: Arguments
     mode: Mode
     reads: Reads
-    found: dict[Key, Value | None]  # values that the run read
+    found: dict[Key, Value | None]  # key → value that the run read; None if unset
     stored: dict[Key, bool]
     cost: int
     result: Value
@@ -40,7 +40,7 @@ class Run:
     delta: Delta
     edges: int  # number of edges that the run made
     noted: bool  # whether the stores in `delta` have already been made, one by one
-    heard: dict[Key, Value]  # values that other roots may store at its waits
+    heard: dict[Key, Value]  # key → value that other roots may have stored when the run waited
 
 
 def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:

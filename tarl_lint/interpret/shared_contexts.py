@@ -15,7 +15,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import MERGED, Place
 from tarl_lint.memory.values import Branches, Value, join
 
-CALLED = -1  # pseudo-statement: the decision whether a shared context runs
+CALLED = -1  # number of a pseudo-statement that decides whether a shared context runs
 CALLBACKS = frozenset(["closure", "bound", "partial", "method"])
 
 

@@ -17,11 +17,9 @@ class NullnessFacts:
     vacant: set[Key] = field(
         default_factory=set
     )  # variables and fields that are None before the first message
-    optional: set[Key] = field(
-        default_factory=set
-    )  # variables and fields whose None may be computed from data
+    optional: set[Key] = field(default_factory=set)  # variables and fields that may be None because of data
     setters: set[str] = field(default_factory=set)  # names of properties with a setter
-    doubtful: set[ir.Call] = field(default_factory=set)  # calls whose None may be computed from data
+    doubtful: set[ir.Call] = field(default_factory=set)  # calls whose result may be None because of data
     came: dict[Key, set[int]] = field(
         default_factory=dict
     )  # copy of a variable in `vacant` → nodes that decide whether the copy is set
@@ -44,18 +42,19 @@ class NullnessFacts:
 class Work:
     """The work done, in statements: in this run of a root, and by each program in earlier runs."""
 
-    spent: int = 0  # in this run
-    saved: int = 0  # in replayed calls, included in `spent`
-    idled: int = 0  # in calls into modules without ROS calls, included in `spent`
+    spent: int = 0  # number of statements of work in this run
+    saved: int = 0  # part of `spent` in replayed calls
+    idled: int = 0  # part of `spent` in calls into modules without ROS calls
     limit: int = MAX_STATEMENTS
-    call_limit: int | None = (
-        None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
-    )
-    activations: dict[ir.Function, int] = field(default_factory=dict)  # executions in this run, by function
-    totals: dict[str, int] = field(default_factory=dict)  # in earlier runs by program, without replayed calls
-    edges_of: dict[str, int] = field(default_factory=dict)  # edges made by each program
-    nodes_of: dict[str, int] = field(default_factory=dict)  # nodes made by each program
-    frames_of: dict[str, int] = field(default_factory=dict)  # call contexts of each program
+    # value of `spent` at which the current call into a module without ROS calls ends; None outside of such a call
+    call_limit: int | None = None
+    # function → number of its executions in this run
+    activations: dict[ir.Function, int] = field(default_factory=dict)
+    # program → number of statements in earlier runs, without replayed calls
+    totals: dict[str, int] = field(default_factory=dict)
+    edges_of: dict[str, int] = field(default_factory=dict)  # program → number of edges that it has made
+    nodes_of: dict[str, int] = field(default_factory=dict)  # program → number of nodes that it has made
+    frames_of: dict[str, int] = field(default_factory=dict)  # program → number of its call contexts
 
     @property
     def total(self) -> int:

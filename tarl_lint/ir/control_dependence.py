@@ -14,11 +14,12 @@ from typing import Final
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.postdominance import EXIT, passed, postdominators
 
-Branch = tuple[int, str]  # number of the condition's statement, outcome
+Branch = tuple[int, str]  # (number of the statement with the condition, outcome)
 
 Raising = Mapping[int, Iterable[str]]
 
-NEAR: Final = 100  # branches stored per statement; the other branches are found through these
+# number of branches after which no more are stored for a statement; the others are found through the stored ones
+NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
 ALL: Final = frozenset(["Exception", "BaseException"])
 
@@ -33,7 +34,7 @@ class Control:
     direct: Mapping[int, frozenset[Branch]]
     closure: Mapping[int, frozenset[Branch]]
     far: frozenset[int]
-    always: frozenset[int]  # statements that always run when the function is entered
+    always: frozenset[int]  # numbers of the statements that run whenever the function is entered
 
 
 @dataclass(slots=True)
@@ -44,7 +45,7 @@ class _Graph:
     raising: Raising = field(default_factory=dict)
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
-    )  # where each `finally` begins; inner ones come first
+    )  # (`try`, number of the first statement of its `finally`), inner ones first
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target
@@ -56,8 +57,8 @@ class _Exits:
 
     on_break: int = EXIT
     on_continue: int = EXIT
-    on_raise: int = EXIT  # EXIT if there is no handler
-    # exception names of each handler; empty if it handles all
+    on_raise: int = EXIT  # where an exception goes if no handler is listed; EXIT leaves the function
+    # (names of the exceptions that a handler handles, its first statement); no names if it handles all
     handlers: tuple[tuple[frozenset[str], int], ...] = ()
 
     def of(self, name: str) -> int:

@@ -32,7 +32,7 @@ PURE: Final = frozenset(
         "sum",
         "sorted",
     ]
-)  # functions without side effects
+)  # names of functions without side effects
 FORMATTING: Final = frozenset(["format", "join", "get_time", "to_sec", "time", "now", "get_name", "tolist"])
 ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 

@@ -12,7 +12,8 @@ from tarl_lint.ir.match_patterns import captures, conditions
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
 
-MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are evaluated once
+# kinds of `match` subject that are first stored in a temporary name, so that each `case` does not evaluate them again
+MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-Pos = tuple[int, int, int, int]  # line, column, end line, end column as `ast` counts them
+Pos = tuple[int, int, int, int]  # (line, column, end line, end column) as `ast` counts them
 Scope = Literal["local", "free", "global"]
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
@@ -56,7 +56,7 @@ class Slice:
 
     parts: Sequence[Expr]
     pos: Pos
-    bounds: Sequence[Expr | None] = ()  # the parts of `lower:upper:step`; None for each part that is left out
+    bounds: Sequence[Expr | None] = ()  # `lower`, `upper` and `step`; None for each one that is left out
 
 
 @dataclass(slots=True, eq=False)
@@ -172,10 +172,12 @@ class Function:
     pos: Pos
     body: Sequence[Stmt] | None = None
     control: object = None
-    raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → exceptions of its calls
-    generator: bool = False  # set when the body is lowered
-    starts: bool | None = None  # whether it registers something or starts a node; None until computed
-    answers: bool | None = None  # whether it returns anything but None; None until computed
+    # number of a statement → names of the exceptions that its calls raise
+    raising: dict[int, dict[str, None]] = field(default_factory=dict)
+    generator: bool = False  # whether the function yields; only known once the body is lowered
+    # whether the function registers something or starts a node; None until computed
+    starts: bool | None = None
+    answers: bool | None = None  # whether the function returns anything but None; None until computed
 
 
 @dataclass(slots=True, eq=False)
@@ -307,7 +309,7 @@ class Class(Stmt):
     bases: Sequence[Expr]
     body: Sequence[Stmt]
     decorators: Sequence[Expr] = ()
-    fields: tuple[str, ...] = ()  # names annotated in the body
+    fields: tuple[str, ...] = ()  # names that the body annotates
     control: object = None
 
 
@@ -334,5 +336,5 @@ class Program:
     body: Sequence[Stmt]
     function: Function
     package: str = ""
-    takes_part: bool = True  # whether its words suggest that it subscribes or publishes
+    takes_part: bool = True  # whether words in the module suggest that it subscribes or publishes
     stars: list[str] = field(default_factory=list)

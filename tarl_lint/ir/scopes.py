@@ -24,10 +24,11 @@ class Scope:
     bound: set[str] = field(default_factory=set)
     globals: set[str] = field(default_factory=set)
     nonlocals: set[str] = field(default_factory=set)
-    counter: int = 0  # slots and statement numbers handed out
-    # comprehension targets, while the comprehension is lowered
+    counter: int = 0  # number of slots and statement numbers given out so far
+    # targets of the comprehensions that are being lowered → their unique names
     renamed: dict[str, str] = field(default_factory=dict)
-    around: dict[str, str] = field(default_factory=dict)  # `renamed` of the parent at this definition
+    # the value of `renamed` in the parent scope where this scope is defined
+    around: dict[str, str] = field(default_factory=dict)
     plain: bool = False  # whether no expression in the file binds a name or yields
     prints: bool = False  # for a module: whether `print` is Python's built-in function
 

@@ -16,7 +16,8 @@ class Attempt:
     states: list[dict[Key, Value]]
     handled: bool
     raised: Value
-    takes: frozenset[str] = frozenset()  # names of the handled exceptions; empty if all are handled
+    # names of the exceptions that the `try` handles; empty if it handles all
+    takes: frozenset[str] = frozenset()
 
 
 @dataclass(slots=True, eq=False)

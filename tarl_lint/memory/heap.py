@@ -24,7 +24,7 @@ from tarl_lint.memory.values import (
 ANY = "*"  # summary field: the join of all elements
 KEYS = "<keys>"  # field of a mapping: dependencies of its keys
 LENGTH = "<length>"  # field of a container: dependencies of its length
-HELD = "<callables>"  # field of a library object: callables among the arguments that it got
+HELD = "<callables>"  # field of a library object: callables that were passed to it
 SENT = "<sent>"  # field of a port, file or socket: data written to it
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
@@ -40,7 +40,8 @@ DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Cou
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]
 )
-RENAMING = frozenset(["closure", VIEW])  # kinds whose attributes are stored elsewhere or under other names
+# kinds of objects whose attributes are stored elsewhere or under other names
+RENAMING = frozenset(["closure", VIEW])
 
 
 def item_field(constant: object) -> str:

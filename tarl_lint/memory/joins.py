@@ -17,7 +17,7 @@ from tarl_lint.memory.values import (
     join,
 )
 
-JOINS = 40  # joined values that cost as much as one statement
+JOINS = 40  # number of joined values that count as one statement of work
 
 
 def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeVar
 
 from tarl_lint.memory.values import Key, Obj, Value, join
 
-NEW: Final = -1  # stamp of an object that did not exist yet
+NEW: Final = -1  # stamp recorded for an object that did not exist yet
 T = TypeVar("T")
 U = TypeVar("U")
 Fact = tuple[Callable[[Any], object], object]  # (function, its argument)
@@ -26,11 +26,12 @@ class Reads:
     stored: set[Key] = field(
         default_factory=set
     )  # keys for which the call asked whether the run has stored to them
-    written: set[Key] = field(default_factory=set)  # keys stored by the call on the current path
+    written: set[Key] = field(default_factory=set)  # keys to which the call has stored on the current path
     objects: dict[Obj, int] = field(
         default_factory=dict
-    )  # object → stamp, the version of its fields, parts and data
-    unreached: set[int] = field(default_factory=set)  # nodes that no source had reached
+    )  # object → its stamp (version of its fields, parts and data)
+    # nodes that no source had reached when the call used them
+    unreached: set[int] = field(default_factory=set)
     holders: dict[Obj, int] = field(
         default_factory=dict
     )  # object → number of keys that ever held a pointer to it
@@ -41,13 +42,16 @@ class Reads:
         default_factory=set
     )  # cached results whose `consulted` carriers are already in `held`
     facts: dict[Fact, object] = field(default_factory=dict)
-    whole: bool = True  # False if a budget limit cut the call short
+    whole: bool = True  # whether the call ran to its end; False if a budget limit cut it short
     waits: bool = False
     heard: int = 0  # number of keys at which the first wait takes in values of other roots
     own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
-    admitted: dict[Key, Value] = field(default_factory=dict)  # values from other roots, taken in at waits
-    left: int = 0  # number of paths left so far, whose stores no longer count as `written`
-    taken: dict[Reads, int] = field(default_factory=dict)  # merged reads → `left` at that time
+    # key → value that the call took in from other roots at its waits
+    admitted: dict[Key, Value] = field(default_factory=dict)
+    # number of paths that the call has left so far; stores on these paths no longer count as `written`
+    left: int = 0
+    # merged reads → value of `left` when they were merged
+    taken: dict[Reads, int] = field(default_factory=dict)
 
     def look(self, obj: Obj) -> None:
         """Record a dependency on an object's stamp: its fields, parts and data."""

@@ -23,11 +23,11 @@ class Root:
     kind: str
     name: str = ""
     once: bool = False
-    function: ir.Function | None = None  # the function that it runs, if known
-    maker: Root | None = None  # the root that added it
-    program: str = ""  # the file whose budget it uses
-    number: int = 0  # roots are numbered in order of addition
-    # keys to which the root itself stores, and which it reads after a wait
+    function: ir.Function | None = None  # the function that the root runs; None if unknown
+    maker: Root | None = None  # the root that added this one
+    program: str = ""  # the file whose budget the root uses
+    number: int = 0  # position of the root in the order of addition
+    # keys to which the root stores and which it reads again after a wait
     heeds: set[Key] = field(default_factory=set)
 
     def generations(self) -> int:
@@ -49,11 +49,11 @@ class Shared:
     ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
-    joiners: dict[Key, set[Root]] = field(default_factory=dict)  # roots that only joined the key's value
+    joiners: dict[Key, set[Root]] = field(default_factory=dict)  # key → roots that only joined its value
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     dirty: set[Root] = field(default_factory=set)
-    edition: int = 0  # incremented when a class, a `from … import *` or a `__dict__` changes
+    edition: int = 0  # number of changes so far of a class, a `from … import *` or a `__dict__`
 
     def read(self, key: Key, root: Root) -> None:
         """Register a root as reader of a key."""

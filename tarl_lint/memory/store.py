@@ -13,7 +13,7 @@ from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 Delta = dict[Key, Value]
 
 CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
-ADDING = frozenset(["*", "<keys>", "<length>"])  # fields that get weak updates only
+ADDING = frozenset(["*", "<keys>", "<length>"])  # names of the fields that get only weak updates
 
 
 def private(key: Key) -> bool:
@@ -31,7 +31,7 @@ class Inside:
     found: dict[Key, Value | None]
     stored: dict[Key, bool]
     tick: int
-    grown: int  # value of `Graph.grown` at that time
+    grown: int  # value of `Graph.grown` when the result was cached
 
 
 def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - the signature of `gather`
@@ -52,23 +52,23 @@ class Store:
     layers: list[Delta] = field(default_factory=lambda: [{}])
     seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
-    merged: set[Key] = field(default_factory=set)  # keys of `found` that only joins have read
-    exchanged: dict[Key, Value] = field(default_factory=dict)  # values at the last wait
+    merged: set[Key] = field(default_factory=set)  # the keys of `found` that nothing but joins has read
+    exchanged: dict[Key, Value] = field(default_factory=dict)  # key → its value when this root last waited
     foreign: dict[Key, Value] = field(
         default_factory=dict
-    )  # values that other roots stored while this one waited
+    )  # key → the part of its value that other roots stored while this one waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
-    tick: int = 0  # counter of changes of the state outside of frames
+    tick: int = 0  # number of changes so far of the state outside of frames
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
-    )  # values that other roots may store while this one waits
+    )  # key → value that other roots may store while this one waits; None if they store none
     hearing: dict[Key, Value] = field(default_factory=dict)
-    heeded: int = 0  # size of the root's `heeds` when `hearing` was computed
-    waited: bool = False  # whether other roots may have stored since the start
-    reads: Reads = field(default_factory=Reads)  # reads of the running call
-    # applied to each value stored to a field that gets weak updates
+    heeded: int = 0  # number of keys in the root's `heeds` when `hearing` was computed
+    waited: bool = False  # whether this root has waited, so that other roots may have stored since its start
+    reads: Reads = field(default_factory=Reads)  # what the running call has read
+    # function applied to each value that is stored to a field with weak updates
     gather: Callable[[Key, Value], Value] = as_it_is
 
     def get(self, key: Key) -> Value | None:

@@ -7,7 +7,8 @@ from tarl_lint.memory import heap
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
 from tarl_lint.memory.values import Obj, Value, in_order, join
 
-MAX_KEYS = 8  # possible keys of one store into a mapping; if there are more, the store may change any element
+# maximum number of possible keys of one store into a mapping; with more, the store may change any element
+MAX_KEYS = 8
 
 
 def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:

@@ -15,15 +15,17 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads, complete
 from tarl_lint.memory.values import Branches, Nodes
 
-MAX_NODES = 12_000  # nodes of a program; beyond that, content arrives without carriers
-MAX_EDGES = 200_000  # data edges of a program; beyond that, only FEW of a value's dependencies get edges
+MAX_NODES = 12_000  # number of nodes of a program above which content arrives without carriers
+MAX_EDGES = (
+    200_000  # number of data edges of a program after which only FEW dependencies of a value get edges
+)
 FEW = 8
-MANY = 16  # separate nodes in a field with weak updates; more are merged
-MANY_CARRIERS = 64  # the same limit for pointers to objects with content
+MANY = 16  # maximum number of separate nodes in a field with weak updates; more nodes are merged
+MANY_CARRIERS = 64  # the same, for pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
-CARRIED = 5  # carriers, or items passed on by carriers, that cost as much as one graph operation
-MAX_CARRIED = 500  # content × carriers; beyond that, content arrives without carriers
+CARRIED = 5  # number of carriers, or of items passed on by carriers, that count as one graph operation
+MAX_CARRIED = 500  # product of the numbers of items and carriers above which content arrives without carriers
 
 
 @dataclass(slots=True)
@@ -45,7 +47,7 @@ class Arrival:
 
     nodes: Nodes
     consulted: dict[int, int]
-    grown: int  # value of `Graph.grown` when this was last found valid
+    grown: int  # value of `Graph.grown` when this result was last found valid
 
 
 @dataclass(slots=True, eq=False)
@@ -60,11 +62,12 @@ class Graph:
     data: list[set[int]] = field(default_factory=list)
     control: list[set[int]] = field(default_factory=list)
     branches: list[Branches] = field(default_factory=list)
-    gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)  # node → value, choice
+    # node → (node of the value, conditions that selected it)
+    gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)
     counts: dict[int, set[int]] = field(
         default_factory=dict
     )  # node of a container's length → dependencies of the elements
-    # copy of a node without its choice → the original node
+    # node that stands for another node, but without its conditions → that other node
     stands_for: dict[int, int] = field(default_factory=dict)
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
@@ -78,22 +81,22 @@ class Graph:
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (carry node, item), in order of creation
-    edges: int = 0  # data edges of the current program
-    made: int = 0  # nodes of the current program
+    edges: int = 0  # number of data edges of the current program
+    made: int = 0  # number of nodes of the current program
     grown: int = 0  # number of times that any `held` set has grown
     live: set[int] = field(default_factory=set)  # nodes that a source reaches by data or control
     onward: dict[int, list[int]] = field(default_factory=dict)  # node that is not live yet → its successors
-    asked: int = 0  # graph operations, charged as work
+    asked: int = 0  # number of graph operations not yet charged as work
     asking: set[tuple[int, int]] = field(
         default_factory=set
-    )  # arguments of active calls of `_by`, against infinite recursion
+    )  # arguments of the calls of `_by` that are running, to prevent infinite recursion
     arrivals: dict[tuple[int, int], Arrival] = field(
         default_factory=dict
     )  # cache of `_arrival`, by carrier and item
     ways_through: dict[tuple[Nodes, Nodes], Arrival] = field(
         default_factory=dict
     )  # cache of `through`, by content and carriers
-    reads: Reads = field(default_factory=Reads)  # reads of the running call
+    reads: Reads = field(default_factory=Reads)  # what the running call has read
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
         """Return the node with this key; create it at first use."""

@@ -11,7 +11,7 @@ from typing import Final
 from tarl_lint.ir import nodes as ir
 
 Nodes = frozenset[int]
-Consts = frozenset[object] | None  # None: unknown
+Consts = frozenset[object] | None  # None if the constants are unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
@@ -19,16 +19,15 @@ NONE: Nodes = frozenset()
 NO_CONSTANTS: frozenset[object] = frozenset()
 BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
-NUMBERS = count()  # numbers of objects, in order of creation
+NUMBERS = count()  # counter that numbers objects in order of creation
 NUMBER: Final = attrgetter("number")
 MAX_CONSTS = 4
-MAX_TEXTS = 24  # string constants of a value; enough for a table of topic names
-MAX_DEPTH = 6  # nesting depth of embedded objects
-MAX_ELEMENTS = (
-    2  # depth to which nested elements are tracked separately; more would create exponentially many objects
-)
-MAX_CELLS = 16  # nested elements tracked separately in a library object, such as a matrix
-DATA: Final = "<data>"  # in `Obj.changes`: the object received its first data
+MAX_TEXTS = 24  # maximum number of string constants of a value; enough for a table of topic names
+MAX_DEPTH = 6  # maximum nesting depth of embedded objects
+# maximum depth to which nested elements are tracked separately; a larger one would create exponentially many objects
+MAX_ELEMENTS = 2
+MAX_CELLS = 16  # maximum number of nested elements tracked separately in a library object, such as a matrix
+DATA: Final = "<data>"  # entry of `Obj.changes`: the object received its first data
 MESSAGES = frozenset(["message", "goal"])  # kinds of objects that are data themselves
 
 
@@ -67,21 +66,23 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # every field ever stored, in order, with the objects whose `holders` or `inside` name it
+        # name of each field ever stored, in order → the objects in it whose `holders` or `inside` were updated last;
+        # storing the same objects again needs no update
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
-        self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to it
+        self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to this object
         self.info: object = None
-        self.defined = ""  # name of a message's definition
+        self.defined = ""  # name of the definition, if this object is a message
         self.laden: bool = (
             parent.laden if parent is not None else kind in MESSAGES
-        )  # whether it may contain data, at any depth
-        self.cells = 0  # number of nested elements so far
-        self.stamp = 0  # version: length of `changes`
+        )  # whether this object may contain data, at any depth
+        self.cells = 0  # number of nested elements tracked separately in this object so far
+        self.stamp = 0  # version of this object: the length of `changes`
         self.changes: list[
             str | Obj | None
         ] = []  # added fields and parts, DATA, or None for a change of meaning
-        self.inside: dict[Obj, None] = {}  # objects that hold a pointer to it, stored while it was not laden
+        # objects into which a pointer to this object was stored while it was not laden
+        self.inside: dict[Obj, None] = {}
 
     def sub(self, name: str) -> Obj:
         """Return the object embedded under a field; beyond MAX_DEPTH, the object itself stands for its parts."""
@@ -210,7 +211,7 @@ def in_order(objects: Collection[Obj]) -> list[Obj]:
 
 BOTTOM = Value(consts=frozenset())
 UNKNOWN = Value()
-ABSENT = Value(consts=frozenset(["<absent>"]))  # marks an unset field of a new object
+ABSENT = Value(consts=frozenset(["<absent>"]))  # value of an unset field of a new object
 
 
 def join(a: Value, b: Value) -> Value:
@@ -270,8 +271,8 @@ class ClassInfo:
     external: list[str] = field(default_factory=list)
     statement: ir.Class | None = None
     module: str = ""
-    fields: tuple[str, ...] = ()  # names annotated in the body; the fields, if the class is a dataclass
-    named: bool = False  # whether it is a named tuple, whose fields are also elements
+    fields: tuple[str, ...] = ()  # names that the body annotates: the fields, if the class is a dataclass
+    named: bool = False  # whether the class is a named tuple, whose fields are also elements
 
     @property
     def opaque(self) -> bool:

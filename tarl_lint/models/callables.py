@@ -20,11 +20,10 @@ from tarl_lint.models import containers
 from tarl_lint.models.smach import LATER
 from tarl_lint.trees import walk
 
-MAX_INSIDE: Final = (
-    # depth to which nested mappings and sequences, such as the constraints of a solver, are searched for callables
-    3
-)
-KEPT_APART: Final = 500  # slots for the callables of one call, apart from the slots of calls in the code
+# maximum depth to which nested mappings and sequences, such as the constraints of a solver, are searched for callables
+MAX_INSIDE: Final = 3
+# number of slots for the callables of one call; they differ from the slots of the calls in the code
+KEPT_APART: Final = 500
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:

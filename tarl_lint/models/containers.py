@@ -45,7 +45,7 @@ APPENDED = "<appended>"  # field of a list: its length before the first subscrib
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
-)  # functions whose result tracks elements separately if the argument does
+)  # functions whose result tracks its elements separately if their argument does
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 

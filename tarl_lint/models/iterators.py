@@ -16,7 +16,7 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
 from tarl_lint.models import sizes
 
-MAX_ROWS = 8  # elements to which map is applied one by one
+MAX_ROWS = 8  # maximum number of elements to which `map` is applied one by one
 
 
 def listed(ctx: Interpreter, element: Value, length: Nodes, it: Invocation) -> Value:

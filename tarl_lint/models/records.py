@@ -29,7 +29,7 @@ from tarl_lint.memory.values import (
 from tarl_lint.models import sizes
 from tarl_lint.models.ros import senders
 
-MAX_COPIED: Final = 3  # depth of nested objects that a deep copy copies
+MAX_COPIED: Final = 3  # maximum depth to which a deep copy copies nested objects
 INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
 MADE_BY: Final = {
     **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),

@@ -20,7 +20,7 @@ from tarl_lint.memory.values import (
     pointer,
 )
 
-MAX_KNOWN = 16  # elements tracked separately in a computed sequence
+MAX_KNOWN = 16  # maximum number of elements tracked separately in a computed sequence
 COMBINING = frozenset(["+", "*", "|", "-", "&"])
 
 

@@ -7,7 +7,8 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 
-LATER = frozenset(["closure", "bound", "partial"])  # kinds of arguments that a library can call
+# kinds of objects that a library can call if they are arguments
+LATER = frozenset(["closure", "bound", "partial"])
 
 
 def add_state(ctx: Interpreter, it: Invocation) -> Value:

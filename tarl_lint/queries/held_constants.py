@@ -21,7 +21,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
-    setting: str = ""  # key in the file from which the value was loaded
+    setting: str = ""  # key of the value in the file from which it was loaded; "" if it was not loaded
 
 
 class Origins:

@@ -50,7 +50,7 @@ class SinkRecord:
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
-    # positions where the publishers are created
+    # (path, position) of each call that creates one of the publishers
     publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)
     kind: Kind = "topic"
 
@@ -66,4 +66,4 @@ class Publisher:
     pos: ir.Pos = (0, 0, 0, 0)
     used: bool = False
     kind: Kind = "topic"
-    methods: frozenset[str] = frozenset(["publish"])  # methods that send
+    methods: frozenset[str] = frozenset(["publish"])  # names of the methods that send
