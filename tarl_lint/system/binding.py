@@ -25,7 +25,7 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import leaves, stated
 from tarl_lint.workspace.parameter_yaml import NoYamlError
 
-DEEPEST = 8  # nesting of parameters whose defaults contain parameters
+DEEPEST = 8  # maximum nesting of parameters whose defaults contain other parameters
 
 
 def parameter_values(launch: Launch, node: LaunchedNode, full_name: str) -> Mapping[str, Any]:

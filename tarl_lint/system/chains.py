@@ -8,8 +8,8 @@ from typing import Final
 from tarl_lint.system.compose import UNKNOWN
 from tarl_lint.system.model import Chain, Hop
 
-MOST: Final = 200  # limit on the chains of one system
-STEPS: Final = 100_000  # limit on the steps of the search
+MOST: Final = 200  # maximum number of chains of one system
+STEPS: Final = 100_000  # maximum number of steps of the search
 
 
 def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tuple[Chain, ...], bool]:

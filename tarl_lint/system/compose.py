@@ -28,9 +28,8 @@ from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 
 UNKNOWN: Final = "?"
-SERVER: Final = (
-    "server of "  # prefix of a service's name; together they name the unread node that answers the service
-)
+# put before the name of a service, to name the node that answers it and was not read
+SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",

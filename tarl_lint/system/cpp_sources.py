@@ -18,7 +18,7 @@ from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.cmake import commands
 from tarl_lint.workspace.model import Package
 
-LARGEST: Final = 1_000_000  # limit on a file, bytes
+LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 _EXECUTABLES: Final = (
     "add_executable",
     "ament_auto_add_executable",

@@ -11,7 +11,8 @@ from tarl_lint.read.source import Script
 from tarl_lint.run.cache import Cache, digest, packed, unpacked
 from tarl_lint.system.model import Endpoint, Interface, Misfit, Qos
 
-SPARE: Final = 1000  # number of entries to keep for other launch files and earlier texts
+# number of entries that are kept in addition, for other launch files and earlier texts of files
+SPARE: Final = 1000
 
 
 def key(

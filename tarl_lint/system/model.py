@@ -22,7 +22,7 @@ class Qos:
     """Quality of service; a part is None if it is not constant in the code."""
 
     reliable: bool | None = None
-    latched: bool | None = None  # whether durability is transient local
+    latched: bool | None = None  # whether the durability is "transient local"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Endpoint:
     type: str
     span: Span
     qos: Qos | None = None
-    place: str = ""  # qualified name of the function
+    place: str = ""  # qualified name of the function that contains the use
     written: tuple[str, ...] = ()
 
     @property
@@ -93,7 +93,7 @@ class Instance:
     interface: Interface | None = None
     unread: str = ""
     seen: tuple[Endpoint, ...] = ()  # for an unread node, the topics that its C++ source names
-    silent: bool = False  # whether it is known to publish nothing that other nodes subscribe to
+    silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
 
     def resolve(self, name: str) -> str:
         """Return the launched name of a topic or service in the code."""

@@ -25,7 +25,8 @@ _SERVERS: Final = (
     "actionlib.ActionServer",
     "rclpy.action.ActionServer",
 )
-FEEDBACK: Final = (".publish_feedback", ".feedback")  # ends of the names of calls that send or receive it
+# endings of the names of calls that send or receive feedback
+FEEDBACK: Final = (".publish_feedback", ".feedback")
 # What goes to the server of a service or action, and what may come back
 PARTS: Final = ((" (request)", " (response)"), (" (goal)", " (result)"), (" (goal)", " (feedback)"))
 

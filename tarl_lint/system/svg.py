@@ -11,10 +11,10 @@ from tarl_lint.files import shown
 from tarl_lint.system.drawing import Drawing, drawing, layers
 from tarl_lint.system.model import System
 
-CHARACTER: Final = 7.2  # pixels, mean width of a character at font size 12
+CHARACTER: Final = 7.2  # mean width of a character at font size 12 (pixels)
 ROW: Final = 44.0
 BOX: Final = 26.0
-GAP: Final = 56.0  # between columns
+GAP: Final = 56.0  # distance between columns (pixels)
 MARGIN: Final = 16.0
 _STYLE: Final = (
     "text{font:12px Helvetica,Arial,sans-serif;fill:#111;text-anchor:middle;dominant-baseline:central}"

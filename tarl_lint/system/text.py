@@ -12,8 +12,8 @@ from tarl_lint.system.chains import chains, slashed
 from tarl_lint.system.model import Chain, Hop, Instance, Role, System
 
 HEADINGS: Final = ("node", "program", "subscribes", "publishes")
-SHOWN: Final = 4  # limit on similar topics
-WIDEST: Final = 44  # columns of a list of topics
+SHOWN: Final = 4  # maximum number of similar topics that a message suggests
+WIDEST: Final = 44  # maximum width of a list of topics (columns)
 
 _ROLES: Final[tuple[Role, Role]] = ("subscribes", "publishes")
 _KINDS: Final[Mapping[str, Style]] = {"explicit": "explicit", "implicit": "implicit", "not read": "quiet"}

@@ -11,7 +11,7 @@ from typing import Final
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.model import Problem
 
-LARGEST: Final = 500_000  # bytes
+LARGEST: Final = 500_000  # maximum size of a file (bytes)
 _TOKEN: Final = re.compile(
     r"""\#\[(?P<eq>=*)\[.*?\](?P=eq)\] | \#[^\n]*
         | (?P<word>"(?:[^"\\]|\\.)*" | [^\s()#"]+) | (?P<open>\() | (?P<close>\))""",

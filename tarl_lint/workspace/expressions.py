@@ -44,7 +44,7 @@ from tarl_lint.workspace.python_values import (
 
 __all__ = ["Evaluator", "Library", "Unknown", "constant", "unknown"]
 
-STEPS: Final = 300_000  # limit on the expressions and statements that are evaluated for one file
+STEPS: Final = 300_000  # maximum number of expressions and statements that are evaluated for one file
 _FAILURES: Final = (ArithmeticError, LookupError, TypeError, ValueError, AttributeError, StopIteration)
 
 

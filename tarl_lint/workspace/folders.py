@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-LIMIT: Final = 20_000  # limit on the folders of one workspace
+LIMIT: Final = 20_000  # maximum number of folders of one workspace
 IGNORE: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 MARKERS: Final = (*IGNORE, "pyvenv.cfg", ".catkin")
 _BUILT: Final = frozenset({"build", "install", "log", "devel", "logs"})

@@ -11,9 +11,9 @@ from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.launch_entities import Entity
 from tarl_lint.workspace.model import Problem
 
-LARGEST: Final = 1_000_000  # bytes
-MOST: Final = 5_000  # elements
-LINE: Final = "\0line"  # not a valid XML attribute name, so it cannot clash
+LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
+MOST: Final = 5_000  # maximum number of elements of a file
+LINE: Final = "\0line"  # key of the line among the attributes; no XML attribute can have this name
 _LISTS: Final = (
     "launch",
     "group",

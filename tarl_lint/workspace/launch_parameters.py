@@ -10,7 +10,7 @@ from typing import Any, Final
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.parameter_yaml import content, of_node
 
-ON_ROBOT: Final = object()  # a value known only on the robot
+ON_ROBOT: Final = object()  # stands for a value that is known only on the robot
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 from tarl_lint.workspace.python_values import FilePath, Unknown, bounded, normal
 
-LARGEST: Final = 1_000_000  # limit on a file, bytes
+LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
 
 
 @dataclass(frozen=True)

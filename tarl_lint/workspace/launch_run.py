@@ -29,9 +29,9 @@ from tarl_lint.workspace.python_values import FilePath
 from tarl_lint.workspace.ros_arguments import first_of_each
 from tarl_lint.workspace.ros_names import joined
 
-LARGEST: Final = 1_000_000  # limit on a YAML file, bytes
-DEEPEST: Final = 20  # limit on nested includes
-MOST: Final = 5_000  # limit on the actions of a launch file and its includes
+LARGEST: Final = 1_000_000  # maximum size of a YAML file (bytes)
+DEEPEST: Final = 20  # maximum nesting of includes
+MOST: Final = 5_000  # maximum number of actions of a launch file with its includes
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Quoted:
     kind: str = ""
 
 
-Opener = Callable[[Path, Context, list[Problem]], Any]  # returns the actions of a launch file
+Opener = Callable[[Path, Context, list[Problem]], Any]  # function that returns the actions of a launch file
 
 
 @dataclass
@@ -88,10 +88,11 @@ class Runner:
     opened: Opener
     nodes: list[LaunchedNode] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
-    arguments: set[str] = field(default_factory=set)  # declared names
-    including: list[object] = field(default_factory=list)  # files around an action, with their arguments
+    arguments: set[str] = field(default_factory=set)  # names of the declared arguments
+    # the files that include the current action, with their arguments
+    including: list[object] = field(default_factory=list)
     seen: int = 0
-    events: int = 0  # number of event handlers around an action
+    events: int = 0  # number of event handlers that contain the current action
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:
         """Interpret actions in order; `condition` is an enclosing condition known only on the robot."""

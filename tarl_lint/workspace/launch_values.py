@@ -20,9 +20,9 @@ from tarl_lint.workspace.python_values import FilePath, SpentError
 
 TRUE: Final = frozenset({"true", "1"})
 FALSE: Final = frozenset({"false", "0"})
-DEEPEST: Final = 50  # limit on nested values
-LONGEST: Final = 100_000  # limit on a text, characters
-WORK: Final = 300_000  # limit on the substitutions that are replaced for one launch file
+DEEPEST: Final = 50  # maximum nesting of a value
+LONGEST: Final = 100_000  # maximum length of a text (characters)
+WORK: Final = 300_000  # maximum number of substitutions that are replaced for one launch file
 # names that expressions may use: those of `math`, with and without the module
 _NAMES: Final = {"math": Library("math"), **{name.removeprefix("math."): value for name, value in LIBRARIES.items()
                                              if name.startswith("math.")}}  # fmt: skip
@@ -37,10 +37,10 @@ class Context:
     configurations: dict[str, str] = field(default_factory=dict)
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
-    settings: tuple[Setting, ...] = ()  # parameters of all following nodes
+    settings: tuple[Setting, ...] = ()  # parameters that all following nodes get
     # names of the launch configurations that were read; shared by all groups
     asked: set[str] = field(default_factory=set)
-    # substitutions that may still be replaced; shared by all groups
+    # number of substitutions that may still be replaced; shared by all groups
     left: list[int] = field(default_factory=lambda: [WORK])
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
 
@@ -222,7 +222,8 @@ class Package(Substitution):
     """`FindPackageShare`: the source folder of a workspace package stands for its share directory."""
 
     name: Any
-    found: Callable[[Any], Any] | None = field(default=None, compare=False)  # returns the folder of a package
+    # function that returns the folder of a package
+    found: Callable[[Any], Any] | None = field(default=None, compare=False)
     readable: ClassVar = frozenset({"perform", "find"})
 
     def text(self, context: Context, depth: int) -> str:

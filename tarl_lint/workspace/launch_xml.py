@@ -16,9 +16,9 @@ from tarl_lint.workspace.ros_arguments import ros1
 from tarl_lint.workspace.ros_names import joined
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
-DEEPEST: Final = 20  # limit on nested includes
-LARGEST: Final = 1_000_000  # limit on a launch, text or YAML file, bytes
-MOST: Final = 5_000  # limit on the elements of a launch file and its includes
+DEEPEST: Final = 20  # maximum nesting of includes
+LARGEST: Final = 1_000_000  # maximum size of a launch, text or YAML file (bytes)
+MOST: Final = 5_000  # maximum number of elements of a launch file with its includes
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,11 @@ class _Place:
     scope: Scope
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
-    private: tuple[Setting, ...] = ()  # private parameters of all following nodes
-    including: tuple[object, ...] = ()  # the files around, with their arguments, outermost first
-    visit: int = 0  # number of the file among all included ones
-    condition: str = ""  # enclosing condition that is known only on the robot
+    private: tuple[Setting, ...] = ()  # private parameters that all following nodes get
+    # the files that include the element, with their arguments, outermost first
+    including: tuple[object, ...] = ()
+    visit: int = 0  # number of the file, in the order in which files were included
+    condition: str = ""  # the enclosing condition, if it is known only on the robot
 
 
 @dataclass
@@ -40,9 +41,9 @@ class _Reader:
     nodes: list[LaunchedNode] = field(default_factory=list)
     settings: list[Setting] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
-    arguments: set[str] = field(default_factory=set)  # names in the outermost file
+    arguments: set[str] = field(default_factory=set)  # names of the arguments of the outermost file
     seen: int = 0
-    visits: int = 0  # number of included files
+    visits: int = 0  # number of files included so far
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
         """Read a launch file with its arguments."""

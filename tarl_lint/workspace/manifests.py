@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
 from tarl_lint.workspace.model import Kind, Problem
 
-LARGEST: Final = 200_000  # bytes
+LARGEST: Final = 200_000  # maximum size of a manifest (bytes)
 _DEPENDS: Final = frozenset({"depend", "build_depend", "exec_depend", "run_depend", "buildtool_depend", "test_depend",
                              "build_export_depend", "group_depend"})  # fmt: skip
 _BUILD_TYPES: Final[tuple[Kind, ...]] = ("ament_python", "ament_cmake", "catkin", "cmake")

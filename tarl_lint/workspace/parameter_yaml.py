@@ -11,8 +11,8 @@ from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.python_values import bounded
 
-DEEPEST: Final = 50  # levels of nested parameters; a YAML mapping may contain itself
-MOST: Final = 300_000  # limit on the values of a YAML text
+DEEPEST: Final = 50  # maximum nesting of parameters; needed because a YAML mapping may contain itself
+MOST: Final = 300_000  # maximum number of values of a YAML text
 SECTION: Final = "ros__parameters"
 
 

@@ -27,9 +27,10 @@ from tarl_lint.workspace.python_values import (
     plain,
 )
 
-BITS: Final = 4096  # limit on an integer
-_WIDTH: Final = re.compile(r"\d{4,}|\*")  # a format width would make a huge text
-_INSIDE: Final = re.compile(r"\{[^{}:!]*[.\[]")  # `{0.name}` reads an attribute
+BITS: Final = 4096  # maximum size of an integer (bits)
+_WIDTH: Final = re.compile(r"\d{4,}|\*")  # matches a width in a format that would make a huge text
+# matches fields such as `{0.name}`, which read an attribute or element
+_INSIDE: Final = re.compile(r"\{[^{}:!]*[.\[]")
 BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
@@ -289,7 +290,7 @@ def _absolute(path: Any) -> Any:
     return normal(text) if text.startswith("/") else Unknown(0, text)
 
 
-# Functions of structure: elements of their arguments may be unknown
+# Functions that only use the structure of their arguments; elements of the arguments may be unknown
 STRUCTURE: Final[Mapping[str, Any]] = {
     "list": _list, "tuple": _tuple, "dict": _dict, "len": lambda one: len(_elements(one)), "map": _map,
     "filter": _filter, "isinstance": _isinstance, "sorted": _sorted, "sum": _sum,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any, ClassVar, Final
 
-LARGEST: Final = 100_000  # limit on a value: characters of a text, elements of nested lists
+LARGEST: Final = 100_000  # maximum size of a value: characters of a text, elements of nested lists
 ENUMERATIONS: Final = frozenset({"enum.Enum", "enum.IntEnum", "enum.StrEnum"})
 TUPLES: Final = "typing.NamedTuple"
 DATA: Final = "dataclasses.dataclass"
@@ -93,7 +93,7 @@ class Class:
     bases: tuple[Any, ...]
     names: dict[str, Any]
     fields: tuple[str, ...] | None = None
-    unpacked: bool = False  # whether its objects are tuples
+    unpacked: bool = False  # whether objects of the class are tuples
 
     def find(self, name: str) -> tuple[Any, Class] | None:
         """Return an attribute of the class or its bases, and the class that has it."""

@@ -10,7 +10,8 @@ from typing import Final
 
 from tarl_lint.workspace.ros_names import resolved
 
-_NAME: Final = re.compile(r"[~/]?[A-Za-z$][\w$() ]*(/[\w$() ]+)*/?")  # `$(arg robot)` may be part of it
+# matches a name, which may contain `$(arg robot)`
+_NAME: Final = re.compile(r"[~/]?[A-Za-z$][\w$() ]*(/[\w$() ]+)*/?")
 _SYMBOLIC: Final = re.compile(r"\$\([^()]*\)")
 Pairs = tuple[tuple[str, str], ...]
 

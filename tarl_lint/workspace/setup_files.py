@@ -14,7 +14,7 @@ from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.statements import Interpreter
 
-LARGEST: Final = 200_000  # bytes of setup.cfg
+LARGEST: Final = 200_000  # maximum size of setup.cfg (bytes)
 _CONSOLE: Final = re.compile(r"^\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[.*\])?\s*$")
 _SCANNED: Final = frozenset({"setuptools.find_packages", "setuptools.find_namespace_packages"})
 
@@ -27,7 +27,7 @@ class Setup:
     modules: tuple[str, ...] = ()
     folders: Mapping[str, str] = field(default_factory=dict)
     scripts: tuple[str, ...] = ()
-    console: tuple[tuple[str, str, str], ...] = ()  # name, module, function
+    console: tuple[tuple[str, str, str], ...] = ()  # (name, module, function) of each console script
     problems: tuple[Problem, ...] = ()
 
 

@@ -32,10 +32,10 @@ from tarl_lint.workspace.python_values import (
 
 __all__ = ["Function", "Interpreter", "parsed"]
 
-DEEPEST: Final = 30  # limit on nested calls of the file's own functions
-LARGEST: Final = 1_000_000  # bytes, limit on a file
-MODULES: Final = 20  # limit on the imported modules that are interpreted for a file
-_OWN: Final = "__class__"  # the class of a method, for `super()`
+DEEPEST: Final = 30  # maximum nesting of calls of the file's own functions
+LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
+MODULES: Final = 20  # maximum number of imported modules that are interpreted for a file
+_OWN: Final = "__class__"  # name under which the class of a method is stored, for `super()`
 _PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
 
 

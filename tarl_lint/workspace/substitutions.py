@@ -15,7 +15,7 @@ from tarl_lint.workspace.launch_model import Scalar
 from tarl_lint.workspace.model import Workspace
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
-LONGEST: Final = 100_000  # limit on a text, characters
+LONGEST: Final = 100_000  # maximum length of a text (characters)
 _TRUTH: Final = {"true": True, "false": False}
 
 
