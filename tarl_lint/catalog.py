@@ -158,14 +158,14 @@ SOURCE_WORDS: Final = (
     "create_service",
     "ActionServer",
     "SimpleActionServer",
-)  # a file without these words has no source
+)  # a file that contains none of these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 CLIENT_WORDS: Final = (
     "ServiceProxy",
     "create_client",
     "ActionClient",
     "SimpleActionClient",
-)  # a file without these words has no client of a service or action
+)  # a file that contains none of these words has no client of a service or action
 
 WAITS: Final = frozenset(
     [
@@ -233,7 +233,8 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
-METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of the filled argument
+# method → position of the argument that it fills
+METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(
     ["read", "readline", "readlines", "read_until", "read_all", "readinto", "recv", "recvfrom", "recv_into",
@@ -270,11 +271,11 @@ MAY_BE_NONE: Final = frozenset(
         "getenv",
     ]
 )  # library functions that return None if they find nothing
-WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
+# keywords of the arguments into which numpy and cv2 write results
+WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])
 
-STATES: Final = (
-    "smach"  # a class with such a base is a state, which receives the data shared by all states when it runs
-)
+# package whose classes are bases of states; a state that runs receives the data shared by all states
+STATES: Final = "smach"
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
@@ -301,13 +302,14 @@ SHAPED: Final = frozenset(
 RESERVING: Final = frozenset(
     ["numpy.zeros", "numpy.ones", "numpy.empty", "numpy.full", "builtins.bytearray"]
     + [f"numpy.{name}" for name in SHAPED]
-)  # functions that make an array without data, often for a library to fill
+)  # functions that make an array without data; often a library fills the array later
 
-CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock, whose time is not data of the object
+# methods that return a clock; the time of a clock is not data of the object that has the method
+CLOCKS: Final = frozenset(["get_clock"])
 
 LEVELS: Final = frozenset(
     ["debug", "info", "warn", "warning", "error", "fatal", "critical"]
-)  # logging methods, named after levels
+)  # logging methods that are named after levels
 LOGGING: Final = LEVELS | {"get_logger", "exception", "log"}
 
 

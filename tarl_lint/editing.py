@@ -16,7 +16,8 @@ from tarl_lint.run.runner import Early, Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
 
-KEPT_RUNS: Final = 10  # runs for which an unneeded report is kept, because edits are often undone
+# number of runs for which a report is kept after its last use, because edits are often undone
+KEPT_RUNS: Final = 10
 __all__ = ["Result", "Superseded", "Workspace"]
 
 

@@ -46,11 +46,12 @@ class Outline:
     assigned: dict[str, list[ast.expr]] = field(default_factory=dict)
     declared: set[str] = field(default_factory=set)  # names that functions declare global
     shared: frozenset[str] | None = None  # globals that functions change; None until computed
-    held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)  # node → held locks, a cache
+    # node → names of the locks held there (a cache)
+    held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)
     lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(
         default_factory=dict
-    )  # calls made under locks, by function
-    by_text: bool = False  # whether names may be looked up by computed strings
+    )  # function → calls made while a lock is held
+    by_text: bool = False  # whether the code may look up names by computed strings
 
     def __post_init__(self) -> None:
         pending: list[ast.AST] = [self.tree]

@@ -52,4 +52,4 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     | _fields(
         "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
     ),
-}  # type → field → type of the field, if that type has fields itself
+}  # type → name of a field → type of the field, for field types that have fields themselves

@@ -8,15 +8,15 @@ from typing import Final
 CHANGES: Final = re.compile(
     r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|observe|learn|train)$|[Aa]ccept_?[Ww]aveform"
     r"|(?:update|step|process|feed|push|advance|integrate|transition)(?:_|[A-Z]|$)"
-)  # methods that change the object even if the result is used
+)  # names of methods that change their object even if the result is used
 TELLS: Final = re.compile(
     r"(?:send|publish|emit|log|print|write|say|speak|show|notify|call|draw|plot|display|imshow|save|dump|export|report"
     r"|get|is|has|check|assert|close|stop|shutdown|wait|sleep|spin|debug|info|warn|warning|error|broadcast|respond"
     r"|reply|render|play|exec|execute|request)(?:_|[A-Z]|$)"
-)  # methods that only use their arguments
+)  # names of methods that only use their arguments, without storing them
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"
-)  # methods that store callables to call them later
+)  # names of methods that store callables in order to call them later
 FAILS: Final = re.compile(
     r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
     r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"

@@ -11,7 +11,7 @@ from tarl_lint.rule_codes import rule_codes
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
-OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # enabled only by their full code
+OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # codes of rules that only their full code enables
 RULES: Final = rule_codes()
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 

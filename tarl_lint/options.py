@@ -27,8 +27,8 @@ _EPILOG: Final = (
     "or baseline, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
-DRAWN: Final = "svg"  # this format is for launch files only
-MOST_SHOWN: Final = 100  # flows shown individually in a text report; about ten screens
+DRAWN: Final = "svg"  # the format that is available for launch files only
+MOST_SHOWN: Final = 100  # maximum number of flows shown individually in a text report; about ten screens
 
 
 class _Help(argparse.HelpFormatter):

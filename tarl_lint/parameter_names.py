@@ -10,9 +10,9 @@ from typing import Any, Final, Literal
 
 MARK: Final = "\0"
 DEFAULT: Final = "\0default"  # the value of a parameter that is not set
-# key among the values of parameters: the program's command line, a tuple of texts
+# key for the program's command line (a tuple of texts) among the values of parameters
 ARGUMENTS: Final = "\0argv"
-LAUNCHED: Final = "\0launched"  # key among the values of parameters: the `Launched` node itself
+LAUNCHED: Final = "\0launched"  # key for the `Launched` node itself among the values of parameters
 ELSEWHERE: Final = "\0elsewhere"  # the value of a parameter that is known only on the robot
 _MARKED: Final = re.compile(f"{MARK}(\\d+){MARK}")
 

@@ -10,7 +10,7 @@ ATOMS: Final = frozenset(
     ["id", "attr", "arg", "name", "asname", "module", "level", "ctx", "op", "ops", "kind", "type_comment", "names",
      "conversion", "is_async", "simple", "rest", "kwd_attrs", "type_ignores", "tag", "lineno"]
 )  # fmt: skip
-ALIASES: Final = (ast.Import, ast.ImportFrom)  # these statements contain names as nodes
+ALIASES: Final = (ast.Import, ast.ImportFrom)  # kinds of statements whose imported names are nodes
 
 
 def children(node: ast.AST) -> list[ast.AST]:

@@ -21,7 +21,8 @@ from tarl_lint.read.source import Module
 from tarl_lint.settings.config import Config
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
-ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # servers both receive and send
+# matches the words of servers, which both receive and send
+ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")
 SAYS: Final = re.compile("|".join(map(whole, catalog.SINK_WORDS)))
 
 

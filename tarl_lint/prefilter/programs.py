@@ -19,7 +19,7 @@ M = TypeVar("M", bound=Named)
 RUN: Final = "__main__"
 LOADS: Final = re.compile(
     r"\b(importlib|__import__|pkgutil|runpy|pluginlib|entry_points|iter_entry_points|exec|execfile|locate)\b"
-)  # words of files that may load a module without an import statement
+)  # matches words of files that may load a module without an import statement
 
 
 def programs(

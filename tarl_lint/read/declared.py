@@ -28,7 +28,7 @@ NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
 )  # files that name the plugin descriptions, which may have any name
-LARGEST: Final = 500_000  # limit on a description, bytes
+LARGEST: Final = 500_000  # maximum size of a description (bytes)
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")
 

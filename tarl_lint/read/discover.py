@@ -31,7 +31,7 @@ _CPP_NODE = (
     b"RCLCPP_COMPONENTS_REGISTER_NODE",
 )
 _LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
-_ENOUGH = 200_000  # bytes to read of a file that is only counted
+_ENOUGH = 200_000  # number of bytes to read of a file that is only counted
 
 
 class SourceFile(NamedTuple):

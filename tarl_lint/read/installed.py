@@ -20,7 +20,7 @@ from tarl_lint.read.source import Script
 from tarl_lint.run.cache import Report
 from tarl_lint.settings.config import Config
 
-MOST_FILES: Final = 5_000  # files per package
+MOST_FILES: Final = 5_000  # maximum number of files read of one package
 SITES: Final = ("lib/python3*/site-packages", "lib64/python3*/site-packages", "Lib/site-packages")
 SYSTEM_SITES: Final = (*SITES, "lib/python3/dist-packages", "lib/python3*/dist-packages")
 
@@ -30,7 +30,7 @@ class Followed:
     """The analysed files of installed packages, the packages' versions, and messages for missing packages."""
 
     scripts: tuple[Script, ...] = ()
-    packages: tuple[str, ...] = ()  # "robot_base 1.4.0"
+    packages: tuple[str, ...] = ()  # names with versions, such as "robot_base 1.4.0"
     missing: tuple[str, ...] = ()
 
 

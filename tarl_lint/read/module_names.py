@@ -9,11 +9,11 @@ from typing import Final, Generic, Protocol, TypeVar
 
 LIBRARIES: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
-)  # the catalog describes these packages
+)  # packages that the catalog describes
 
 KNOWN: Final = (
     sys.stdlib_module_names | LIBRARIES | {"smach", "typing_extensions"}
-)  # classes of these packages receive no data
+)  # packages whose classes receive no data
 
 
 def unfollowed(classes: Iterable[str]) -> tuple[str, ...]:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-LARGEST: Final = 2_000_000  # bytes; Python's parser takes about 200 times as much memory
+# maximum size of a file (bytes); Python's parser takes about 200 times as much memory
+LARGEST: Final = 2_000_000
 TOO_DEEP: Final = "The code is nested too deeply to be {}: split the expression, or exclude the file."
 
 
@@ -27,7 +28,7 @@ class Module:
     tree: ast.Module
     is_package: bool = False
     started: tuple[str, ...] = ()  # entry points declared by the package
-    # whether it is part of an installed package: nothing in it is started or reported
+    # whether the file is part of an installed package, of which nothing is started or reported
     installed: bool = False
 
     def answer(self, question: Callable[[str], bool]) -> bool:

@@ -10,8 +10,8 @@ from tarl_lint.model import Dependence, Finding, Flow, Sink, Step
 from tarl_lint.report.frame import frame
 from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, one_line, tabs
 
-_LONG: Final = 12  # steps; a list of at most this length is shown in full
-_WIDE: Final = 140  # columns of a statement without a terminal
+_LONG: Final = 12  # maximum number of steps in a list that is shown in full
+_WIDE: Final = 140  # width of a statement in columns if there is no terminal
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from tarl_lint.model import Span
 from tarl_lint.report.line import Line, Style, View, columns, crop, tabs
 
-BEFORE = 2  # lines of context
-TALL = 6  # lines; a longer span is shown by its first lines and its last
+BEFORE = 2  # number of lines of context above a span
+TALL = 6  # number of lines; of a longer span, only the first lines and the last one are shown
 
 
 def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterator[Line]:

@@ -12,7 +12,7 @@ from tarl_lint.report.line import Line, View
 from tarl_lint.run.runner import Result
 
 FORMAT_VERSION: Final = 1  # 1: first format
-STEP_LEVEL: Final = 5  # containers around a step: document, diagnostics, diagnostic, flow, steps
+STEP_LEVEL: Final = 5  # number of containers around a step: document, diagnostics, diagnostic, flow, steps
 
 OfStep = Callable[[Step], object]
 

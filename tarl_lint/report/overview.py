@@ -9,10 +9,11 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Flow
 from tarl_lint.report.line import Line, Style, View, columns
 
-MANY: Final = 6  # publish calls; a report with fewer of them fits on a screen
-_WIDE: Final = 110  # columns without a terminal
+MANY: Final = 6  # number of publish calls; a report with fewer of them fits on a screen
+_WIDE: Final = 110  # width in columns if there is no terminal
 _WIDEST_NAME: Final = 30
-_ALTERNATIVES: Final = 4  # topics of one call; if there are more, they are abbreviated
+# maximum number of possible topics of a call that are shown in full; more are abbreviated
+_ALTERNATIVES: Final = 4
 
 
 def overview(flows: Sequence[Flow], view: View) -> Iterator[Line]:

@@ -12,7 +12,7 @@ from tarl_lint.fingerprints import UNKNOWN
 from tarl_lint.model import Finding, Flow, Kind, Sink, Source
 from tarl_lint.run.runner import Result
 
-_NAMED: Final = 3  # functions named in one box
+_NAMED: Final = 3  # maximum number of functions named in one box
 
 
 @dataclass(frozen=True, order=True)

@@ -13,7 +13,7 @@ from typing import Final
 
 MOST_RESULTS: Final = 5_000
 MOST_STEPS: Final = 1_000
-MOST_BYTES: Final = 10_000_000  # compressed
+MOST_BYTES: Final = 10_000_000  # maximum size of a compressed report (bytes)
 
 
 @dataclass(frozen=True)

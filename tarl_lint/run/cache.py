@@ -215,4 +215,4 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "sink": lambda packed: unpacked(Sink, packed),
     "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
     "flow": lambda packed: None if packed is None else unpacked(Flow, packed),
-}  # converters, by field name
+}  # name of a field → function that converts its packed value

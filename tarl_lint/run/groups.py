@@ -17,7 +17,8 @@ from tarl_lint.run.gc_paused import without_collection
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config
 
-MANY_LINES: Final = 30_000  # lines to analyse; below this, starting processes takes longer than it saves
+# number of lines to analyse below which starting processes takes longer than it saves
+MANY_LINES: Final = 30_000
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,8 @@ class Task:
         return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
 
 
-Partly = Callable[[Report, frozenset[str]], None]  # a report so far, and the files whose findings are final
+# called with the report so far, and the files whose findings are final
+Partly = Callable[[Report, frozenset[str]], None]
 
 
 def examine(

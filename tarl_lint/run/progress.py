@@ -10,7 +10,7 @@ from typing import Final, TextIO
 
 Tell = Callable[[str], None]
 
-PATIENCE: Final = 1.0  # seconds before progress is shown
+PATIENCE: Final = 1.0  # time before progress is shown (s)
 EVERY: Final = 0.25
 _CLEAR: Final = "\r\x1b[K"
 
