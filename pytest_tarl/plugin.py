@@ -124,7 +124,7 @@ def pytest_runtest_makereport(
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Show errors meant for users without traceback; add advice if a test module imports a ROS that is not installed."""
+    """Show errors for users without a traceback; add advice if a test module imports a ROS that is not installed."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
     if call is not None and call.excinfo is not None and _ours(call.excinfo.value):

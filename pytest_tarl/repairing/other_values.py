@@ -42,7 +42,7 @@ class Others:
         self._inward: set[Place] = set()
         self._mended: set[Candidate] = set()
         self._recentred: set[Place] = set()
-        # values that earned more than the tested value, in missions of its test
+        # values that earned more than a tested value in missions of its test
         self.chosen: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
@@ -93,14 +93,24 @@ class Others:
     def beside(self, trials: Trials) -> OtherValues:
         """Propose neighbours of a candidate that lost reward in few missions of its test, if they lose none in these.
 
-        If a close value was rejected as well, the value halfway between the two comes first. Raise BudgetSpentError.
+        If a close value was rejected as well, the value halfway between the two comes first. A neighbour may be close
+        to a rejected value, because the missions in which that one lost reward distinguish the two. Raise
+        BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
             for other in (*self._between(refused), *neighbours(refused, self.mutants.mutate)):
-                if self.ledger.alike(other) is None and self._mends(other, refused, trials):
+                if not self._examined(other) and self._mends(other, refused, trials):
+                    self.chosen.add(other)
                     yield other
                     break
+
+    def _examined(self, candidate: Candidate) -> bool:
+        """Return whether exactly these values were examined under this guard."""
+        return any(
+            one.candidate.guard == candidate.guard and one.candidate.changes == candidate.changes
+            for one in self.ledger.tried
+        )
 
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose the best value near a refused one whose missions succeed but earn too little in its test.
