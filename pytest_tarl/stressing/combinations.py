@@ -19,9 +19,8 @@ from pytest_tarl.stressing.rays import Ray, distance, joined
 
 # share of the distance to each boundary at which pairs are tested; each direction alone holds there
 INSIDE = 0.9
-FIRST = 0.6  # share of the budget for the first search for the nearest failing drift
-# share of the budget after which no nearer failing drift is tested before the single directions
-CONFIRMED = 0.9
+FIRST = 0.55  # share of the budget for the first search for the nearest failing drift
+CONFIRMED = 0.95  # share of the budget that the tests of a nearer failing drift may use
 LAST = 0.85  # share of the budget after which pairs and evolution stop, to keep episodes for confirmation
 QUICK = SIZES[0]  # number of episodes at a confirmed failure
 
@@ -102,7 +101,7 @@ class Combined:
             self.nearest.approach()
         if self._confirm(FIRM):
             with self.evaluator.limited(CONFIRMED):
-                self._confirm(NEAR)
+                self._confirm_nearer()
 
     def end(self) -> None:
         """Search for nearer failing drifts, test pairs, and confirm the results. Raise BudgetSpentError."""
@@ -110,7 +109,7 @@ class Combined:
         with self.evaluator.limited(LAST):
             self.nearest.improve()
             pairs(self.evaluator, self.together, proposed)
-        self._confirm(NEAR)
+        self._confirm_nearer()
         for point in sorted(proposed, key=lambda one: distance(self.evaluator.space, one)):
             self.together.confirm([point], self.evaluator)
 
@@ -120,6 +119,12 @@ class Combined:
             found = self.nearest.expected(EXPECTED)
             self.together.expected = [failure(self.evaluator.space, point) for point in found]
             self.together.margin_map = self.nearest.map()
+
+    def _confirm_nearer(self) -> None:
+        """Test drifts ever closer to the boundary, until one is not confirmed. Raise BudgetSpentError."""
+        for step in NEAR:
+            if not self._confirm([step]):
+                return
 
     def _confirm(self, steps: Steps) -> bool:
         limit = min((one.distance for one in self.together.confirmed), default=inf)

@@ -57,9 +57,9 @@ TRIES = 24  # number of consecutive drifts without a nearer failure after which 
 SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best distance
 # Steps by which drifts are chosen: the errors of the model to allow for, in standard deviations, and the
 # excess over the guarantee, in units of what fresh episodes can show. FIRM is for the first confirmation,
-# NEAR for the second, and EXPECTED for drifts that are reported without confirmation.
+# NEAR for the next ones, and EXPECTED for drifts that are reported without confirmation.
 FIRM = ((0.5, 1.2), (1.0, 1.8), (1.5, 2.5))
-NEAR = ((0.2, 0.9),)
+NEAR = ((0.35, 1.05), (0.15, 0.9))
 EXPECTED = ((0.2, 0.9), (0.4, 1.0), (0.6, 1.2), (0.8, 1.5), (1.0, 2.0), (1.5, 2.5))
 # excess of a loss over the tolerated one, in standard errors, that fresh episodes show 4 times in 5
 STANDARD = 4.1
