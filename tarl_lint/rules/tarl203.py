@@ -103,7 +103,7 @@ def ruled_out(side: Side) -> bool:
 
 
 def _handed_on(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that are not only called, and the texts, which may name a method."""
+    """Yield the names that are used other than in calls, and the strings, which may name a method."""
     called = {id(n.func) for n in walk(tree) if isinstance(n, ast.Call)}
     for node in walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -205,7 +205,7 @@ def _returns(node: ast.AST) -> bool:
 
 
 def _attribute(target: ast.expr, receiver: str) -> str | None:
-    """Return `self.x` for a plain store to it."""
+    """Return the target as `self.x` if it is an attribute of the receiver, otherwise None."""
     if (
         isinstance(target, ast.Attribute)
         and isinstance(target.value, ast.Name)

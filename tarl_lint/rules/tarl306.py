@@ -93,7 +93,7 @@ VALID: Final = (
 
 
 def findings(system: System) -> Iterator[Finding]:
-    """Yield a hazard for each command that is published again and again from the last message."""
+    """Yield a hazard for each command that is computed from the last message and published repeatedly."""
     for instance in system.instances:
         for finding in instance.interface.stale if instance.interface is not None else ():
             flow = finding.flow

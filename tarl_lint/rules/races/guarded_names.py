@@ -42,7 +42,7 @@ def _under_locks(outline: Outline) -> Iterator[ast.Call]:
 
 
 def _of_lock(call: ast.Call, outline: Outline) -> bool:
-    """Return whether a call is of a method of a lock, such as `Condition.wait`."""
+    """Return whether a call calls a method of a lock, such as `Condition.wait`."""
     if not isinstance(call.func, ast.Attribute):
         return False
     values = outline.assigned.get(last_name(call.func.value), [])
@@ -59,7 +59,7 @@ def _accesses(outline: Outline) -> Iterator[Access]:
 
 
 def _at_module_level(tree: ast.Module) -> Iterator[str]:
-    """Yield the names that the top level of the module uses; the main program may do so at any time."""
+    """Yield the names that the top level of the module uses; the main program may use them at any time."""
     pending: list[ast.AST] = [tree]
     while pending:
         node = pending.pop()

@@ -71,7 +71,7 @@ def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
 
 
 def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
-    """Return (lock, method, line) of each method call on a lock in a function; the method is TRY for a trial."""
+    """Return (lock, method, line) of each method call on a lock; the method is TRY if it acquires without waiting."""
     known = outline.lock_calls.get(function)
     if known is None:
         calls = [n for n in walk(function) if isinstance(n, ast.Call)]

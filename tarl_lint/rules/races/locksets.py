@@ -60,7 +60,7 @@ class Use:
 
     @property
     def guards(self) -> frozenset[str]:
-        """Return the locks that another access to the same state is expected to take, too."""
+        """Return the locks that another access to the same state is also expected to take."""
         return self.locks - self.spots[0].tried
 
 
