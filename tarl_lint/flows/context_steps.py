@@ -28,7 +28,7 @@ class Surroundings:
     def context(
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
     ) -> tuple[list[Written], list[tuple[int, int]]]:
-        """Return the statements that enclose the steps and the registration, each with the step that it precedes."""
+        """Return the statements around steps and registration, and pairs (statement, step that it precedes)."""
         found: Enclosing = {}
         edges: Before = {}
         registration = self.registration(origin)

@@ -95,7 +95,7 @@ class Tracer:
     def flow(
         self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
     ) -> Flow | None:
-        """Return the flow of a pair, None if the source does not reach the sink."""
+        """Return the flow from a source to a sink; None if the source does not reach the sink."""
         ends = record.nodes & reach.any
         if not ends:
             return None
@@ -351,7 +351,7 @@ def _reversed(edges: Sequence[set[int]]) -> list[list[int]]:
 def closure(
     start: Iterable[int], tables: Sequence[Sequence[Iterable[int]]], within: set[int] | None = None
 ) -> set[int]:
-    """Return all nodes reached from `start` along any of the tables, inside a set."""
+    """Return all nodes reached from `start` along edges in any of the tables, through nodes in `within` only."""
     found = set(start)
     pending = list(found)
     while pending:

@@ -109,7 +109,7 @@ class Text:
         return self.by_start.get((pos[0], pos[1]))
 
     def function(self, pos: Pos) -> Written | None:
-        """Return the function whose header starts here, where a message arrives."""
+        """Return the function whose header starts here; a message arrives at this header."""
         return self.functions.get((pos[0], pos[1]))
 
     def site(self, written: Written) -> SiteId:

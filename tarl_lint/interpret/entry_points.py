@@ -69,7 +69,7 @@ def _plugin(ctx: Interpreter, statement: ir.Class, module: Obj) -> None:
 
 
 def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, starting: bool) -> None:
-    """Instantiate a class that registers something or is a node, if nothing in the files does."""
+    """Instantiate a class that registers something or is a node, unless the files instantiate it."""
     for cls in _values(ctx, ctx.module_objects[program.name], statement.name):
         if cls.kind != "class" or cls.key in ctx.made:
             continue
@@ -135,7 +135,7 @@ def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: l
 
 
 def _registers_itself(info: ClassInfo) -> bool:
-    """Return whether a class registers callbacks in `__init__`; if not, outside code calls a method that does."""
+    """Return whether `__init__` registers the callbacks; otherwise, outside code calls a method to register them."""
     body = info.statement.body if info.statement is not None else ()
     return any(
         isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body

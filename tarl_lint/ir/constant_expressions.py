@@ -21,7 +21,7 @@ def computed(expr: ir.Expr) -> ir.Pos | None:
 
 
 def of_literals(expr: ir.Expr) -> bool:
-    """Return whether an expression is composed of literals and mathematical constants; any functions may be applied."""
+    """Return whether the operands and arguments in an expression are all literals or mathematical constants."""
     if isinstance(expr, ir.Const):
         return isinstance(expr.value, (int, float, str))
     if isinstance(expr, ir.Attribute):

@@ -68,7 +68,7 @@ class Expressions:
         return ir.Operation("", parts, position(node))
 
     def all(self, nodes: Sequence[ast.expr], scope: Scope) -> list[ir.Expr]:
-        """Lower several."""
+        """Lower several expressions."""
         return [self.expr(n, scope) for n in nodes]
 
     def _constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - shared signature

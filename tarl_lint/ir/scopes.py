@@ -88,7 +88,7 @@ def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
 
 
 def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the descendants, without nested functions, classes and comprehension targets."""
+    """Yield the descendants of nodes, except nested functions, classes and comprehension targets."""
     pending = list(body)
     while pending:
         node = pending.pop()
@@ -107,7 +107,7 @@ def plain(text: str) -> bool:
 
 
 def _own_statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the same nodes, but of expressions only assignment targets."""
+    """Yield the nodes that `_own_nodes` yields, but only the assignment targets among expressions."""
     pending = list(body)
     while pending:
         node = pending.pop()

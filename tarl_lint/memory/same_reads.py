@@ -14,7 +14,7 @@ from tarl_lint.memory.values import ABSENT, DATA, Key, Obj, Value
 def unchanged(
     reads: Reads, found: Mapping[Key, Value | None], stored: Mapping[Key, bool], store: Store, graph: Graph
 ) -> bool:
-    """Return whether all recorded reads (with values `found` and flags `stored`) would give the same now."""
+    """Return whether all recorded reads (with values `found`, flags `stored`) would have the same results now."""
     if not reads.unreached.isdisjoint(graph.live):
         return False
     current, waited = store.now, store.waited

@@ -44,7 +44,7 @@ NOBODY: set[Root] = set()
 
 @dataclass(slots=True)
 class Shared:
-    """The stores of all roots: at their ends, and at their waits (`pauses`)."""
+    """The values that the roots have stored: at their ends (`ends`), and at their waits (`pauses`)."""
 
     ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)

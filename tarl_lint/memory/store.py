@@ -274,7 +274,7 @@ class Store:
         return merged
 
     def admit(self, key: Key, mine: Value, news: Value) -> Value:
-        """Return a value joined with the value of other roots; record the part that is theirs."""
+        """Return a value joined with the value of other roots; record the part that only the others stored."""
         both = join(mine, news)
         if both is not mine:
             theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())

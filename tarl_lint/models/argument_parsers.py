@@ -80,7 +80,7 @@ def _declared(ctx: Interpreter, it: Invocation) -> Declared | None:
 
 
 def _parsed(ctx: Interpreter, parser: Obj, it: Invocation) -> Value | None:
-    """Return the namespace of the parsed arguments; in a pair with the remaining ones if the call returns a pair."""
+    """Return the namespace of the parsed arguments, or (namespace, remaining arguments) if the call returns both."""
     ctx.store.reads.look(parser)
     texts = _texts(ctx, it)
     declared = list(parser.info.values()) if isinstance(parser.info, dict) else []

@@ -301,7 +301,7 @@ def made_of(ctx: Interpreter, value: Value) -> Nodes:
 
 
 def _read_length(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the result of a queue's query for its size."""
+    """Return the result of a call that asks a queue for its size."""
     return counted_elements(ctx, replace(it, arguments=([it.base], {})))
 
 
@@ -319,7 +319,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Return whether reading from a library object returns other data than what was written to it."""
+    """Return whether reading from a library object returns data other than what was written to it."""
     return obj.kind == "lib" and not obj.name.startswith("io.") and obj.name not in PROCESSES
 
 

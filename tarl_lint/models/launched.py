@@ -32,7 +32,7 @@ def value_of(ctx: Interpreter, name: str) -> object:
 
 
 def made(ctx: Interpreter, value: Any, frame: Frame, slot: Hashable) -> Value:
-    """Return a value of the launch as an abstract value: a constant, or a sequence or mapping of constants."""
+    """Convert a value that the launch gives to an abstract value: a constant, or a container of constants."""
     if value is ELSEWHERE:
         return UNKNOWN
     if isinstance(value, list):

@@ -295,7 +295,7 @@ def _unknown_method(
 def _given(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data of the results of the callables that a library object holds: its methods may call them."""
+    """Return the data in the results of a library object's callables, since the object's methods may call them."""
     new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
     if keeps_callables(name):
         callables.hold(ctx, base.pts, new)

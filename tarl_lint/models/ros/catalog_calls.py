@@ -209,7 +209,7 @@ def _written_defaults(it: Invocation) -> Mapping[int, ir.Expr]:
 
 
 def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a parameter, or the alternative argument."""
+    """Return a parameter, or the alternative that the call passes."""
     found = _parameter_object(ctx, it)
     names = it.argument(it.fact.topic).texts()
     given = launched.value_of(ctx, names[0]) if len(names) == 1 else ELSEWHERE
