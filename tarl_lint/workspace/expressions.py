@@ -144,7 +144,7 @@ class Evaluator:
         return unknown(node) if found is None else found[0]
 
     def attribute(self, base: Any, name: str, node: ast.AST) -> tuple[Any] | None:
-        """Return an attribute of a value in a tuple; None if it is not known."""
+        """Return a tuple with an attribute of a value; None if the attribute is not known."""
         if isinstance(base, Library):
             full = f"{base.name}.{name}"
             return (self.models.get(full, Library(full)),)
@@ -365,7 +365,7 @@ def unknown(node: ast.AST) -> Unknown:
 
 
 def constant(text: str, names: Mapping[str, Any] | None = None) -> Any:
-    """Return the value of a Python expression; `Unknown` if it is not constant. Raises ValueError if it is none."""
+    """Return the value of a Python expression; `Unknown` if not constant. Raises ValueError for invalid syntax."""
     try:
         tree = ast.parse(text.strip(), mode="eval")
         return Evaluator({}).value(tree.body, Scope(dict(names or {})))

@@ -36,6 +36,6 @@ def problems(launch: Launch, workspace: Workspace) -> Iterator[Problem]:
 
 
 def folders_with(hidden: Collection[Hidden], workspace: Workspace) -> tuple[Path, ...]:
-    """Return the folders of these packages, and of all packages that the same markers hide."""
+    """Return the folders of hidden packages, and of all other packages that the same markers hide."""
     markers = {one.marker for one in hidden}
     return tuple(one.package.folder for one in workspace.hidden if one.marker in markers)

@@ -141,7 +141,7 @@ class Joined(Substitution):
 
 @dataclass(frozen=True)
 class Anonymous(Substitution):
-    """`AnonName`, `$(anon name)`: a name that the robot makes unique; here without what makes it unique."""
+    """`AnonName`, `$(anon name)`: a name that the robot makes unique; here without the part that does so."""
 
     name: Any
 

@@ -47,7 +47,7 @@ class Scope:
         self.inner = inner  # whether it is a comprehension
 
     def find(self, name: str) -> tuple[Any] | None:
-        """Return the value of a name in a tuple; None if no scope has it."""
+        """Return a tuple with the value of a name; None if no scope has the name."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -56,7 +56,7 @@ class Scope:
         return None
 
     def store(self, name: str, value: Any) -> None:
-        """Bind a name in this scope, or where `global` or `nonlocal` say."""
+        """Bind a name in this scope, or in the one that a `global` or `nonlocal` statement refers to."""
         self.elsewhere.get(name, self).names[name] = value
 
     def outside(self) -> Scope:
@@ -106,7 +106,7 @@ class Class:
         return None
 
     def all_fields(self) -> tuple[str, ...] | None:
-        """Return the fields of a data class with those of its bases; None if it is none."""
+        """Return the fields of a data class with those of its bases; None for other classes."""
         above = [base.all_fields() for base in self.bases if isinstance(base, Class)]
         known = [one for one in (*above, self.fields) if one is not None]
         return tuple(dict.fromkeys(name for one in known for name in one)) if known else None
@@ -214,7 +214,7 @@ def items(value: Any) -> list[Any] | None:
 
 
 def plain(value: Any, most: int = LARGEST) -> bool:
-    """Return whether a value consists of constants only, at most `most` of them and not nested without end."""
+    """Return whether a value consists of at most `most` constants and is not nested infinitely."""
     return all(isinstance(one, _CONSTANT) for one in _leaves(value, most))
 
 

@@ -18,7 +18,7 @@ Pairs = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """What the arguments of a node say to ROS. `parameters` are private names with YAML values."""
+    """The settings that the arguments of a node give to ROS. `parameters` are private names with YAML values."""
 
     remaps: Pairs = ()
     parameters: Pairs = ()
@@ -28,7 +28,7 @@ class Given:
 
 
 def ros1(arguments: str) -> Given:
-    """Return what the arguments of a ROS 1 node say: `topic:=other`, `_parameter:=value`, `__ns:=`."""
+    """Return the settings in the arguments of a ROS 1 node: `topic:=other`, `_parameter:=value`, `__ns:=`."""
     pairs = [
         (old, new) for old, assigned, new in (one.partition(":=") for one in _words(arguments)) if assigned
     ]
@@ -40,7 +40,7 @@ def ros1(arguments: str) -> Given:
 
 
 def ros2(arguments: str) -> Given:
-    """Return what the arguments of a ROS 2 node say after `--ros-args`, up to `--`."""
+    """Return the settings in the arguments of a ROS 2 node, between `--ros-args` and `--`."""
     remaps: list[tuple[str, str]] = []
     parameters: list[tuple[str, str]] = []
     files: list[str] = []

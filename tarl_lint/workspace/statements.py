@@ -467,7 +467,7 @@ def _arguments(function: Function, args: list[Any], keywords: dict[str, Any]) ->
 
 
 def _yields(node: ast.AST) -> bool:
-    """Return whether a function has `yield` itself."""
+    """Return whether a function contains `yield`, apart from the functions inside it."""
     pending = list(ast.iter_child_nodes(node))
     while pending:
         one = pending.pop()
