@@ -9,7 +9,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """The effect of one function. A number is the position of an argument, a name its keyword."""
+    """The effect of one function. Arguments are given by position (a number) or by keyword (a name)."""
 
     kind: str
     api: str

@@ -29,11 +29,11 @@ class OfFlow:
 
     @property
     def code(self) -> str:
-        """Return the rule of the flow's kind."""
+        """Return the code of the rule for the flow's kind."""
         return CODES[self.kind]
 
     def texts(self) -> tuple[str, ...]:
-        """Return package, class, source, callback, sink, place and kind."""
+        """Return the texts that identify the flow: package, class, source, callback, sink, place, kind."""
         return (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
 
     def digest(self) -> str:
@@ -52,11 +52,11 @@ class OfHazard:
 
     @property
     def code(self) -> str:
-        """Return the rule."""
+        """Return the code of the hazard's rule."""
         return self.rule
 
     def texts(self) -> tuple[str, ...]:
-        """Return package, rule, subject and place."""
+        """Return the texts that identify the hazard: package, rule, subject, place."""
         return (self.package, self.rule, self.about, self.place)
 
     def digest(self) -> str:

@@ -50,7 +50,7 @@ class Launched:
         return dict(self.parameters)
 
     def value(self, name: str) -> Any:
-        """Return the value of a parameter by its name in the code; else a mapping of those below it, or DEFAULT."""
+        """Return a parameter by its name in the code: its value, a mapping of the parameters below it, or DEFAULT."""
         for place in places(name, self.name):
             if place in self._values:
                 return self._values[place]

@@ -58,7 +58,7 @@ def document(result: Result) -> dict[str, Any]:
 
 
 def _outside(result: Result) -> dict[str, Any]:
-    """Return the analysed installed packages and the classes at which flows ended; a key is left out if it has none."""
+    """Return the analysed installed packages and the classes at which flows ended; empty keys are left out."""
     found = {"followed": list(result.followed), "opaque": list(result.ended)}
     return {key: names for key, names in found.items() if names}
 

@@ -98,7 +98,7 @@ class Cache:
         return frozenset()
 
     def keep(self, scripts: Sequence[Script], readings: Mapping[str, Reading], report: Report) -> None:
-        """Keep what the analysis of a report has read, if `adapts`."""
+        """Keep what the analysis has read to make a report, if the cache `adapts` reports."""
 
     def entry(self, key: str) -> Any:
         """Return what is stored under a key; None if there is nothing."""
