@@ -9,6 +9,7 @@ from tarl_lint.files import shown
 from tarl_lint.model import Finding, Step
 from tarl_lint.report.line import Glyphs, Line, Style, View, location
 from tarl_lint.system.chains import chains, slashed
+from tarl_lint.system.details import details
 from tarl_lint.system.model import Chain, Hop, Instance, Role, System
 
 HEADINGS: Final = ("node", "program", "subscribes", "publishes")
@@ -75,6 +76,9 @@ def _table(system: System, glyphs: Glyphs) -> Iterator[Line]:
     for number, row in enumerate(counted):
         text = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
         yield ((text, "quiet" if not number or len(row) < len(HEADINGS) else ""),)
+        more = details(system.instances[number - 1], glyphs) if number else ""
+        if more:
+            yield ((f"  {more}", "quiet"),)
 
 
 def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
@@ -83,8 +87,7 @@ def _row(instance: Instance, glyphs: Glyphs) -> tuple[str, ...]:
     where = f"{node.package}/{node.executable}" if node.package else node.executable
     name = f"{instance.name} ({node.condition})" if node.condition else instance.name
     if instance.interface is None and not instance.seen:
-        uses = f"; remaps {', '.join(instance.touched)}" if instance.touched else ""
-        return name, where, f"not read: {instance.unread}{uses}"
+        return name, where, f"not read: {instance.unread}"
     where = f"{where} (C++, not read)" if instance.seen else where
     subscribed, published = ([name for name, _ in instance.named(role)] for role in _ROLES)
     return name, where, _listed(subscribed, glyphs), _listed(published, glyphs)

@@ -104,7 +104,7 @@ def test_a_node_whose_code_is_not_read_may_connect_the_topics_in_its_remappings(
     file = launched(workspace, relay("one", "/scan", "/raw") + driver + relay("two", "/safe", "/cmd_vel"))
     _, out, _ = run(capsys, "--launch", file)
     assert flows(out) == ["/scan → /one → /raw → [/mux, not read] → /safe → /two → /cmd_vel  not read"]
-    assert "not read: the package base is not in the workspace; remaps /raw, /safe" in out
+    assert "not read: the package base is not in the workspace\n  remaps i → /raw, o → /safe\n" in out
 
 
 def test_chains_can_be_queried_from_a_sensor_to_an_actuator(workspace, capsys):
@@ -325,6 +325,49 @@ def test_the_guide_matches_the_output(capsys, monkeypatch):
     command_line, _, expected = shown.partition("\n")
     monkeypatch.chdir(EXAMPLE)
     assert run(capsys, *command_line.split())[1] == expected + "\n"
+
+
+SERVER = """\
+#!/usr/bin/env python3
+import actionlib
+import rospy
+from control_msgs.msg import GripperCommandAction
+from std_srvs.srv import Empty, SetBool
+rospy.init_node("server")
+reset = rospy.ServiceProxy("reset", Empty)
+def enable(request):
+    reset()
+    return True, ""
+rospy.Service("enable", SetBool, enable)
+def grip(goal):
+    actions.set_succeeded()
+actions = actionlib.SimpleActionServer("grip", GripperCommandAction, grip, auto_start=False)
+actions.start()
+rospy.spin()
+"""
+
+
+def test_the_row_of_a_node_is_followed_by_its_remappings_parameters_services_and_actions(workspace, capsys):
+    write(workspace, {"arm/scripts/server.py": SERVER, "arm/config/limits.yaml": "pid: {p: 1.0, i: 0.1}\n"})
+    body = (
+        '<group ns="left"><node pkg="arm" type="server.py" name="server"><remap from="reset" to="/wheels/reset"/>'
+        '<rosparam file="$(find arm)/config/limits.yaml"/><param name="speed" value="0.4"/></node></group>'
+    )
+    _, out, _ = run(capsys, "--launch", launched(workspace, body))
+    row = next(number for number, line in enumerate(out.splitlines()) if line.startswith("/left/server"))
+    assert out.splitlines()[row + 1] == (
+        "  remaps reset → /wheels/reset; 3 parameters from arm/config/limits.yaml, arm/launch/a.launch;"
+        " serves /left/enable; calls /wheels/reset; action server of /left/grip"
+    )
+
+
+def test_parameters_whose_file_cannot_be_read_are_not_counted(workspace, capsys):
+    write(workspace, {"arm/config/limits.yaml": "pid: [1.0\n"})
+    body = (
+        '<node pkg="arm" type="relay.py" name="one"><rosparam file="$(find arm)/config/limits.yaml"/></node>'
+    )
+    _, out, _ = run(capsys, "--launch", launched(workspace, body))
+    assert "\n  parameters from arm/config/limits.yaml\n" in out
 
 
 CPP = """\
