@@ -5,8 +5,8 @@ warning. For example, one filter used two unsuitable defaults, because the names
 those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
 In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not for `/robot/gate`, so a node that is
-started in a namespace gets none of the values. This is reported if the node has the name of the section, and no other
-section of the file gives it these parameters.
+started in a namespace gets none of the values. This is reported if the section states no namespace, the node has its
+name, and no other section of the file gives it these parameters.
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program reads
 parameters only by literal names. A parameter that a group sets for all its nodes is reported if none of them has it.
@@ -146,12 +146,13 @@ def findings(system: System) -> Iterator[Finding]:
 
 
 def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]:
-    """Yield a hazard for each section that has the name of a node, but not its namespace."""
+    """Yield a hazard for each section without a namespace that has the name of a node in a namespace."""
     named = list(sections(_parsed(setting)))
     for pattern, values in named:
-        if is_wildcard(pattern) or any(matches(pattern, one.name) for one in instances):
+        own = pattern.strip("/")
+        # a section with a namespace is meant for that namespace, which another launch file may use
+        if "/" in own or is_wildcard(pattern) or any(matches(pattern, one.name) for one in instances):
             continue
-        own = pattern.strip("/").rpartition("/")[2]
         meant = next(
             (one for one in instances if one.name.rpartition("/")[2] == own and "$(" not in one.name), None
         )
@@ -162,7 +163,7 @@ def _elsewhere(setting: Setting, instances: list[Instance]) -> Iterator[Finding]
         if lost:
             shown = f"{', '.join(lost[:3])}{' …' if len(lost) > 3 else ''}"
             message = (f"{meant.name} does not get {shown}: the section {pattern} of {setting.file.name} is for "
-                       f"/{pattern.strip('/')}; name it {meant.name} or /**/{own}")  # fmt: skip
+                       f"/{own}; name it {meant.name} or /**/{own}")  # fmt: skip
             yield at_node(CODE, meant, message, f"{pattern} in {setting.file.name}")
 
 
