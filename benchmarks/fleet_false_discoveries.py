@@ -31,7 +31,7 @@ from pytest_tarl.monitoring.scores import Scale, binned
 from pytest_tarl.seeds import generator
 
 Q = 0.05
-SHARE = 10  # one robot in this many drifts
+SHARE = 10  # one robot in `SHARE` is affected by the drift
 METHODS = ("missions differ", "below a bound", "z-score")
 
 

@@ -37,7 +37,7 @@ from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
 DIRECTIONS = 2  # maximum number of failures to repair that vary one direction; the nearest are chosen
-COMBINATIONS = 1  # maximum number of failures to repair that vary several directions at once
+COMBINATIONS = 1  # maximum number of failures in several directions at once that are repaired
 DRAWS = 60  # number of fresh draws from the whole space
 CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses reward or successes
 

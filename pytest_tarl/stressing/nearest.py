@@ -232,7 +232,7 @@ class Nearest:
         return [found[place] for place in places if place < len(found)]
 
     def _clearly_fails(self, point: Point) -> bool:
-        """Return whether the episodes at a point alone show a failure clearly, without the model."""
+        """Return whether a point's own episodes clearly show a failure, without the help of the model."""
         margin, spread = self.evaluator.measured(point)
         return margin + CLEAR * spread < 0.0
 

@@ -175,7 +175,7 @@ class Prediction:
 
     @one_thread
     def moments(self, vectors: Vector) -> tuple[Vector, Vector]:
-        """Return the means and standard deviations of the margins at vectors, each of shape (drifts,)."""
+        """Return the means and the standard deviations of the margins at vectors, as two arrays of shape (drifts,)."""
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         margins: Vector = np.maximum(1.0 - mean, LOWEST)
         if self._rates is not None:

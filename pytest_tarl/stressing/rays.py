@@ -27,7 +27,7 @@ class Ray:
 
     @property
     def continuous(self) -> bool:
-        """Return whether every t gives a different point; a ray to an option only has its end."""
+        """Return whether every t gives a different point; on a ray to an option, all t above 0 give the same point."""
         return not any(isinstance(self.space.extents[name], Choice) for name in self.names)
 
     @property

@@ -191,7 +191,7 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
 
 
 def base_layer(frame: Frame) -> int:
-    """Return the number of layers below the frame's."""
+    """Return the number of layers below those of the frame."""
     return frame.depth_of_layers
 
 

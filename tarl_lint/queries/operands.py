@@ -18,7 +18,7 @@ NOT_BEHAVIOUR: Final = frozenset(
 )  # fmt: skip
 TIMING: Final = frozenset(
     ["sleep", "Rate", "create_rate", "create_timer", "Timer"]
-)  # names of calls whose first argument is a time
+)  # names of calls whose first argument is a duration or a frequency
 PERIODS: Final = frozenset(["period", "timer_period_sec", "seconds", "secs", "hz", "frequency"])
 PARAMETER_CALLS: Final = frozenset(["get_param"])
 READING: Final = frozenset(["get", "getattr"])  # calls that read a stored value

@@ -5,9 +5,9 @@ and share their parameters and services, so a request reaches one of them by cha
 stack could not be started with one combination of arguments, because two nodes were named `to_pose_array`
 (https://github.com/strands-project/strands_perception_people/issues/212).
 
-Names are compared with their namespaces. Two nodes named `$(anon view)` in one file also get the same name. The rule
-does not cover nodes without a name whose program was not read, nodes that an event starts, and nodes that are started
-under a condition known only on the robot, because one of them may replace the other.
+Names are compared in full, including the namespace. Two nodes named `$(anon view)` in one file also get the same
+name. The rule does not cover nodes without a name whose program was not read, nodes that an event starts, and nodes
+that are started under a condition known only on the robot, because one of them may replace the other.
 """
 
 from __future__ import annotations

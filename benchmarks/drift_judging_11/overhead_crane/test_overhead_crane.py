@@ -32,7 +32,7 @@ class Hall:
 
     @property
     def done(self):
-        """Return whether the load hangs still at the goal."""
+        """Return whether the load hangs still at the goal, or the episode has failed."""
         return bool(self.failure) or self.still >= 25
 
     def publish(self, bus):

@@ -32,7 +32,7 @@ class PillCounter(object):
         rospy.Subscriber("eye/count", Int32, self.on_count)
 
     def on_order(self, msg):
-        """A new vial has its order; 0 means that there is no vial."""
+        """Receive the number of pills ordered for the vial in place; 0 means that there is no vial."""
         if msg.data != self.order:
             now = rospy.get_time()
             self.order = msg.data
