@@ -21,7 +21,7 @@ INWARD = None  # marks a step between the first ones, 2.2 and 0.4
 STEPS: tuple[tuple[float, float | None], ...] = (
     *((1.5, INWARD), (0.65, INWARD), (5.0, 2.2), (0.15, 0.4), (1.22, INWARD), (0.82, INWARD)),
     *((1.35, INWARD), (0.74, INWARD), (10.0, 5.0), (0.05, 0.15), (1.75, INWARD), (0.55, INWARD)),
-    *((1.28, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
+    *((1.285, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
 

@@ -22,7 +22,8 @@ def parsed(text: str) -> object:
     [
         ("/**", "/robot/gate", True),
         ("**", "/gate", True),
-        ("gate", "/robot/gate", True),
+        ("gate", "/robot/gate", False),
+        ("gate", "/gate", True),
         ("/robot/gate", "/robot/gate", True),
         ("/other/gate", "/robot/gate", False),
         ("/*/gate", "/robot/gate", True),

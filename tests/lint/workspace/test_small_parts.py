@@ -11,6 +11,7 @@ from tarl_lint.workspace.cmake import cmake, commands
 from tarl_lint.workspace.executables import has_shebang, is_python, module_file
 from tarl_lint.workspace.launch_entities import substitutions
 from tarl_lint.workspace.launch_values import (
+    Anonymous,
     Choice,
     Comparison,
     Configuration,
@@ -40,7 +41,7 @@ from tarl_lint.workspace.substitutions import SymbolicError, scalar
         ("$(find-pkg-share p)/x", Joined((Package("p"), "/x"))),
         ("$(dirname)", Here(whole=False)),
         ("$(filename)", Here(whole=True)),
-        ("$(anon n)", "n"),
+        ("$(anon n)", Anonymous("n")),
         ("$(env A)", OnRobot("env A", None)),
         ("$(env A d)", OnRobot("env A d", "d")),
         ("$(optenv A)", OnRobot("optenv A", "")),
