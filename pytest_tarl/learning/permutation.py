@@ -99,6 +99,8 @@ def _p_values(
     """Return one-sided p-values, shape (counts,).
 
     `reached` receives the sums of some shuffles and returns how many of them reach the observed value, for each
+    statistic.
+
     More than PERMUTATIONS shuffles only matter for p-values that stay significant after a correction over many
     comparisons. If the smallest p-value is at least SETTLED after that many, the remaining shuffles are skipped.
     Skipping never creates a p-value below SETTLED.
