@@ -176,7 +176,8 @@ class Uniform:
 class Process:
     """A peer in its own process and environment.
 
-    It writes a point and reads the point's cost, each as a line of JSON.
+    It writes a point and reads the point's cost, each as a line of JSON. If it ends with an error, the points that it
+    asked for before that count.
     """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:
@@ -186,6 +187,7 @@ class Process:
         self.process = Popen(words, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, text=True)
         self.script = script
         self.until = monotonic() + seconds
+        self.asked = 0
 
     def ask(self) -> Sequence[float] | None:
         """Return the next point, or None after the last one or when the time is up."""
@@ -195,7 +197,11 @@ class Process:
             return None
         line = self.process.stdout.readline()
         if not line and self.process.wait() != 0:
-            raise SystemExit(f"{self.script} ended with status {self.process.returncode}")
+            ended = f"{self.script} ended with status {self.process.returncode} after {self.asked} points"
+            if not self.asked:
+                raise SystemExit(ended)
+            print(ended, file=sys.stderr, flush=True)
+        self.asked += 1
         return json.loads(line) if line else None
 
     def tell(self, point: Sequence[float], cost: float) -> None:  # noqa: ARG002
