@@ -55,6 +55,13 @@ class Ledger:
         """Return the entry of an equal or nearly equal candidate, or None if there is none."""
         return next((one for one in self.tried if alike(one.candidate, candidate)), None)
 
+    def examined(self, candidate: Candidate) -> bool:
+        """Return whether exactly these values were examined under this guard, at any place in the source."""
+        return any(
+            one.candidate.guard == candidate.guard and one.candidate.changes == candidate.changes
+            for one in self.tried
+        )
+
     def tests(self, candidate: Candidate) -> int:
         """Return the number of tests spent on candidates of the same operands."""
         mine = operands(candidate)

@@ -100,17 +100,10 @@ class Others:
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
             for other in (*self._between(refused), *neighbours(refused, self.mutants.mutate)):
-                if not self._examined(other) and self._mends(other, refused, trials):
+                if not self.ledger.examined(other) and self._mends(other, refused, trials):
                     self.chosen.add(other)
                     yield other
                     break
-
-    def _examined(self, candidate: Candidate) -> bool:
-        """Return whether exactly these values were examined under this guard."""
-        return any(
-            one.candidate.guard == candidate.guard and one.candidate.changes == candidate.changes
-            for one in self.ledger.tried
-        )
 
     def recentred(self, refused: Candidate, trials: Trials) -> OtherValues:
         """Propose the best value near a refused one whose missions succeed but earn too little in its test.

@@ -68,7 +68,7 @@ class Structures:
         """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
         known, places = templates(self.order.root), list(spots(self.order, self.responding))
         told = self._told(known, places)
-        near = self._responding(known, places)
+        near = self._at_the_best(known, places)
         groups = [group for group in (told, near) if group] + self._groups(known, places)
         whole = self.trials.budget
         sizes = [len(operands) for operands in groups]
@@ -162,7 +162,7 @@ class Structures:
                         found += [] if _fixed(form) else [operand]
         return found
 
-    def _responding(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
+    def _at_the_best(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
         """Return the operands of the templates that need no sensor at the statement that responds most."""
         here = [spot for spot in among if str(spot.site) in self.responding[:1]]
         fitting = [one for one in known if one.on not in OF_SENSORS]

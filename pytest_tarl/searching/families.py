@@ -29,13 +29,12 @@ _ENTRY = re.compile(r"""\[\s*(?:-?\d+|"[^"\]]*"|'[^'\]]*')\s*\]$""")
 
 def families(apart: Sequence[Unit]) -> tuple[Unit, ...]:
     """Return a unit for each family among the named constants, in the order of its first constant."""
-    groups: dict[tuple[str, str, str], list[Operand]] = {}
+    groups: dict[tuple[str, str], list[Operand]] = {}
     for unit in apart:
         if unit.chart is None and kind(unit) is Oddness.NAMED:
             for operand in unit.operands:
-                key = (operand.span.path, operand.site.module, shared_name(operand.code))
-                groups.setdefault(key, []).append(operand)
-    return tuple(Unit(tuple(members)) for key, members in groups.items() if key[2] and _alike(members))
+                groups.setdefault((operand.span.path, shared_name(operand.code)), []).append(operand)
+    return tuple(Unit(tuple(members)) for (_, name), members in groups.items() if name and _alike(members))
 
 
 def shared_name(code: str) -> str:

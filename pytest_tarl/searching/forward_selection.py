@@ -249,9 +249,9 @@ class ForwardSelection:
         Unlike in a combination, failed missions count by their reward: near a narrow range, some missions fail.
         """
         base = Joint(((unit, factor),), guard)
-        ran = self.trials.totals_of(base.candidate(self.mutate), self.goal.pairs)
-        gained = self.trials.gain(base.candidate(self.mutate), self.goal.pairs) if ran else 0.0
-        if len(ran) < KNOWN or gained < MUCH * self.goal.wanted:
+        begin, pairs = base.candidate(self.mutate), self.goal.pairs
+        ran = self.trials.totals_of(begin, pairs)
+        if len(ran) < KNOWN or self.trials.gain(begin, pairs) < MUCH * self.goal.wanted:
             return
 
         def earned(factors: Factors, seed: int) -> float | None:

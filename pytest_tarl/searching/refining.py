@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import sqrt
 
-# ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (larger step, smaller step that must not have reduced the reward)
+# ratio of the next factor to the outermost one (or the reverse), if the outermost factor is the best
 OUTWARD = 2.3
 FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
