@@ -42,12 +42,10 @@ SURE = 0.5
 # number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
 CLEAR = 4.0
 GENERATED = 24  # maximum number of drifts from Hypothesis
-ROUNDS, EXPLORED = (
-    24,
-    4,
-)  # number of rounds of the first search; number of drifts explored in each without the model
-# number of drifts that the model chooses in each round; number of candidates for each choice
-GUIDED, AMONG = 4, 4
+ROUNDS = 24  # number of rounds of the first search
+EXPLORED = 4  # number of drifts that each round explores without the model
+GUIDED = 4  # number of drifts that the model chooses in each round
+AMONG = 4  # number of candidates for each such choice
 HOPE = 1.0  # number of standard deviations of the model that count in favour of a drift
 DESCENDED = 2  # number of drifts near the best one that are tried in each round
 AGAIN = 4  # number of rounds of the search that follows the single directions
