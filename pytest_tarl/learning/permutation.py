@@ -1,5 +1,8 @@
 """Permutation tests of the hypothesis that two groups of episodes are exchangeable.
 
+The tests use all groups if these are at most as many as the shuffles, so that small samples reach their smallest
+possible p-value. Otherwise, they use random groups.
+
 P-values are corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young
 1993).
 """
@@ -11,6 +14,7 @@ from math import ceil, comb
 
 import numpy as np
 
+from pytest_tarl.learning.enumeration import enumerable, other_groups
 from pytest_tarl.learning.tables import Floats, Ints
 
 PERMUTATIONS = 999
@@ -125,14 +129,27 @@ def observed_sum(values: Floats, first: int) -> Floats:
 def shuffled_sums(
     values: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> Iterator[Floats]:
-    """Yield sums over random groups of `first` rows, for several shuffles at once, shape (shuffles, ...).
+    """Yield sums over groups of `first` rows, for several groups at once, shape (groups, ...).
 
-    `values` has shape (rows, ...). A shuffle draws a random number for each row and picks the rows with the smallest
-    numbers.
+    `values` has shape (rows, ...). If there are at most as many groups as `permutations`, besides that of the first
+    rows, each of these is used once. Otherwise, each shuffle draws a random number for each row and picks the rows with
+    the smallest numbers.
     """
+    if enumerable(len(values), first, permutations):
+        groups = other_groups(len(values), first)
+        for done in range(0, len(groups), AT_ONCE):
+            yield _picked(groups[done : done + AT_ONCE], len(values)) @ values
+        return
     for done in range(0, permutations, AT_ONCE):
         draws = generator.random((min(AT_ONCE, permutations - done), len(values)))
         yield _smallest(draws, first) @ values
+
+
+def _picked(groups: Ints, rows: int) -> Floats:
+    """Return 1 for the rows of each group, which has shape (groups, chosen), and 0 for the others."""
+    picked = np.zeros((len(groups), rows))
+    np.put_along_axis(picked, groups, 1.0, axis=1)
+    return picked
 
 
 def _smallest(draws: Floats, first: int) -> Floats:

@@ -11,6 +11,7 @@ from math import ceil, inf
 
 import numpy as np
 
+from pytest_tarl.learning.enumeration import enumerable, other_groups
 from pytest_tarl.learning.permutation import ARITHMETIC
 from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
@@ -51,7 +52,12 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=8)
 def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
-    """Return the rows that form the first group in each shuffle, shape (shuffles, chosen)."""
+    """Return the rows that form the first group in each shuffle, shape (groups, chosen).
+
+    The observed group is left out. There are fewer groups than shuffles if the samples have no more groups.
+    """
+    if enumerable(rows, chosen, shuffles):
+        return other_groups(rows, chosen)
     draws = generator(0, f"shifts/{rows}/{chosen}")
     parts = [
         np.argpartition(draws.random((min(AT_ONCE, shuffles - done), rows)), chosen - 1, axis=1)[:, :chosen]

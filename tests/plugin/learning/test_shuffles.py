@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
 from pytest_tarl.learning import permutation
 from pytest_tarl.learning import shifts as shifting
-from pytest_tarl.learning.permutation import max_statistic, observed_sum, permuted_loss, shuffled_sums
+from pytest_tarl.learning.permutation import (
+    least_p_value,
+    max_statistic,
+    observed_sum,
+    permuted_loss,
+    shuffled_sums,
+)
 from pytest_tarl.seeds import generator
 
 
@@ -23,7 +31,7 @@ class Tied:
 
 @pytest.mark.parametrize("kind", ["distinct", "tied"])
 def test_each_shuffle_sums_as_many_rows_as_the_group_has(kind: str) -> None:
-    for seed, (rows, first) in enumerate([(2, 1), (9, 4), (70, 69), (40, 3)]):
+    for seed, (rows, first) in enumerate([(12, 5), (400, 399), (400, 1), (40, 3)]):
         draws = Tied(seed) if kind == "tied" else generator(seed, "draws")
         values = np.stack([np.ones(rows), np.arange(rows, dtype=float)], axis=1)
         sums = np.concatenate([*shuffled_sums(values, first, draws, 150)])  # type: ignore[arg-type]
@@ -77,6 +85,36 @@ def test_p_values_below_the_level_stay_the_same_if_undecisive_shuffles_are_left_
         if min(few[1:]) < 0.2:
             assert few[1:] == every[1:]
     assert 5 < left_out < 30
+
+
+@pytest.mark.parametrize(("offline", "online"), [(1, 1), (4, 2), (6, 2), (3, 3), (5, 5), (9, 1)])
+def test_small_samples_are_compared_in_every_group_that_they_can_form(offline: int, online: int) -> None:
+    for seed in range(3):
+        rng = generator(seed, "small")
+        one, other = rng.normal(0.0, 1.0, offline), rng.normal(-0.7, 1.0, online).round(1)
+        pooled = np.concatenate((other, one))
+        sums = np.array([pooled[list(rows)].sum() for rows in combinations(range(pooled.size), online)])
+        wanted = (sums <= sums[0] + 1e-9).mean()
+        for draws in (generator(1, "any"), generator(2, "any")):
+            assert permuted_loss(one, other, draws) == pytest.approx(wanted)
+            apart = np.abs(sums - sums.mean())
+            both_sides = (apart >= apart[0] - 1e-9).mean()
+            assert max_statistic(pooled[:, None], online, draws)[0] == pytest.approx(both_sides)
+
+
+@pytest.mark.parametrize(("offline", "online"), [(6, 2), (2, 6), (9, 3), (30, 1), (11, 4)])
+def test_completely_separate_samples_have_the_smallest_possible_p_value(offline: int, online: int) -> None:
+    one, other = 10.0 + np.arange(offline), np.arange(online) * 1.0
+    p_value = permuted_loss(one, other, generator(0, "apart"))
+    assert p_value == pytest.approx(least_p_value(offline, online, permutation.PERMUTATIONS))
+
+
+@pytest.mark.parametrize(("rows", "chosen"), [(5, 2), (8, 3), (40, 2)])
+def test_intervals_of_shifts_enumerate_the_groups_of_small_samples(rows: int, chosen: int) -> None:
+    drawn = shifting._drawn(rows, chosen, 999)
+    expected = [list(one) for one in combinations(range(rows), chosen)][1:]
+    assert drawn.tolist() == expected
+    assert len(shifting._drawn(rows, chosen, len(expected) - 1)) == len(expected) - 1
 
 
 @pytest.mark.parametrize("kind", ["normal", "binary", "skewed", "rounded"])

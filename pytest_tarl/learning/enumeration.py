@@ -1,0 +1,28 @@
+"""All groups that a permutation test can form, for samples with few enough of them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import chain, combinations
+from math import comb
+
+import numpy as np
+
+from pytest_tarl.learning.tables import Ints
+
+
+def enumerable(rows: int, chosen: int, shuffles: int) -> bool:
+    """Return whether the groups of `chosen` rows, without the observed one, are at most as many as the shuffles."""
+    return comb(rows, chosen) - 1 <= shuffles
+
+
+@lru_cache(maxsize=8)
+def other_groups(rows: int, chosen: int) -> Ints:
+    """Return the rows of each group except that of the first rows, shape (groups - 1, chosen).
+
+    A permutation test over these groups and the observed one is exact, and its smallest p-value is 1 / groups.
+    """
+    members = chain.from_iterable(combinations(range(rows), chosen))
+    groups = np.fromiter(members, np.int64, comb(rows, chosen) * chosen).reshape(-1, chosen)[1:]
+    groups.flags.writeable = False  # shared by all callers
+    return groups
