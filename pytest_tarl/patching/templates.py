@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ else:  # pragma: no cover
 
 SHIPPED = Path(__file__).parent.parent / "templates"
 OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
-KINDS = ("value", "input", "comparison", "pair", "sent", "sensor", "sent by sensor")
+KINDS = ("value", "input", "number", "comparison", "pair", "sent", "sensor", "sent by sensor")
 OF_SENSORS = ("sensor", "sent by sensor")  # kinds that are tried with each numeric sensor
 SCALES = (  # units of a parameter's default
     "",  # the default is used unscaled
@@ -31,10 +32,17 @@ SCALES = (  # units of a parameter's default
 )
 FIXED = "designed"  # parameters with this scale stay fixed in the search
 STRONGER = ("larger", "smaller")
+WITHOUT = (
+    "",
+    "factor",
+    "term",
+)  # constants that an expression must not have, since they can be changed instead
 # placeholders of comparisons: the operator, its form with or without equality, its reverse
 OPERATORS = ("op", "closed", "back")
-_KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
+_KEYS = {"summary", "on", "without", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
+_ADDED = re.compile(r"\+ \{(\w+)\}$")
+_NEGATIVE = re.compile(r"-([0-9][0-9.e+-]*)")
 LEADING = {
     "*": TERM,
     "+": ARITHMETIC,
@@ -45,7 +53,7 @@ LEADING = {
 class Parameter:
     """A parameter to search, with its start value; `stronger` says whether larger or smaller values have more effect.
 
-    With a `grid`, only multiples of it are tried.
+    With a `grid`, only multiples of it are tried. A `signed` parameter may change its sign.
     """
 
     name: str
@@ -53,6 +61,7 @@ class Parameter:
     of: str = ""
     stronger: str = "larger"
     grid: float = 0.0
+    signed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +76,7 @@ class Template:
     lines: tuple[str, ...] = ()
     state: tuple[tuple[str, str], ...] = ()
     parameters: tuple[Parameter, ...] = ()
+    without: str = ""
 
     def uses(self, placeholder: str) -> int:
         """Return how often a placeholder occurs in the lines and the expression."""
@@ -94,6 +104,7 @@ def template(path: Path) -> Template:
                 one.get("of", ""),
                 one.get("stronger", STRONGER[0]),
                 float(one.get("grid", 0.0)),
+                bool(one.get("signed", False)),
             )
             for name, one in data.get("parameters", {}).items()
         )
@@ -106,6 +117,7 @@ def template(path: Path) -> Template:
             tuple(map(str, data.get("lines", ()))),
             tuple((name, str(initial)) for name, initial in data.get("state", {}).items()),
             parameters,
+            str(data.get("without", "")),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise SettingsError(
@@ -114,6 +126,8 @@ def template(path: Path) -> Template:
         ) from problem
     if made.on not in KINDS:
         raise SettingsError(f"{path}: on = {made.on!r} is unknown; use one of {', '.join(KINDS)}.")
+    if made.without not in WITHOUT:
+        raise SettingsError(f"{path}: without = {made.without!r} is unknown; use factor or term, or omit it.")
     _check_placeholders(path, made)
     return made
 
@@ -138,7 +152,13 @@ def filled(text: str, values: Mapping[str, str]) -> str:
         first = before in ("", "(", ",")
         return code if free else enclosed(code, LEADING.get(after, ATOM) if first else ATOM)
 
-    return _PLACEHOLDER.sub(put, text)
+    return _PLACEHOLDER.sub(put, _ADDED.sub(partial(_subtracted, values), text))
+
+
+def _subtracted(values: Mapping[str, str], match: re.Match[str]) -> str:
+    """Return `- 0.2` for an added placeholder of the value -0.2, else the unchanged text."""
+    negative = _NEGATIVE.fullmatch(values.get(match[1], ""))
+    return f"- {negative[1]}" if negative else match[0]
 
 
 def plainly(text: str, values: Mapping[str, str]) -> str:

@@ -27,18 +27,23 @@ from tarl_lint.model import Operand, Span
 MOST = {
     "value": 5,
     "input": 3,
+    "number": 5,
     "comparison": 5,
     "pair": 4,
     "sent": 3,
     "sensor": 3,
     "sent by sensor": 2,
 }  # maximum number of expressions at which to try a template, by the template's kind
+COMMANDED = ("stored", "sent")  # kinds of expressions that go into a published message
+NUMBERS = ("value", "input", "stored", "sent")  # kinds of expressions that templates for any number fit
 RESPONDS = 0.2  # minimum gain of a constant whose statement responds, as a share of the wanted gain
 FIRST = 2  # number of expressions tried first: the one ranked first, and the one nearest to a publish call
 CLAMPS = ("clamp", "clip", "saturate", "constrain")
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
+COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
+LEAST_EACH = 4  # minimum number of episodes for each of these changes, but never more than a third of those left
 
 
 class Structures:
@@ -47,7 +52,8 @@ class Structures:
     Templates of equal cost form a group. A group gets a part of the episodes, in proportion to its number of
     parameters. If one of its templates gains much, the group also gets half of the episodes left for the other groups.
     The statements whose constants gained come first (`effects`, by the statement's id), and the best of them has a
-    group of its own.
+    group of its own. Changes of a whole command by a gain or an offset come before all others, because they compensate
+    for an actuator whatever the node computes.
     """
 
     def __init__(
@@ -68,8 +74,9 @@ class Structures:
         """Yield confirmed candidates, cheap templates first. Raise BudgetSpentError."""
         known, places = templates(self.order.root), list(spots(self.order, self.responding))
         told = self._told(known, places)
+        sent = self._at_commands(known, places)
         near = self._at_the_best(known, places)
-        groups = [group for group in (told, near) if group] + self._groups(known, places)
+        groups = [group for group in (told, sent, near) if group] + self._groups(known, places)
         whole = self.trials.budget
         sizes = [len(operands) for operands in groups]
         for number, operands in enumerate(groups):
@@ -89,6 +96,8 @@ class Structures:
             share = left * sizes[number] // sum(sizes[number:])
             if operands is told:
                 share = min(max(share, LEAST), left // 3)
+            elif operands is sent:
+                share = min(max(share, LEAST_EACH * len(sent)), left // 3)
             elif operands is near:
                 share = max(share, left // 2)
             self.trials.budget = self.trials.spent + share
@@ -126,13 +135,15 @@ class Structures:
             return Mutation(operand, True, form=form)
         if factor == 1.0 and form.parameter != form.defaults[0][0]:
             return None  # factor 1 is the same change for all parameters, so only the first one proposes it
-        grid = next((one.grid for one in form.template.parameters if one.name == form.parameter), 0.0)
+        mine = next((one for one in form.template.parameters if one.name == form.parameter), None)
+        grid = mine.grid if mine is not None else 0.0
         if grid:  # only a first parameter has a grid, so factor 1 was proposed before
             start = dict(form.defaults)[form.parameter]
             factor = round(start * factor / grid) * grid / start
             if not factor:
                 return None
-        return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
+        signed = form.template.on == "sensor" or (mine is not None and mine.signed)
+        return Mutation(operand, factor, form=form) if factor > 0 or signed else None
 
     def weaker(self, operand: Operand, factor: float) -> bool:
         """Return whether a factor on a parameter makes the structural change weaker."""
@@ -162,6 +173,12 @@ class Structures:
                         found += [] if _fixed(form) else [operand]
         return found
 
+    def _at_commands(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
+        """Return the operands of the templates for any number at the values that are published."""
+        nearest = sorted((spot for spot in among if spot.kind in COMMANDED), key=lambda spot: spot.away)
+        fitting = [one for one in known if one.on == "number"]
+        return [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
+
     def _at_the_best(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
         """Return the operands of the templates that need no sensor at the statement that responds most."""
         here = [spot for spot in among if str(spot.site) in self.responding[:1]]
@@ -176,10 +193,10 @@ class Structures:
                 groups += [operands] if operands else []
         return groups
 
-    def _at(self, template: Template, among: Sequence[Spot], first: bool) -> Iterator[Operand]:
-        """Yield a template's operands at the first expressions, or else at all later ones; store their forms."""
+    def _at(self, template: Template, among: Sequence[Spot], first: bool | None) -> Iterator[Operand]:
+        """Yield a template's operands at the first expressions, at all later ones, or at all; store their forms."""
         for number, forms in enumerate(_forms(self.order, template, among)):
-            if (number < FIRST) == first:
+            if first is None or (number < FIRST) == first:
                 for operand, form in forms:
                     if operand not in self._found:
                         self._found[operand] = form
@@ -229,6 +246,12 @@ def _fitting(template: Template, among: Sequence[Spot]) -> list[Spot]:
     """Return the expressions that a template fits, in the order to try them."""
     if template.on.startswith("sent"):
         return [spot for spot in among if spot.kind == "sent" or (spot.kind == "value" and not spot.away)]
+    if template.on == "number":
+        return [
+            spot
+            for spot in among
+            if spot.kind in NUMBERS and spot.numeric and template.without not in spot.constants
+        ]
     kind = "value" if template.on == "sensor" else template.on
     fitting = [spot for spot in among if spot.kind == kind or (kind == "value" and spot.kind == "input")]
     if template.on == "sensor":

@@ -15,6 +15,10 @@ from pytest_tarl.repairing.typical_sizes import TypicalSizes, called, threshold
 from tarl_lint.model import SiteId, Span, Step
 
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
+_CHAINS: Mapping[str, tuple[type[ast.operator], ...]] = {
+    "factor": (ast.Mult, ast.Div),
+    "term": (ast.Add, ast.Sub),
+}
 _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
 
 
@@ -23,7 +27,8 @@ class Spot:
     """An expression of a kind to which a template may be applied.
 
     `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in the two
-    worlds. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
+    worlds. `constants` says which constants the expression has at its top level: a factor, a term. `numeric` says
+    whether its value is known to be a number, which is open only for published names. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
     topics, so that a template can read a sensor there.
     """
 
@@ -35,6 +40,8 @@ class Spot:
     larger: float
     away: int
     hears: bool
+    constants: frozenset[str] = frozenset()
+    numeric: bool = True
 
 
 def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
@@ -61,7 +68,10 @@ def spots(order: Order, responding: Sequence[str] = ()) -> Iterator[Spot]:
                     usual = sizes.of(step.site, node)
                     larger = max(usual, drifted.of(step.site, node))
                 hears = source.path in hearing
-                yield Spot(step.site, source, node, kind, usual, larger, away[step.site], hears)
+                numeric = kind != "sent" or sizes.known(step.site, node) is not None
+                codes = {one.code for one in order.analysis.operands(step.site)}
+                own = frozenset(constants(source, node, codes))
+                yield Spot(step.site, source, node, kind, usual, larger, away[step.site], hears, own, numeric)
 
 
 def _steps(order: Order, away: Mapping[SiteId, int], responding: Sequence[str]) -> list[Step]:
@@ -108,6 +118,8 @@ def _expressions(
                 yield value, "value"
             elif isinstance(value, ast.Attribute):
                 yield value, "input"
+            elif isinstance(value, ast.Name) and numeric and _stored(statement):
+                yield value, "stored"
         elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
             numbers = list(_passed(statement.value, returned))
             yield from ((each, "value") for each in numbers)
@@ -155,6 +167,32 @@ def _is_numeric(node: ast.expr) -> bool:
         name = ast.unparse(node.func)
         return name in _NUMERIC or name.startswith(("math.", "np.", "numpy."))
     return False
+
+
+def _stored(statement: ast.stmt) -> bool:
+    """Return whether a statement assigns to an attribute, such as a field of a message."""
+    return isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Attribute)
+
+
+def constants(source: Document, node: ast.expr, known: Collection[str]) -> Iterator[str]:
+    """Yield "factor" for each constant factor or divisor of an expression, and "term" for each constant summand.
+
+    `known` contains the code of named constants.
+    """
+    for name, operators in _CHAINS.items():
+        for each in _leaves(node, operators):
+            if isinstance(each, ast.Constant) or source.source(each) in known:
+                yield name
+
+
+def _leaves(node: ast.expr, operators: tuple[type[ast.operator], ...]) -> Iterator[ast.expr]:
+    """Yield the parts of an expression that these operators join; nothing if it has no such operator."""
+    if isinstance(node, ast.UnaryOp):
+        yield from _leaves(node.operand, operators)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, operators):
+        for part in (node.left, node.right):
+            yield part
+            yield from _leaves(part, operators)
 
 
 def _orders(op: ast.cmpop) -> bool:
