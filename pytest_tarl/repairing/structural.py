@@ -42,8 +42,11 @@ CLAMPS = ("clamp", "clip", "saturate", "constrain")
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
+KEPT = 0.6  # share of the episodes beyond a group's own that its candidates leave to the groups after it
 COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
-LEAST_EACH = 4  # minimum number of episodes for each of these changes, but never more than a third of those left
+LEAST_EACH = (
+    4  # minimum number of episodes for each of these changes, but never more than a third of those left
+)
 
 
 class Structures:
@@ -100,10 +103,13 @@ class Structures:
                 share = min(max(share, LEAST_EACH * len(sent)), left // 3)
             elif operands is near:
                 share = max(share, left // 2)
+            limit = whole if number == len(groups) - 1 else whole - int(KEPT * (left - share))
             self.trials.budget = self.trials.spent + share
             self.trials.reserve, self.trials.worth = (left - share) // 2, self.order.goal
             try:
                 for candidate in sweep.candidates():
+                    if self.trials.spent > limit:
+                        break
                     yield from self._beyond_its_share(candidate, whole)
             except BudgetSpentError:
                 if number == len(groups) - 1:

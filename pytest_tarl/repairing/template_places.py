@@ -27,9 +27,10 @@ class Spot:
     """An expression of a kind to which a template may be applied.
 
     `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in the two
-    worlds. `constants` says which constants the expression has at its top level: a factor, a term. `numeric` says
-    whether its value is known to be a number, which is open only for published names. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
-    topics, so that a template can read a sensor there.
+    worlds. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
+    topics, so that a template can read a sensor there. `constants` says which constants the expression has at its top
+    level: a factor, a term. `numeric` says whether its value is known to be a number; only for published names it may
+    be something else.
     """
 
     site: SiteId

@@ -90,6 +90,10 @@ def test_a_project_adds_its_own_templates_and_can_replace_built_in_ones(tmp_path
             "of = 'it' is unknown",
         ),
         (
+            'summary = "s"\non = "number"\nwithout = "sum"\ncost = 1\nexpression = "{x}"\n',
+            "without = 'sum' is unknown",
+        ),
+        (
             'summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nparameters = 3\n',
             "not a template",
         ),

@@ -10,6 +10,7 @@ import pytest
 
 from pytest_tarl.patching.document import document
 from pytest_tarl.repairing.template_places import Spot, _away, _expressions, _steps, pairs
+from pytest_tarl.repairing.template_places import constants as constants_of
 from tarl_lint.model import SiteId, Span
 
 
@@ -47,6 +48,9 @@ def found(
         ("x = message.data", True, [("message.data", "input")]),
         ("x = a", True, []),
         ("x: float", True, []),
+        ("m.x = a", True, [("a", "stored")]),
+        ("m.x = a", False, []),
+        ("m[0] = a", True, []),
         ("for i in a: pass", True, []),
         ("out.publish(a + b)", False, [("a + b", "value")]),
         ("out.publish(Float64(data=-a))", False, [("-a", "value")]),
@@ -76,6 +80,29 @@ def test_the_value_of_a_return_counts_and_only_the_line_of_the_statement() -> No
     assert found(text, line=3) == [("a - 1", "value")]
     assert found(text, line=2) == [("a + 1", "value")]
     assert found(text, line=1) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "constants"),
+    [
+        ("2 * a", {"factor"}),
+        ("a / 4", {"factor"}),
+        ("-(GAIN * a)", {"factor"}),
+        ("a * b * GAIN", {"factor"}),
+        ("a + 1", {"term"}),
+        ("a - GAIN * b", set()),
+        ("a - GAIN", {"term"}),
+        ("2 * a + 1", {"term"}),
+        ("f(2 * a)", set()),
+        ("a * b", set()),
+        ("a", set()),
+        ("GAIN", set()),
+    ],
+)
+def test_constants_at_the_top_level_of_an_expression_are_recognised(text: str, constants: set[str]) -> None:
+    source = document("a.py", f"x = {text}\n")
+    node = source.tree.body[0].value  # type: ignore[attr-defined]
+    assert set(constants_of(source, node, {"GAIN"})) == constants
 
 
 def site(name: str) -> Any:
