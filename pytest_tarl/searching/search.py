@@ -252,12 +252,18 @@ class Trials:
             raise BudgetSpentError
 
     def _come_far(self, goal: Goal) -> bool:
-        """Return whether any candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
+        """Return whether any candidate that ran on several seeds gained at least `FAR` of the wanted gain.
+
+        Missions that rejected candidates lost have other seeds than the goal's pairs. They are compared with the mean
+        of the pairs.
+        """
         before = {pair.seed: pair.total for pair in goal.pairs}
+        usual = fmean(before.values()) if before else goal.online
+        held = {pair.seed for pair in goal.controls}
         gains: dict[Candidate, list[float]] = {}
         for (candidate, seed), outcome in self._known.items() if self.reserve else ():
-            if seed in before:
-                gains.setdefault(candidate, []).append(outcome.total - before[seed])
+            if seed not in held:
+                gains.setdefault(candidate, []).append(outcome.total - before.get(seed, usual))
         return any(len(each) >= PAIRED and fmean(each) >= FAR * goal.wanted for each in gains.values())
 
 

@@ -25,7 +25,7 @@ from pytest_tarl.searching.search import (
 from tests.plugin.searching.test_search import operand
 
 PAIRS = tuple(Pair(seed, float(seed)) for seed in range(4))
-GOAL = Goal(PAIRS, near=8.0, enough=9.0, online=2.5)
+GOAL = Goal(PAIRS, near=8.0, enough=9.0, online=2.5, controls=(Pair(7, 9.0),))
 
 
 def candidate(factor: float, line: int = 3) -> Candidate:
@@ -111,6 +111,8 @@ def test_episodes_ahead_are_unknown_ones_that_the_budget_allows() -> None:
         ({ONE: {0: 4.4, 1: 5.5}}, False),
         ({ONE: {0: 9.0}, TWO: {1: 9.0}}, False),  # one seed each
         ({ONE: {0: 9.0, 7: 9.0}}, False),  # one of these missions lost nothing
+        ({ONE: {0: 9.0, 8: 9.0}}, True),  # a rejected candidate lost the second one
+        ({ONE: {0: 9.0, 8: -3.0}}, False),
     ],
 )
 def test_the_reserved_budget_is_released_once_a_candidate_gains_enough(
