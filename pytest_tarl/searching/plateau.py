@@ -1,9 +1,12 @@
-"""Steps to try while no change gains reward, because all missions that fail earn the same.
+"""Steps to try while no change gains reward, or a large one gains most, because missions that fail earn the same.
 
 Without a gradient, the search has to hit the range of good values. Most constants of a changed world are wrong by a
 factor of less than two, and good ranges are often narrow. Therefore finer and finer steps between the first ones (2.2
 and 0.4) are tried on named constants. In between, larger steps are tried on all constants whose smaller step did not
 reduce the reward.
+
+A large change that gains most is often only a way around the problem. Before it is combined with other changes,
+the inward steps are tried on the constants that matter, as far as a fixed number of episodes allows.
 """
 
 from __future__ import annotations
@@ -24,6 +27,25 @@ STEPS: tuple[tuple[float, float | None], ...] = (
     *((1.285, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
+NEARBY = (0.4, 2.2)  # the smallest and the largest factor of a change that is not large
+AROUND = 40  # maximum number of episodes for inward steps around large changes that gain
+AT_LEAST = 2  # minimum number of inward steps around large changes that gain
+
+
+def best_is_far(gains: Gains, guard: Guard) -> bool:
+    """Return whether a large change gains most reward under a guard."""
+    gained = [(gain, factor) for each in gains.under(guard).values() for factor, gain in each.items()]
+    gain, factor = max(gained, default=(0.0, 1.0))
+    return gain > gains.slack and not NEARBY[0] <= factor <= NEARBY[1]
+
+
+def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:
+    """Return the constants that matter, except offsets of zero, and the inward steps that may be tried on them."""
+    matter = [
+        unit for unit in units if unit.chart is None and gains.moves(unit) and kind(unit) < Oddness.OFFSET
+    ]
+    steps = [step for step, before in STEPS if before is INWARD]
+    return matter, steps[: max(AT_LEAST, AROUND // max(len(matter), 1))]
 
 
 def among(before: float | None, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Unit]:

@@ -98,6 +98,7 @@ class Sweep:
         self.preferences = Preferences(self)
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
         self._unmasked_under: set[tuple[Unit, Guard]] = set()
+        self._inside: set[Guard] = set()
         self._families: tuple[Unit, ...] = ()
         self._turn = 0
 
@@ -154,6 +155,17 @@ class Sweep:
                 return
             yield from self._all(factor, guard, plateau.among(before, self.units, self.gains, guard))
 
+    def _inside_far_gains(self, guard: Guard) -> Iterator[Candidate]:
+        """Try inward steps (see `plateau`) once under a guard while a large change gains most."""
+        if self.proposed or guard in self._inside or not plateau.best_is_far(self.gains, guard):
+            return
+        self._inside.add(guard)
+        matter, steps = plateau.inward(self.units, self.gains)
+        for factor in steps:
+            if not plateau.best_is_far(self.gains, guard):
+                return
+            yield from self._all(factor, guard, matter)
+
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
         return best_effects([(unit, gains) for (unit, _), gains in self.gains.items()], self.mutate)
@@ -174,6 +186,7 @@ class Sweep:
         for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
+        yield from self._inside_far_gains(guard)
         yield from self._leaders_together(guard)
         yield from self._unmasked(guard)
 
