@@ -33,10 +33,12 @@ AT_LEAST = 2  # minimum number of inward steps around large changes that gain
 
 
 def best_is_far(gains: Gains, guard: Guard) -> bool:
-    """Return whether a large change gains most reward under a guard."""
-    gained = [(gain, factor) for each in gains.under(guard).values() for factor, gain in each.items()]
-    gain, factor = max(gained, default=(0.0, 1.0))
-    return gain > gains.slack and not NEARBY[0] <= factor <= NEARBY[1]
+    """Return whether a large change clearly gains most reward under a guard."""
+    near, far = [0.0], [0.0]
+    for by_factor in gains.under(guard).values():
+        for factor, gain in by_factor.items():
+            (near if NEARBY[0] <= factor <= NEARBY[1] else far).append(gain)
+    return max(far) > max(near) + gains.slack
 
 
 def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:

@@ -139,6 +139,7 @@ class Sweep:
                 leading = self._leading(before, guard, -self.slack)
                 still = [unit for unit in self._families if unit not in leading]
                 yield from self._all(factor, guard, [*leading, *still])
+                yield from self._inside_far_gains(guard)
                 yield from self._leaders_together(guard)
         if not self.gains.anything():
             yield from self._late_ones(self.aside, chief)

@@ -1,0 +1,71 @@
+"""A large change that gains most does not hide a smaller change of another constant."""
+
+from __future__ import annotations
+
+import pytest
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plateau import AROUND, AT_LEAST, best_is_far, inward
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.units import Unit, units
+from tests.plugin.searching.test_forward_selection import GAINS
+
+UNITS = units(GAINS)
+
+
+def gains_of(*entries: tuple[Unit, float, float]) -> Gains:
+    table = Gains(0.5)
+    for unit, factor, gain in entries:
+        table.enter((unit, ALWAYS), factor, gain, moved=True)
+    return table
+
+
+@pytest.mark.parametrize(
+    ("entries", "far"),
+    [
+        ([(0, 5.0, 4.0)], True),
+        ([(0, 0.15, 4.0)], True),
+        ([(0, -1.0, 4.0)], True),
+        ([(0, 2.2, 4.0)], False),
+        ([(0, 5.0, 4.0), (0, 2.2, 4.0)], False),  # the smaller change gains as much
+        ([(0, 5.0, 4.0), (1, 0.4, 3.6)], False),  # the difference may be noise
+        ([(0, 5.0, 4.0), (1, 0.4, 3.0)], True),
+        ([(0, 5.0, 0.4)], False),
+        ([], False),
+    ],
+)
+def test_the_best_gain_is_far_if_no_smaller_change_gains_about_as_much(
+    entries: list[tuple[int, float, float]], far: bool
+) -> None:
+    table = gains_of(*((UNITS[at], factor, gain) for at, factor, gain in entries))
+    assert best_is_far(table, ALWAYS) is far
+
+
+@pytest.mark.parametrize("count", [1, 3, 8])
+def test_few_constants_that_matter_get_many_inward_steps_and_many_get_few(count: int) -> None:
+    table = gains_of(*((unit, 5.0, -1.0) for unit in UNITS[:count]))
+    matter, steps = inward(UNITS, table)
+    assert matter == list(UNITS[:count])
+    assert AT_LEAST <= len(steps) <= max(AT_LEAST, AROUND // count)
+    assert len(set(steps)) == len(steps)
+    assert all(0.4 < step < 2.2 for step in steps)
+
+
+def test_a_narrow_value_of_another_constant_is_found_despite_a_far_gain() -> None:
+    def run(candidate: Candidate, _: int) -> Outcome:
+        factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
+        right = abs(factors.get(GAINS[2], 1.0) - 1.33) < 0.04
+        around = 5.0 <= factors.get(GAINS[5], 1.0) < 6.0
+        touched = 0.01 * len(factors.keys() & {GAINS[0], GAINS[2], GAINS[5]})
+        total = 10.0 if right else 6.0 if around else -touched
+        return Outcome(total, total > 5.0)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.5, online=0.0)
+    trials = Trials(run, 300)
+    found = next(Sweep(GAINS, mutations, (ALWAYS,), trials, goal).candidates())
+    assert [mutation.operand for mutation in found.mutations] == [GAINS[2]]
+    assert trials.spent < 130
