@@ -26,6 +26,7 @@ JUDGING = (
     "drift_judging_9",
     "drift_judging_10",
     "drift_judging_11",
+    "drift_judging_12",
     "drift_structure",
 )
 TASKS = sorted(
@@ -196,6 +197,17 @@ KINDS = {  # kinds of defects in the tasks of each set
         "rare failures",
         "two constants",
     ],
+    "drift_judging_12": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "two constants",
+    ],
 }
 
 
@@ -245,6 +257,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_9",
         "drift_judging_10",
         "drift_judging_11",
+        "drift_judging_12",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
