@@ -7,6 +7,7 @@ them takes only a few episodes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from statistics import fmean
 from typing import Protocol
 
 from pytest_tarl.errors import RepairError
@@ -15,12 +16,12 @@ from pytest_tarl.searching.calls_apart import calls_of
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.closeness import CLOSER, COMPARED, EXACT, RIVALS, rivals
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
-from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.gentler import another_way, gentler
 from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING
 from pytest_tarl.searching.search import Candidate, Goal, Trials
-from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, smaller
+from pytest_tarl.searching.smaller import BESIDE, EARLY, EPISODES, WORSE, onward, smaller
 from pytest_tarl.searching.units import NEAR, Unit
 
 # number of refinements of each constant whose change a maintainer would prefer to the candidate found
@@ -61,6 +62,8 @@ class Preferences:
         self._compared = False
         self._reduced = False  # whether smaller changes of other constants were already tried
         self._replaced: set[Unit] = set()  # units that were already compared with milder changes
+        # confirmed changes that are not preferred to the candidate found; they follow if it is refused
+        self._aside: list[tuple[Unit, Candidate]] = []
 
     def before(
         self, found: Candidate, unit: Unit, factor: float, pair: int, holds: bool, near: bool
@@ -74,6 +77,17 @@ class Preferences:
         if holds:
             yield from self._truer(found, unit, factor, pair)
             yield from self._smaller(found, unit, factor, pair)
+
+    def after(self) -> Iterator[Candidate]:
+        """Yield the confirmed changes that were set aside, those with the largest mean reward first."""
+        pairs = self.search.goal.pairs
+        while self._aside:
+            unit, candidate = max(
+                self._aside, key=lambda one: fmean(self.search.trials.totals_of(one[1], pairs).values())
+            )
+            self._aside.remove((unit, candidate))
+            yield candidate
+            self.search.refused.add((unit, candidate.guard))
 
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
@@ -144,6 +158,7 @@ class Preferences:
                 yield candidate
                 self.search.refused.add((other, found.guard))
                 return
+            self._aside.append((other, candidate))
 
     def _smaller(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a much smaller change of another constant first, unless missions then deviate more from the design."""
@@ -156,9 +171,7 @@ class Preferences:
         parts = smaller(unit, factor, self.search.units, self.search.gains, found.guard)
         self._reduced = bool(parts)
         begun, seeds = self.search.trials.spent, self._compared_on(pair)
-        for other, step in parts:
-            if self.search.trials.spent - begun >= EPISODES:
-                return
+        for other, step in self._small_steps(parts, found, unit, factor, begun):
             candidate = self._smaller_holding(other, step, found.guard, pair)
             if candidate is None:
                 continue
@@ -166,6 +179,19 @@ class Preferences:
                 yield candidate
                 self.search.refused.add((other, found.guard))
                 return
+            self._aside.append((other, candidate))
+
+    def _small_steps(
+        self, parts: Sequence[Part], found: Candidate, unit: Unit, factor: float, begun: int
+    ) -> Iterator[Part]:
+        """Yield the parts as long as episodes are left for them, then larger steps of those that gained something."""
+        tried: list[Part] = []
+        for part in parts:
+            if self.search.trials.spent - begun >= EPISODES:
+                break
+            tried.append(part)
+            yield part
+        yield from onward(tried, unit, factor, self.search.gains, found.guard, self.search.goal.wanted)
 
     def _smaller_holding(self, unit: Unit, step: float, guard: Guard, pair: int) -> Candidate | None:
         """Try a small step, and those beside it if it earns nearly enough; return the first confirmed candidate."""

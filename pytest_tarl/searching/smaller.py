@@ -19,6 +19,9 @@ from pytest_tarl.searching.units import Unit
 STEPS = ((0.82, 1.22), (0.74, 1.33))  # factors: the first pair is tried on each constant, then the second
 BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
 LESS = 0.5  # maximum size of a small change (see `size`), as a share of the size of the change found
+ONWARD = ((0.62, 1.61), (0.5, 1.9))  # larger steps in the direction in which a small one gained something
+LEADING = 3  # maximum number of constants that get these larger steps
+TRACE = 0.005  # minimum gain of their small step, as a share of the wanted gain
 EPISODES = 20  # number of episodes after which no further constant is tried
 EARLY = 0.5  # share of the budget after which a repair is no longer compared
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
@@ -55,3 +58,19 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
         for step in steps
         if size(unit, step) <= most and step not in tried.get(unit, {})
     ]
+
+
+def onward(
+    tried: Sequence[Part], found: Unit, factor: float, gains: Gains, guard: Guard, wanted: float
+) -> list[Part]:
+    """Return larger steps in the direction in which small steps gained something, best constant first.
+
+    `tried` are the small steps that were tried, and `wanted` is the gain that a repair needs. Steps larger than `LESS`
+    times the change found are left out.
+    """
+    gained = [(gains.of(unit, guard).get(step, 0.0), at) for at, (unit, step) in enumerate(tried)]
+    leading = [tried[at] for gain, at in sorted(gained, key=lambda one: -one[0]) if gain >= TRACE * wanted]
+    best = list({unit: (unit, step) for unit, step in reversed(leading)}.values())[::-1][:LEADING]
+    most = LESS * size(found, factor)
+    steps = [(unit, up if step > 1.0 else down) for down, up in ONWARD for unit, step in best]
+    return [(unit, step) for unit, step in steps if size(unit, step) <= most]

@@ -273,6 +273,7 @@ class Sweep:
         yield from self.preferences.before(candidate, unit, factor, pair, holds, near)
         if holds:
             yield candidate
+            yield from self.preferences.after()
         if holds or (near and self.trials.loses(candidate)):
             self.refused.add((unit, guard))
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from pytest_tarl.patching.charts import SHARE
@@ -13,8 +15,8 @@ from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
-from pytest_tarl.searching.smaller import EPISODES, size, smaller
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.smaller import EPISODES, ONWARD, onward, size, smaller
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import Unit
 from tarl_lint.model import Operand
@@ -119,3 +121,60 @@ def test_a_small_step_that_earns_nearly_enough_is_moved_a_little() -> None:
     (change,) = next(search.candidates()).mutations
     assert change.operand == TARGET
     assert change.value == pytest.approx(1.22 * 1.06, rel=0.002)
+
+
+def test_a_confirmed_change_that_is_not_preferred_follows_the_change_found() -> None:
+    windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
+    late = searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE})
+    assert order(late, 2) == [HOTTEST, TARGET]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_confirmed_change_is_examined(seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    many = tuple(named(at, f"LIMIT_{at}") for at in range(10, 16))
+    centres = dict(zip(many, np.exp(draws.uniform(-1.2, 1.2, len(many))).tolist(), strict=True))
+    windows = {one: (at * 0.8, at * 1.25) for one, at in centres.items()}
+    rewards = {one: LATE if draws.random() < 0.5 else STEADY for one in many}
+    search = searched(many, windows, rewards)
+    examined = set()
+    with contextlib.suppress(BudgetSpentError):
+        for candidate in search.candidates():
+            examined.add(candidate)
+    assert len(examined) > 1
+    assert search._settled.held <= examined
+
+
+def test_a_small_step_that_gains_something_is_followed_by_larger_ones() -> None:
+    """The brake is worn by 39 %; a set point seven times as large hides this."""
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (change,) = candidate.mutations
+        if change.operand == HOTTEST and 5.0 <= change.value <= 9.0:
+            return Outcome(10.0, True)
+        if change.operand != TARGET:
+            return Outcome(-0.001 * abs(math.log(abs(change.value))), False)
+        away = abs(math.log(abs(change.value) / 0.62))
+        return Outcome(10.0, True) if away < 0.04 else Outcome(-math.log(0.62) - away, False)
+
+    pairs = tuple(Pair(seed, 0.0) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=0.0, passing=True)
+    search = Sweep((TARGET, TAU, HOTTEST), mutations, (ALWAYS,), Trials(run, 300), goal)
+    (change,) = next(search.candidates()).mutations
+    assert change.operand == TARGET
+
+
+def test_larger_steps_follow_only_where_a_small_one_gained_and_stay_small() -> None:
+    found, *others = (Unit((one,)) for one in (HOTTEST, TARGET, TAU, *(named(at, f"A{at}") for at in (7, 8))))
+    gains = Gains(0.1)
+    small = [(unit, step) for unit in others for step in (0.82, 1.22)]
+    for (unit, step), gain in zip(small, (0.1, -1.0, 0.04, 0.3, 0.2, 0.0, 0.4, 0.41), strict=True):
+        gains.enter((unit, ALWAYS), step, gain)
+    best = [(others[3], 1.22), (others[1], 1.22), (others[2], 0.82)]
+    (down, up), (further_down, further_up) = ONWARD
+    near = [(unit, up if step > 1.0 else down) for unit, step in best]
+    far = [(unit, further_up if step > 1.0 else further_down) for unit, step in best]
+    assert onward(small, found, 8.0, gains, ALWAYS, 10.0) == near + far
+    assert onward(small, found, 3.0, gains, ALWAYS, 10.0) == near
+    assert onward(small, found, 2.2, gains, ALWAYS, 10.0) == []
+    assert onward([], found, 8.0, gains, ALWAYS, 10.0) == []
