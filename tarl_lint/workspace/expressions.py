@@ -76,7 +76,7 @@ class Evaluator:
         """Return the value of a call. Subclasses handle functions and classes of the file."""
         if not isinstance(called, Bound) and (isinstance(called, Unknown | Library) or not callable(called)):
             return unknown(node)
-        if isinstance(called, Bound) or is_builtin(called):
+        if isinstance(called, Bound) or (is_builtin(called) and called is not BUILTINS["isinstance"]):
             args = [self._callable(one, node) for one in args]
             keywords = {key: self._callable(one, node) for key, one in keywords.items()}
         run = method if isinstance(called, Bound) else function

@@ -9,7 +9,7 @@ import operator
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace.python_values import (
     LARGEST,
@@ -256,10 +256,20 @@ def _sorted(values: Any, *, key: Any = None, reverse: bool = False) -> list[Any]
     return [given[one] for one in order]
 
 
-def _chain(*values: Any) -> list[Any]:
-    lists = list(map(_elements, values))
-    _limited(sum(map(len, lists)))
-    return [one for each in lists for one in each]
+class _Chain:
+    """`itertools.chain`."""
+
+    readable: ClassVar = frozenset({"from_iterable"})
+
+    def __call__(self, *values: Any) -> list[Any]:
+        """Return the elements of all lists."""
+        lists = list(map(_elements, values))
+        _limited(sum(map(len, lists)))
+        return [one for each in lists for one in each]
+
+    def from_iterable(self, values: Any) -> list[Any]:
+        """Return the elements of the lists of a list."""
+        return self(*_elements(values))
 
 
 def _product(*values: Any, repeat: int = 1) -> list[Any]:
@@ -297,7 +307,7 @@ STRUCTURE: Final[Mapping[str, Any]] = {
     "enumerate": lambda values, start=0: list(enumerate(_elements(values), start)),
     "zip": lambda *values, **_: list(zip(*map(_elements, values), strict=False)),
     "type": _type, "reversed": lambda one: _elements(one)[::-1], "iter": _list,
-    "itertools.chain": _chain, "itertools.chain.from_iterable": lambda values: _chain(*_elements(values)),
+    "itertools.chain": _Chain(),
     "itertools.product": _product, "copy.deepcopy": _copied, "copy.copy": _copied,
     "collections.OrderedDict": _dict, "dataclasses.field": lambda default=None, default_factory=None, **_: Field(
         default, default_factory),
