@@ -64,7 +64,7 @@ def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - shared
 
 
 def parent(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the value of `super()`: the object, with look-ups after its class."""
+    """Return the value of `super()` or `super(cls, self)`: the object, with look-ups after a class."""
     receiver = it.frame
     while receiver.owner is None and receiver.outer is not None:
         receiver = receiver.outer
@@ -72,10 +72,12 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
     this = ctx.store.get((receiver, parameters[0].name)) if parameters else None
     if this is None or receiver.owner is None:
         return UNKNOWN
+    given = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
+    owner = given[0] if len(given) == 1 else receiver.owner
     found = []
     for obj in this.objects:
-        view = recency.intern(ctx, "super", (receiver.owner.key, obj))
-        view.info = (receiver.owner, obj)
+        view = recency.intern(ctx, "super", (owner.key, obj))
+        view.info = (owner, obj)
         found.append(view)
     return Value(pts=frozenset(found))
 
