@@ -191,4 +191,9 @@ def _related(one: ast.AST | None, other: ast.AST | None) -> bool:
     """Return whether one class may inherit from the other: directly, or through a base that is not analysed."""
     if not isinstance(one, ast.ClassDef) or not isinstance(other, ast.ClassDef):
         return False
-    return any(other.name in ast.unparse(base) for base in one.bases)
+    return any(
+        last_name(part) == other.name
+        for base in one.bases
+        for part in ast.walk(base)
+        if isinstance(part, (ast.Name, ast.Attribute))
+    )
