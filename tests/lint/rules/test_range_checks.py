@@ -73,9 +73,9 @@ def test_a_statement_keeps_the_magnitude_of_a_value(statement):
 
 @pytest.mark.parametrize(
     ("statement", "computed"),
-    [("x = a + 1", True), ("x += 1", True),
-     ("x = math.hypot(a, b)", True), ("x = dist(a, b)", True),
-     ("x = abs(a)", False),      ("x = a", False), ("x = float(a)", False), ("publish(a)", False), ("publish(2 * a)", True)],
+    [("x = a + 1", True), ("x += 1", True), ("x = math.hypot(a, b)", True), ("x = dist(a, b)", True),
+     ("x = abs(a)", False), ("x = a", False), ("x = float(a)", False), ("publish(a)", False),
+     ("publish(2 * a)", True)],
 )  # fmt: skip
 def test_a_statement_computes_a_new_number(statement, computed):
     assert computes(ast.parse(statement)) is computed
