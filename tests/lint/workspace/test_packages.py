@@ -1,0 +1,461 @@
+"""What a package installs, and of what kind it is, by its files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.workspace.cfg_files import configurations
+from tarl_lint.workspace.cmake import cmake, commands
+from tarl_lint.workspace.executables import installed
+from tarl_lint.workspace.folders import folders, is_ignored, workspace_root
+from tarl_lint.workspace.launch_model import LaunchedNode
+from tarl_lint.workspace.launch_py import actions_of_python
+from tarl_lint.workspace.manifests import Manifest, manifest
+from tarl_lint.workspace.node_programs import Program, program
+from tarl_lint.workspace.read import read
+from tarl_lint.workspace.ros_arguments import Given, first_of_each, ros1, ros2
+from tarl_lint.workspace.setup_files import setup
+
+
+def written(folder: Path, files: dict[str, str]) -> Path:
+    """Write files with these texts into a folder."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("inside", "files", "kind"),
+    [
+        ("<export><build_type>ament_python</build_type></export>", (), "ament_python"),
+        ("<export><build_type>cmake</build_type></export>", (), "cmake"),
+        ("<buildtool_depend> catkin </buildtool_depend>", (), "catkin"),
+        ("<buildtool_depend>ament_cmake_python</buildtool_depend>", (), "ament_cmake"),
+        ("<run_depend>rospy</run_depend>", ("CMakeLists.txt",), "catkin"),
+        ("<export><build_type>bazel</build_type></export>", ("CMakeLists.txt",), "cmake"),
+        ("", ("setup.py",), "ament_python"),
+        ("", ("setup.py", "CMakeLists.txt"), "catkin"),
+        ("", (), "unknown"),
+    ],
+)
+def test_a_package_is_of_the_kind_that_builds_it(tmp_path, inside, files, kind):
+    (tmp_path / "package.xml").write_text(f"<package><name>arm</name>{inside}</package>")
+    for name in files:
+        (tmp_path / name).touch()
+    assert manifest(tmp_path)[0].kind == kind
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "problem"),
+    [
+        ("<package><name> arm </name></package>", "arm", ""),
+        ("<package><name> </name></package>", "folder", "it has no <name>"),
+        ("<package>", "folder", "it is not XML: "),
+        ("<package><name>\xff", "folder", "it is not XML: "),
+        ("<!ENTITY a 'b'>", "folder", "it declares entities"),
+    ],
+)
+def test_a_package_without_a_readable_name_has_that_of_its_folder(tmp_path, text, name, problem):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder/package.xml").write_bytes(text.encode("latin-1"))
+    found, problems = manifest(tmp_path / "folder")
+    assert found.name == name
+    assert [one.reason.startswith(problem) for one in problems] == ([True] if problem else [])
+
+
+def test_the_dependencies_of_a_package_are_sorted_and_named_once(tmp_path):
+    (tmp_path / "package.xml").write_text(
+        "<package><name>a</name><depend>b</depend><exec_depend>c</exec_depend><run_depend> b </run_depend>"
+        "<author>d</author><test_depend/></package>"
+    )
+    assert manifest(tmp_path)[0].dependencies == ("b", "c")
+
+
+def test_a_manifest_that_is_a_folder_is_a_problem(tmp_path):
+    (tmp_path / "package.xml").mkdir()
+    found, (problem,) = manifest(tmp_path)
+    assert (found.name, found.dependencies) == (tmp_path.name, ())
+    assert problem.reason == "it is a folder, a named pipe or a device, not a file"
+
+
+SETUP = "from setuptools import setup, find_packages\nsetup({})\n"
+
+
+@pytest.mark.parametrize(
+    ("given", "modules"),
+    [
+        ("packages=['arm', 'arm.inner', 'gone']", {"arm": "arm"}),
+        ("packages='arm leg'", {"arm": "arm", "leg": "leg"}),
+        ("packages=find_packages()", {"arm": "arm", "leg": "leg"}),
+        ("packages=find_packages('src')", {"eye": "src/eye"}),
+        ("packages=find_packages(where='src')", {"eye": "src/eye"}),
+        ("packages=['eye'], package_dir={'': 'src'}", {"eye": "src/eye"}),
+        ("packages=['eye'], package_dir={'eye': 'src/eye'}", {"eye": "src/eye"}),
+        ("py_modules=['tool', 'gone']", {"tool": "tool.py"}),
+        ("py_modules=['inner'], package_dir={'': 'src'}", {"inner": "src/inner.py"}),
+        ("packages=find_packages('nowhere')", {}),
+        ("name='arm'", {}),
+    ],
+)
+def test_the_modules_that_setup_files_install_are_found(tmp_path, given, modules):
+    written(
+        tmp_path,
+        {
+            "arm/__init__.py": "",
+            "leg/__init__.py": "",
+            "test/__init__.py": "",
+            "src/eye/__init__.py": "",
+            "src/inner.py": "",
+            "tool.py": "",
+            "docs/a.txt": "",
+            "setup.py": SETUP.format(given),
+        },
+    )
+    found = installed(tmp_path, Manifest("arm", "ament_python"), [])[1]
+    assert {one.name: one.path.relative_to(tmp_path).as_posix() for one in found} == modules
+
+
+def test_a_package_of_no_known_kind_has_the_module_of_its_name(tmp_path):
+    written(tmp_path, {"arm/__init__.py": ""})
+    assert [one.name for one in installed(tmp_path, Manifest("arm", "unknown"), [])[1]] == ["arm"]
+    assert installed(tmp_path, Manifest("arm", "catkin"), [])[1] == ()
+    assert installed(tmp_path, Manifest("leg", "unknown"), [])[1] == ()
+
+
+def test_the_programs_of_a_package_are_console_scripts_scripts_and_installed_files(tmp_path):
+    written(
+        tmp_path,
+        {
+            "arm/node.py": "",
+            "bin/run": "#!/usr/bin/env python3\n",
+            "nodes/a.py": "",
+            "nodes/b.sh": "",
+            "CMakeLists.txt": "install(PROGRAMS nodes/a.py nodes/b.sh nodes/gone.py ${X}/c.py DESTINATION lib/arm)",
+            "setup.py": SETUP.format(
+                "scripts=['bin/run', 'bin/gone'],"
+                " entry_points={'console_scripts': ['n = arm.node:main', 'm=arm.no:f.g [x]']}"
+            ),
+        },
+    )
+    scripts = [tmp_path / "nodes/a.py", tmp_path / "other"]
+    programs, _, problems = installed(tmp_path, Manifest("arm", "catkin"), scripts)
+    assert [(one.name, one.path and one.path.name, one.entry, one.module) for one in programs] == [
+        ("a.py", "a.py", None, ""),
+        ("gone", None, None, ""),
+        ("gone.py", None, None, "nodes/gone.py"),
+        ("m", None, "f.g", "arm.no"),
+        ("n", "node.py", "main", "arm.node"),
+        ("other", "other", None, ""),
+        ("run", "run", None, ""),
+    ]
+    assert [one.reason for one in problems] == [
+        "m is installed, but its file arm.no does not exist",
+        "gone is installed, but its file gone does not exist",
+        "gone.py is installed, but its file nodes/gone.py does not exist",
+    ]
+    python = installed(tmp_path, Manifest("arm", "ament_python"), scripts)[0]
+    assert [one.name for one in python] == ["gone", "m", "n", "run"]
+
+
+@pytest.mark.parametrize(
+    ("given", "console", "problems"),
+    [
+        ("entry_points='[console_scripts]\\na = b:c\\n[other]\\nd = e:f'", [("a", "b", "c")], []),
+        ("entry_points={'console_scripts': 'a = b:c\\nd-e = f.g:h.i'}", [("a", "b", "c"), ("d-e", "f.g", "h.i")], []),
+        ("entry_points={'other': ['a = b:c']}", [], []),
+        ("entry_points={'console_scripts': ['a = b']}", [],
+         ["the console script `a = b` is not `name = module:function`"]),
+        ("entry_points={'console_scripts': names()}", [], ["`console_scripts` is not constant"]),
+        ("entry_points=names()", [], []),
+    ],
+)  # fmt: skip
+def test_console_scripts_are_read_from_lists_and_texts(tmp_path, given, console, problems):
+    (tmp_path / "setup.py").write_text(SETUP.format(given))
+    found = setup(tmp_path)
+    assert found.console == tuple(console)
+    assert [one.reason for one in found.problems] == problems
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        ("setup.py", "x = 1\n", "it has no call of setup that can be followed"),
+        ("setup.py", "x = (\n", "it is not Python 3: "),
+        ("setup.cfg", "packages = a\n", "it cannot be read: File contains no section headers."),
+    ],
+)
+def test_setup_files_that_cannot_be_read_are_a_problem(tmp_path, name, text, reason):
+    (tmp_path / name).write_text(text)
+    (problem,) = setup(tmp_path).problems
+    assert (problem.file.name, problem.reason.startswith(reason)) == (name, True)
+
+
+def test_setup_py_takes_precedence_over_setup_cfg(tmp_path):
+    (tmp_path / "setup.cfg").write_text("[options]\npackages =\n    a\n    b\npy_modules = c\n")
+    assert setup(tmp_path).packages == ("a", "b")
+    (tmp_path / "setup.py").write_text(SETUP.format("packages=['d']"))
+    assert (setup(tmp_path).packages, setup(tmp_path).modules) == (("d",), ("c",))
+
+
+CMAKE = {
+    "installed folders": ("install(DIRECTORY nodes DESTINATION lib/${PROJECT_NAME})",
+        {"nodes/a.py": "a.py", "nodes/b": "b"}),
+    "folders installed elsewhere": ("install(DIRECTORY nodes DESTINATION share/arm)", {}),
+    "files as programs": ("install(FILES nodes/a.py nodes/no.py DESTINATION bin)", {"nodes/a.py": "a.py"}),
+    "files elsewhere": ("install(FILES nodes/a.py DESTINATION binary)", {}),
+    "a pattern": ("file(GLOB N nodes/*.py)\ninstall(PROGRAMS ${N} DESTINATION bin)", {"nodes/a.py": "a.py"}),
+    "a pattern of whole paths": (
+        "file(GLOB N ${PROJECT_SOURCE_DIR}/nodes/*.py)\ninstall(PROGRAMS ${N} DESTINATION bin)",
+        {"nodes/a.py": "a.py"},
+    ),
+    "a pattern below": (
+        "file(GLOB_RECURSE N *.py)\ninstall(PROGRAMS ${N} DESTINATION bin)",
+        {"nodes/a.py": "a.py", "nodes/deep/c.py": "c.py"},
+    ),
+    "a pattern without its folders": ("file(GLOB N *.py)\ninstall(PROGRAMS ${N} DESTINATION bin)", {}),
+    "a relative pattern": (
+        "file(GLOB N RELATIVE ${CMAKE_SOURCE_DIR} nodes/*.py ../*.py /*.py)\ninstall(PROGRAMS ${N} DESTINATION bin)",
+        {"nodes/a.py": "a.py"},
+    ),
+    "an invalid pattern": ("file(GLOB N nodes/**x/*.py a)\ninstall(PROGRAMS ${N} nodes/b DESTINATION bin)",
+        {"nodes/b": "b"}),
+    "whole paths": ("install(PROGRAMS ${CMAKE_CURRENT_SOURCE_DIR}/nodes/b DESTINATION bin)", {"nodes/b": "b"}),
+    "another name": ("install(PROGRAMS nodes/b DESTINATION bin RENAME c)", {"nodes/b": "c"}),
+    "an unknown variable": ("install(PROGRAMS ${N} DESTINATION bin)", {"${N}": "${N}"}),
+    "a list in a variable": ('set(N "nodes/a.py;nodes/b")\ninstall(PROGRAMS ${N}x DESTINATION bin)',
+        {"nodes/a.py": "a.py", "nodes/bx": "bx"}),
+    "a variable without words": ("set(N)\ninstall(PROGRAMS ${N} nodes/b DESTINATION bin)", {"nodes/b": "b"}),
+    "upper case": ("INSTALL(PROGRAMS nodes/b DESTINATION bin)", {"nodes/b": "b"}),
+    "nothing": ("install()\nset()\nfile(GLOB)", {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CMAKE)
+def test_the_programs_that_cmake_installs_are_found(tmp_path, name):
+    text, programs = CMAKE[name]
+    written(tmp_path, {"nodes/a.py": "", "nodes/b": "", "nodes/deep/c.py": "", "CMakeLists.txt": text})
+    assert dict(cmake(tmp_path, "arm").programs) == programs
+
+
+def test_words_of_cmake_keep_quotes_together_and_drop_comments(tmp_path):
+    text = 'set(A "x y") #[==[ set(A z) ]==] # set(A w)\nf(${A} "${A} b" c"d" (e (f)) )\n)g(h)'
+    assert [(one.name, one.words) for one in commands(text, tmp_path, "arm")] == [
+        ("set", ("A", "x y")),
+        ("f", ("x y", "x y b", "c", "d", "e", "f")),
+        ("f", ()),
+        ("g", ("h",)),
+    ]
+
+
+def test_a_large_or_unreadable_cmake_file_is_a_problem(tmp_path):
+    (tmp_path / "CMakeLists.txt").write_text("#" * 500_001)
+    (problem,) = cmake(tmp_path, "arm").problems
+    assert problem.reason == "it has more than 500,000 bytes"
+
+
+CFG = """\
+from dynamic_reconfigure.parameter_generator_catkin import *
+gen = ParameterGenerator()
+{}
+gen.generate('p', 'n', 'Arm')
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        ("gen.add(names(), int_t, 0, 'd', 1)", "the name or type of a parameter is not constant"),
+        ("gen.add('a', names(), 0, 'd', 1)", "the name or type of a parameter is not constant"),
+        ("gen.add('a', int_t, 0, 'd', 'x')", "the default of a is not of type int"),
+        ("gen.add('a', double_t, 0, 'd', 1, 'x')", "the min of a is not of type double"),
+        ("gen.add('a', double_t, 0, 'd', 1, 0, names())", "the max of a is not constant"),
+        ("gen.const('A', int_t, names(), 'd')", "a constant's name or value is not constant"),
+        ("gen.const(names(), int_t, 1, 'd')", "a constant's name or value is not constant"),
+    ],
+)
+def test_a_parameter_that_is_not_constant_is_a_problem_with_its_line(tmp_path, line, problem):
+    (tmp_path / "Arm.cfg").write_text(CFG.format(line))
+    (_, (found,)) = configurations(tmp_path / "Arm.cfg")
+    assert (found.line, found.reason) == (3, problem)
+
+
+def test_groups_within_groups_know_those_around_them(tmp_path):
+    lines = "a = gen.add_group('A b', state=False)\nb = a.add_group('C')\nb.add('x', bool_t, 0, names())"
+    (tmp_path / "Arm.cfg").write_text(CFG.format(lines))
+    ((found,), _) = configurations(tmp_path / "Arm.cfg")
+    (outer,) = found.description["groups"]
+    (inner,) = outer["groups"]
+    assert (outer["id"], outer["parent"], outer["cstate"], outer["lower"]) == (1, 0, "false", "a_b")
+    assert (inner["id"], inner["parent"], inner["parentname"], inner["cstate"]) == (2, 1, "A_b", "true")
+    assert (inner["class"], inner["parentclass"], inner["field"]) == (
+        "DEFAULT::A_B::C",
+        "DEFAULT::A_B",
+        "DEFAULT::A_B::c",
+    )
+    assert found.description["lower"] == "groups"
+    assert [(one["default"], one["description"], one["edit_method"]) for one in inner["parameters"]] == [
+        (False, "", "")
+    ]
+
+
+def test_folders_of_tools_are_skipped_and_marked_ones_noted(tmp_path):
+    for name in (
+        "a",
+        "build",
+        "log",
+        ".git",
+        "__pycache__",
+        "node_modules",
+        "install",
+        "marked/in",
+        "venv",
+        "z",
+    ):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "log/__init__.py").touch()
+    (tmp_path / "marked/AMENT_IGNORE").touch()
+    (tmp_path / "venv/pyvenv.cfg").touch()
+    (tmp_path / "COLCON_IGNORE").touch()
+    markers: list[Path] = []
+    found = [folder.relative_to(tmp_path).as_posix() for folder, _ in folders(tmp_path, ignored=markers)]
+    assert found == [".", "a", "log", "z"]
+    assert markers == [tmp_path / "marked/AMENT_IGNORE"]
+    kept = folders(tmp_path, frozenset([tmp_path / "marked/in"]))
+    assert [folder.name for folder, _ in kept] == [tmp_path.name, "a", "log", "marked", "in", "z"]
+    assert is_ignored(tmp_path / "marked/in", tmp_path)
+    assert not is_ignored(tmp_path / "a", tmp_path)
+
+
+def test_the_root_of_a_workspace_is_its_src_its_repository_or_the_folder_of_the_outermost_package(tmp_path):
+    inner = tmp_path / "ws/src/group/arm/arm"
+    inner.mkdir(parents=True)
+    file = inner / "node.py"
+    file.touch()
+    assert workspace_root(inner) is None
+    (inner / "package.xml").touch()
+    assert workspace_root(inner) == inner.parent
+    (inner.parent / "package.xml").touch()
+    assert workspace_root(file) == tmp_path / "ws/src/group"
+    (tmp_path / "ws/devel").mkdir()
+    assert workspace_root(file) == tmp_path / "ws/src"
+    (tmp_path / "ws/src/group/.git").mkdir()
+    assert workspace_root(file) == tmp_path / "ws/src/group"
+
+
+def test_a_launch_file_may_have_another_ending_in_a_folder_of_launch_files(tmp_path):
+    written(
+        tmp_path,
+        {
+            "package.xml": "<package><name>arm</name></package>",
+            "launch/a.xml": "<launch/>",
+            "launch/b.xml": "<robot/>",
+            "launch/c.py": "def generate_launch_description():\n    return 1\n",
+            "launch/d.py": "x = 1\n",
+            "other/e.xml": "<launch/>",
+            "other/f.launch.yaml": "",
+            "cfg/g.cfg": "[a]\n",
+            "msg/M.msg": "",
+            "msg/N.srv": "",
+            "config/h.yml": "",
+        },
+    )
+    (package,) = read(tmp_path).packages
+    names = [
+        [one.name for one in some]
+        for some in (
+            package.launch_files,
+            package.configurations,
+            package.parameter_files,
+            package.interfaces,
+        )
+    ]
+    assert names == [["a.xml", "c.py", "f.launch.yaml"], [], ["h.yml"], ["M.msg"]]
+
+
+def test_interfaces_outside_of_packages_belong_to_a_package_of_their_folder(tmp_path):
+    written(tmp_path, {"loose/srv/S.srv": "", "loose/msg/readme": ""})
+    (package,) = read(tmp_path).packages
+    assert (package.name, package.kind, [one.name for one in package.interfaces]) == (
+        "loose",
+        "unknown",
+        ["S.srv"],
+    )
+
+
+def test_the_program_of_a_node_is_found_or_the_reason_is_given(tmp_path):
+    written(
+        tmp_path,
+        {
+            "arm/package.xml": "<package><name>arm</name>"
+            "<export><build_type>ament_python</build_type></export></package>",
+            "arm/setup.py": SETUP.format(
+                "entry_points={'console_scripts': ['a = arm.node:main', 'g = arm.gone:main']}"
+            ),
+            "arm/arm/node.py": "",
+            "arm/deep/er/tool.py": "",
+            "arm/deep/tool.py": "",
+            "leg/tool.py": "",
+        },
+    )
+    workspace = read(tmp_path)
+    files = sorted(tmp_path.rglob("*.py"))
+
+    def of(executable: str, package: str = "arm", kind: str = "node") -> Program | str:
+        node = LaunchedNode(package, executable, "n", "/", tmp_path, 1, kind=kind)  # type: ignore[arg-type]
+        return program(node, workspace, files)
+
+    assert of("a") == Program(tmp_path / "arm/arm/node.py", "main")
+    assert of("tool.py") == Program(tmp_path / "arm/deep/tool.py")
+    assert of("g") == "arm.gone of arm, in which g begins, does not exist"
+    assert of("h") == "no Python program h in arm"
+    assert of("a", "eye") == "the package eye is not in the workspace"
+    assert of("a", kind="component") == "a composable node"
+    assert of("a", kind="container") == "a container of composable nodes"
+
+
+def test_modules_beside_a_launch_file_are_interpreted(tmp_path):
+    written(
+        tmp_path,
+        {
+            "package.xml": "<package><name>arm</name></package>",
+            "launch/parts.py": "from launch_ros.actions import Node\nNAME = 'x'\n"
+            "def made():\n    return Node(package='p', executable=NAME)\n",
+            "launch/more/__init__.py": "from parts import NAME\n",
+            "launch/a.launch.py": "import parts, more\nfrom launch import LaunchDescription\n"
+            "def generate_launch_description():\n    return LaunchDescription([parts.made(), more.NAME])\n",
+        },
+    )
+    problems: list = []
+    action = actions_of_python(tmp_path / "launch/a.launch.py", read(tmp_path), problems)
+    made, name = action.values["actions"]
+    assert (made.kind, made.values["executable"], name, problems) == ("node", "x", "x", [])
+
+
+def test_arguments_of_nodes_are_read_as_ros_reads_them():
+    assert ros1("a:=b _c:=1 __ns:=/n __name:=m d:=true /x/y:=~z 'e f' g:=-1 'h:=(") == Given(
+        (("a", "b"), ("/x/y", "~z")), (("~c", "1"),), (), "", "/n"
+    )
+    assert ros2("-r a:=b") == Given()
+    assert ros2(
+        "x --ros-args -r a:=b --remap __node:=m -r __ns:=/n -p c:=[1] --log-level debug --params-file f.yaml"
+    ) == (Given((("a", "b"),), (("~c", "[1]"),), ("f.yaml",), "m", "/n"))
+    assert ros2("--ros-args -r a:=b -- -r c:=d --ros-args -r e:=f") == Given((("a", "b"), ("e", "f")))
+    assert ros2("--ros-args -r __name:=m -r __node:=o -p x:=1 -r") == Given((), (("~x", "1"),), (), "m")
+
+
+def test_the_first_remapping_of_a_name_is_for_the_node_that_it_names():
+    pairs = [
+        ("a", "b"),
+        ("/n/a", "c"),
+        ("m:d", "e"),
+        ("o:f", "g"),
+        ("/n/m:h", "i"),
+        ("~j", "k"),
+        ("/n/m/j", "l"),
+    ]
+    assert first_of_each(pairs, "/n", "m") == (("a", "b"), ("d", "e"), ("h", "i"), ("~j", "k"))
