@@ -277,7 +277,7 @@ class Evaluator:
         many = items(right) if kind in (ast.In, ast.NotIn) and not isinstance(right, str) else None
         if not plain(left) or not plain(right if many is None else many):
             return MAYBE
-        return COMPARE[kind](left, right if many is None else many)
+        return COMPARE[kind](left, right if many is None or isinstance(right, dict) else many)
 
     def _boolop(self, node: ast.BoolOp, names: Scope) -> Any:
         value: Any = None

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tarl_lint.workspace.expressions import Unknown
+from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.statements import Interpreter
 
 EXPRESSIONS = """
@@ -550,3 +550,82 @@ def test_large_integers_are_computed_up_to_a_size(tmp_path):
     text = "n = 2\nfor _ in range({}):\n  n *= n\nr = n"
     assert interpreted(tmp_path, text.format(11))["r"] == 2**2048
     assert isinstance(interpreted(tmp_path, text.format(13))["r"], Unknown)
+
+
+def test_unknown_elements_of_a_list_are_one_unknown_value(tmp_path):
+    found = interpreted(
+        tmp_path, "l = [1]\nl.extend(absent)\nl += absent\nl.append(2)\nk = []\nk.extend({1: 2})"
+    )
+    assert found["l"] == [1, Unknown(2, "absent"), Unknown(3, "absent"), 2]
+    assert found["k"] == [1]
+
+
+PROBLEMS = {
+    "a condition": ("if absent:\n    x = 1\nelse:\n    x = 2", 1,
+                    "the condition `absent` is not constant; its `else` is not read"),
+    "a condition without else": ("if absent:\n    x = 1", 1, "the condition `absent` is not constant"),
+    "a check that raises": ("x = 1\nif absent:\n    raise ValueError\nelse:\n    y = 2", 2,
+                             "the condition `absent` is not constant"),
+    "a loop": ("\nfor x in absent:\n    y = 1", 2, "the loop over `absent` is not constant"),
+    "a loop with a condition": ("while absent:\n    y = 1", 1, "the condition `absent` of a loop is not constant"),
+    "a case": ("match absent:\n    case 1:\n        x = 1", 2, "the case `1` is not constant"),
+    "a case of a kind": ("match 1:\n    case int():\n        x = 1", 2, "the case `int()` is not constant"),
+    "a guard": ("match 1:\n    case 1 if absent:\n        x = 1", 2, "the case `1` is not constant"),
+    "an exception": ("x = 1\nraise ValueError\ny = 2", 2, "it raises an exception here; what follows is not read"),
+    "a syntax error": ("x = 1\ny = = 2", 2, "it is not Python 3: invalid syntax"),
+    "an endless loop": ("while True:\n    x = 1", 0,
+                        "it was read in part: it has too many statements, or nests too deeply"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_what_is_not_constant_is_a_problem_with_its_line(tmp_path, name):
+    text, line, reason = PROBLEMS[name]
+    path = tmp_path / "read.py"
+    path.write_text(text)
+    file = Interpreter(path, {})
+    file.run()
+    assert [(one.file, one.line, one.reason) for one in file.problems] == [(path, line, reason)]
+
+
+def test_a_branch_of_unknown_choice_is_kept_unless_it_raises(tmp_path):
+    kept = interpreted(
+        tmp_path,
+        "x = y = 0\nif absent:\n    x = 1\nelse:\n    x = 2\nif absent:\n    raise E\nelse:\n    y = 3",
+    )
+    assert (kept["x"], kept["y"]) == (1, 3)
+
+
+def test_functions_of_the_file_can_be_called_and_report_their_problems(tmp_path):
+    path = tmp_path / "read.py"
+    path.write_text(
+        "def f(a, b=2):\n    return a + b\ndef g():\n    raise E\ndef h():\n    return h()\nx = 1\n"
+    )
+    file = Interpreter(path, {})
+    file.run()
+    assert file.called("f", 1) == 3
+    assert file.called("x") == Unknown(0, "x")
+    assert file.called("absent") == Unknown(0, "absent")
+    assert file.called("g") == Unknown(3, "g")
+    assert [(one.line, one.reason) for one in file.problems] == [(4, "g raises an exception here")]
+    assert isinstance(file.called("h"), Unknown)
+
+
+def test_modules_are_interpreted_once_and_their_names_read(tmp_path):
+    (tmp_path / "one.py").write_text("import two\nX = two.Y + 1\n_z = 5\nN.append(1)\n")
+    (tmp_path / "two.py").write_text("Y = __name__\nN = []\nif absent:\n    Y = 1\n")
+    path = tmp_path / "read.py"
+    path.write_text(
+        "import one, two\nfrom two import *\nfrom two import Y as y, none\nimport far.away as f\nr = [one.X, two.Y, y, f]"
+    )
+    asked: list[str] = []
+
+    def found(name: str) -> Path | None:
+        asked.append(name)
+        return next((one for one in [tmp_path / f"{name}.py"] if one.is_file()), None)
+
+    file = Interpreter(path, {}, found)
+    names = file.run()
+    assert names["r"] == [2, 1, 1, Library("far.away")]
+    assert (names["Y"], names["N"], names["none"]) == (1, [], Library("two.none"))
+    assert [(one.file.name, one.line) for one in file.problems] == [("two.py", 3)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.lint.workspace.launching import described, names, reasons, settings
+from tests.lint.workspace.launching import HEAD, described, launched, names, reasons, settings
 
 # The actions of a launch file, the nodes that they start, and the problems.
 ACTIONS = """\
@@ -243,3 +243,67 @@ def test_arguments_of_ros2_nodes_set_names_remappings_and_parameters(package):
         (),
         {"~k": "4"},
     )
+
+
+OPAQUE = """
+def made(context):
+    names = context.launch_configurations
+    found = [
+        str(IfCondition("true").evaluate(context)),
+        str(UnlessCondition("true").evaluate(context)),
+        LaunchConfiguration("a").perform(context),
+        context.perform_substitution(["x", LaunchConfiguration("a")]),
+        names["a"],
+        names.get("b", "no"),
+        "has" if "c" in names else "lacks",
+    ]
+    return [node(one) for one in found]
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument("a", default_value="1"), OpaqueFunction(function=made)])
+"""
+
+
+def test_the_function_of_an_opaque_function_reads_configurations_and_conditions(package):
+    found = launched(package, HEAD + OPAQUE, "a.launch.py", a="2")
+    assert [one.name for one in found.nodes] == ["True", "False", "2", "x2", "2", "no", "lacks"]
+    assert found.arguments == ("a", "b", "c"), "those that are declared or read"
+    assert found.problems == ()
+
+
+def test_a_value_of_an_opaque_function_that_only_the_robot_knows_is_not_followed(package):
+    body = """
+def made(context):
+    if IfCondition(LaunchConfiguration("open")).evaluate(context):
+        return [node(LaunchConfiguration("open").perform(context))]
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=made)])
+"""
+    found = launched(package, HEAD + body, "a.launch.py")
+    assert [one.name for one in found.nodes] == ["$(var open)"]
+    assert reasons(found) == [
+        "the condition `IfCondition(LaunchConfiguration('open')).evaluate(context)` is not constant"
+    ]
+    assert found.arguments == ("open",)
+
+
+@pytest.mark.parametrize(
+    ("text", "ros2"),
+    [
+        ('<launch><node pkg="a" exec="b"/></launch>', True),
+        ('<launch><node pkg="a" type="b"/></launch>', False),
+        ('<launch><let name="a" value="$(var b)"/></launch>', True),
+        ('<launch><arg name="a" default="$(arg b)"/></launch>', False),
+        ('<launch><group><push-ros-namespace namespace="x"/></group></launch>', True),
+        ('<launch><arg name="a"/></launch>', False),
+    ],
+)
+def test_an_xml_file_is_for_the_ros_whose_elements_it_has(package, text, ros2):
+    assert launched(package, text, "a.launch.xml").ros2 is ros2
+
+
+def test_an_xml_file_without_such_elements_is_for_the_ros_of_its_package(package):
+    text = '<launch><arg name="a"/></launch>'
+    (package / "package.xml").write_text(
+        "<package><name>arm</name><export><build_type>ament_cmake</build_type></export></package>"
+    )
+    assert launched(package, text, "a.launch.xml").ros2
