@@ -616,7 +616,8 @@ def test_modules_are_interpreted_once_and_their_names_read(tmp_path):
     (tmp_path / "two.py").write_text("Y = __name__\nN = []\nif absent:\n    Y = 1\n")
     path = tmp_path / "read.py"
     path.write_text(
-        "import one, two\nfrom two import *\nfrom two import Y as y, none\nimport far.away as f\nr = [one.X, two.Y, y, f]"
+        "import one, two\nfrom two import *\nfrom two import Y as y, none\nimport far.away as f\n"
+        "r = [one.X, two.Y, y, f]"
     )
     asked: list[str] = []
 
