@@ -1,0 +1,261 @@
+"""What the syntax of a program says: quality of service, topics of C++, parameters that decide, stale commands."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import replace
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.evidence import Outline
+from tarl_lint.model import Finding, SiteId, Step
+from tarl_lint.parameter_names import ARGUMENTS
+from tarl_lint.read.source import Module
+from tarl_lint.system.cpp_sources import named_topics
+from tarl_lint.system.model import Qos
+from tarl_lint.system.parameters import deciding, reads_named_parameters, words
+from tarl_lint.system.qos import of_call
+from tarl_lint.system.staleness import stale
+from tarl_lint.workspace.read import read
+
+
+def module(text: str, path: str = "node.py") -> Module:
+    text = dedent(text)
+    return Module(path, "node", text, ast.parse(text))
+
+
+RELIABLE, EFFORT = Qos(reliable=True, latched=False), Qos(reliable=False, latched=False)
+SUBSCRIBED = "self.create_subscription(F, 'a', f, {})"
+PROFILES = [
+    (SUBSCRIBED.format("10"), RELIABLE),
+    (SUBSCRIBED.format("qos_profile=10"), RELIABLE),
+    (SUBSCRIBED.format("qos=10"), RELIABLE),
+    ("self.create_subscription(F, 'a', f)", None),
+    ("self.create_publisher(F, 'a', 10)", RELIABLE),
+    ("self.create_publisher(F, 'a')", None),
+    ("self.create_client(F, 'a', 10)", None),
+    ("create_publisher(F, 'a', 10)", None),
+    (SUBSCRIBED.format("qos_profile_sensor_data"), EFFORT),
+    (SUBSCRIBED.format("rclpy.qos.qos_profile_sensor_data"), EFFORT),
+    (SUBSCRIBED.format("qos_profile_system_default"), Qos()),
+    (SUBSCRIBED.format("qos_profile_default"), RELIABLE),
+    (SUBSCRIBED.format("depth"), None),
+    (SUBSCRIBED.format("'a'"), None),
+    (SUBSCRIBED.format("QoSProfile(depth=1)"), RELIABLE),
+    (SUBSCRIBED.format("QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)"), EFFORT),
+    (SUBSCRIBED.format("qos.QoSProfile(reliability=P.RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT)"), EFFORT),
+    (SUBSCRIBED.format("QoSProfile(durability=DurabilityPolicy.TRANSIENT_LOCAL)"), Qos(reliable=True, latched=True)),
+    (SUBSCRIBED.format("QoSProfile(durability=P.RMW_QOS_POLICY_DURABILITY_VOLATILE)"), RELIABLE),
+    (SUBSCRIBED.format("QoSProfile(reliability=ReliabilityPolicy.SYSTEM_DEFAULT)"), Qos(reliable=None, latched=False)),
+    (SUBSCRIBED.format("QoSProfile(durability=chosen())"), Qos(reliable=True, latched=None)),
+    (SUBSCRIBED.format("QoSProfile(**given)"), None),
+]  # fmt: skip
+
+
+def quality(text: str) -> Qos | None:
+    """Return the quality of service of the call in the last line."""
+    tree = ast.parse(text)
+    call = tree.body[-1].value  # type: ignore[attr-defined]
+    return of_call(Outline(tree), (call.lineno, call.col_offset, call.end_lineno, call.end_col_offset))
+
+
+@pytest.mark.parametrize(("call", "found"), PROFILES)
+def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found):
+    assert quality(call) == found
+
+
+@pytest.mark.parametrize(
+    ("before", "found"),
+    [
+        ("p = QoSProfile(reliability=R.BEST_EFFORT)", EFFORT),
+        ("p: QoSProfile = qos_profile_sensor_data", EFFORT),
+        ("a = 10\nb = a\np = b", RELIABLE),
+        ("a = 10\nb = a\nc = b\np = c", None),
+        ("b = 10\np = b", RELIABLE),
+        ("p = 10\np = qos_profile_sensor_data", None),
+        ("p = QoSProfile(depth=1)\np.reliability = R.BEST_EFFORT", None),
+        ("p = QoSProfile(depth=1)\nself.p.durability = D.TRANSIENT_LOCAL", None),
+        ("p = QoSProfile(depth=1)\np.depth = 5", RELIABLE),
+        ("p = QoSProfile(depth=1)\nq.reliability = R.BEST_EFFORT\nprint(p.reliability)", RELIABLE),
+        ("p = p", None),
+    ],
+)
+def test_a_profile_in_a_variable_is_followed_unless_it_changes(before, found):
+    assert quality(f"{before}\n{SUBSCRIBED.format('p')}") == found
+    assert quality(f"{before}\n{SUBSCRIBED.format('self.p')}") == found
+
+
+def test_a_call_at_another_place_has_no_quality_of_service():
+    assert of_call(Outline(ast.parse("f(1)")), (1, 0, 1, 3)) is None
+
+
+CPP = r"""
+// n.advertise<F>("commented", 1);
+/* n.subscribe("also", 1); */ auto s = "//"; ros::NodeHandle nh, own("~");
+ros::NodeHandle mine = ros::NodeHandle("~");
+void f() {
+  a = nh.advertise<geometry_msgs::Twist>("cmd_vel", 1);
+  b = nh.subscribe("scan", 1, &g);
+  c = own.advertise<std_msgs::msg::Float64>( "x", 1); d = mine.subscribe("/y", 1, &g);
+  e = nh_priv->subscribe("z", 1, &g); h = pnh.subscribe("~w", 1, &g);
+  i = node->create_publisher<std_msgs::msg::Float64>("out", 10);
+  j = this->create_subscription<sensor_msgs::msg::LaserScan, Alloc<int>>("in", 10, g);
+  k = nh.advertise<F>(name, 1); l = create_publisher<Twist>(
+    "late", 1);
+}
+"""
+
+
+def test_the_topics_of_cpp_are_the_literals_in_its_calls(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "package.xml").write_text("<package><name>arm</name></package>")
+    (tmp_path / "CMakeLists.txt").write_text(
+        "add_executable(raw src/a.cpp src/a.hpp src/none.cpp ../out.cpp)\n"
+        "add_executable(b src/b.cc)\nset_target_properties(raw PROPERTIES OUTPUT_NAME drive PREFIX)\n"
+        "set_target_properties(b PROPERTIES OUTPUT_NAME)\nadd_executable()\nadd_library(c src/a.cpp)\n"
+    )
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src/a.cpp").write_text(CPP)
+    (tmp_path / "src/b.cc").write_text('x.subscribe("b", 1);')
+    (tmp_path / "src/a.hpp").write_text('x.subscribe("header", 1);')
+    (package,) = read(tmp_path).packages
+    found = named_topics(package, "drive")
+    assert [(one.role, *one.names, one.type, one.span.line) for one in found] == [
+        ("publishes", "cmd_vel", "Twist", 6),
+        ("subscribes", "scan", "", 7),
+        ("publishes", "~x", "Float64", 8),
+        ("subscribes", "/y", "", 8),
+        ("subscribes", "~z", "", 9),
+        ("subscribes", "~w", "", 9),
+        ("publishes", "out", "Float64", 10),
+        ("subscribes", "in", "LaserScan", 11),
+        ("publishes", "late", "Twist", 12),
+    ]
+    assert (found[0].span.path, found[0].span.column, found[0].span.end_column) == ("src/a.cpp", 10, 19)
+    assert named_topics(package, "raw") == named_topics(package, "c") == ()
+    assert [one.names for one in named_topics(package, "b")] == [("b",)]
+
+
+READS = [
+    ("rospy.get_param('~a')", True),
+    ("rospy.get_param(name)", False),
+    ("rospy.get_param('~')", False),
+    ("rospy.get_param('/')", False),
+    ("rospy.get_param(f'~{a}')", False),
+    ("rospy.get_param()", True),
+    ("other(name)", True),
+    ("self.declare_parameters('', [])", False),
+    ("self.declare_parameters('ns', [])", True),
+    ("self.get_parameters(['a', b])", True),
+    ("self.get_parameters([b])", False),
+    ("self.get_parameters([])", True),
+    ("Node('n', allow_undeclared_parameters=True)", False),
+    ("self.get_parameters_by_prefix('a')", False),
+]
+
+
+@pytest.mark.parametrize(("text", "named"), READS)
+def test_a_program_reads_only_parameters_that_it_names(text, named):
+    assert reads_named_parameters([module("x = 1"), module(text)]) is named
+
+
+def test_the_strings_of_a_program_are_its_possible_names():
+    assert words([module("a = '~b/'\nc = f'x{1}'"), module("'/d/e'; 1; b'f'")]) == {"b", "x", "d/e"}
+
+
+DECIDING = [
+    ("if rospy.get_param('~a'): pass", ("~a",)),
+    ("x = rospy.get_param('~a')", ()),
+    ("x = rospy.get_param('~a')\nif x: pass", ("~a",)),
+    ("x = rospy.get_param('~a')\nwhile not x: pass", ("~a",)),
+    ("y = 1 if self.x else 2\nself.x: bool = self.get_parameter('a').value", ("a",)),
+    ("x = rospy.get_param('~a')\ny = x\nif y: pass", ("~a",)),
+    ("x = rospy.get_param('~a')\ny = not bool(x)\nif y: pass", ("~a",)),
+    ("x = rospy.get_param('~a')\ny = x + 1\nif y: pass", ()),
+    ("x = rospy.get_param('~a')\ny = max(x)\nif y: pass", ()),
+    ("x = rospy.get_param('~a')\ny = int(x, 16)\nif y: pass", ()),
+    ("for x in rospy.get_param('~a'): pass", ("~a",)),
+    ("[x for x in rospy.get_param('~a')]", ("~a",)),
+    ("t[rospy.get_param('~a')]", ("~a",)),
+    ("def f(on):\n    if on: pass\nf(rospy.get_param('~a'))", ("~a",)),
+    ("def f(on):\n    if on: pass\nf(on=rospy.get_param('~a'))", ("~a",)),
+    ("def f(off, on):\n    if on: pass\nf(rospy.get_param('~a'), 1)", ()),
+    ("class C:\n    def __init__(self, on):\n        if on: pass\nC(rospy.get_param('~a'))", ("~a",)),
+    ("class C:\n    def other(self, on):\n        if on: pass\nC(rospy.get_param('~a'))", ()),
+    ("if rospy.get_param(name): pass", ()),
+    ("if get_param('b') and has_param('a'): pass", ("a", "b")),
+    ("if other('a'): pass", ()),
+    ("import sys\nx = sys.argv", (ARGUMENTS,)),
+    ("import argparse\nif get_param('b'): pass", (ARGUMENTS, "b")),
+]
+
+
+@pytest.mark.parametrize(("text", "names"), DECIDING)
+def test_parameters_in_conditions_decide(text, names):
+    assert deciding([module(text)]) == tuple(sorted(names))
+
+
+CONTROL = """
+    class C:
+        def __init__(self):
+            self.cmd = None
+        def on(self, msg):
+            self.cmd = msg.linear
+        def tick(self):
+            self.pub.publish(self.cmd)
+"""
+
+
+def command(example, **given) -> Finding:
+    """Return a flow from C.on to a command that C.tick publishes."""
+
+    def step(qualname: str, code: str, role: str) -> Step:
+        return Step(SiteId("node", qualname, code), example.span("pos = data"), code, role, "data")  # type: ignore[arg-type]
+
+    steps = (
+        step("C.on", "self.cmd = msg.linear", "assign"),
+        step("C.tick", "self.pub.publish(self.cmd)", "publish"),
+    )
+    flow = example.flow()
+    source = replace(
+        flow.source, callback=given.pop("callback", "C.on"), api=given.pop("api", flow.source.api)
+    )
+    sink = replace(flow.sink, qualname=given.pop("qualname", "C.tick"), type=given.pop("type", "Twist"))
+    kind = given.pop("kind", "explicit")
+    return replace(
+        example.finding(),
+        flow=replace(flow, kind=kind, source=source, sink=sink, steps=given.pop("steps", steps)),
+    )
+
+
+def test_a_command_that_a_timer_repeats_is_stale(example):
+    found = command(example)
+    assert stale([found], [module(CONTROL)]) == (found,)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"kind": "implicit"}, {"type": "Float64"}, {"api": "rospy.Service"}, {"qualname": "C.on"}, {"callback": ""},
+     {"callback": "C.other"}, {"qualname": "C.other"}, {"steps": ()}],
+)  # fmt: skip
+def test_other_flows_are_not_stale(example, given):
+    assert stale([command(example, **given)], [module(CONTROL)]) == ()
+
+
+@pytest.mark.parametrize(
+    ("more", "found"),
+    [
+        ("    def stop(self):\n            self.cmd = None\n", False),
+        ("    def stop(self):\n            self.other = None\n", True),
+        ("    def stop(self):\n            self.tick()\n", False),
+        ("    def stop(self):\n            self.stamp = rospy.Time.now()\n", False),
+        ("    def stop(self):\n            self.last_seen = 1\n", False),
+        ("    def stop(self):\n            self.elapsed = 1\n", False),
+        ("    def stop(self):\n            time.sleep(1.0)\n", True),
+        ("    def stop(self):\n            rospy.Timer(rospy.Duration(1.0), self.tick)\n", True),
+    ],
+)
+def test_a_program_that_clears_the_command_or_reads_the_time_is_not_stale(example, more, found):
+    assert bool(stale([command(example)], [module(CONTROL + "    " + more)])) is found
+    assert stale([], [module(CONTROL)]) == ()

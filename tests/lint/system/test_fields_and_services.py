@@ -1,0 +1,120 @@
+"""Absent fields of messages, and the services that a program calls, by syntax."""
+
+from __future__ import annotations
+
+import ast
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.evidence import Outline
+from tarl_lint.flows.statement_text import Texts
+from tarl_lint.read.source import Module
+from tarl_lint.system.fields import misfits
+from tarl_lint.system.service_calls import called_services, part
+
+HEAD = """\
+from geometry_msgs.msg import Twist, Pose as P
+from std_msgs.msg import Float64
+from demo.msg import Own
+"""
+
+
+def absent(text: str) -> list[tuple[str, str]]:
+    """Return the absent fields of a program with their message types."""
+    whole = HEAD + dedent(text)
+    module = Module("node.py", "node", whole, ast.parse(whole))
+    found = misfits(module, Outline(module.tree), Texts({module.path: module}))
+    return [(one.type, one.field) for one in found]
+
+
+MADE = [
+    ("t = Twist()\nt.linear.x = 1\nt.speed = 2", [("Twist", "speed")]),
+    ("t = Twist()\nt.linear.w = 1", [("Vector3", "w")]),
+    ("p = P()\nprint(p.position.x, p.orientation.w, p.x)", [("Pose", "x")]),
+    ("t = Twist()\nt.linear.x.y = 1", []),
+    ("t = Twist()\nt.serialize(b)\nt._type\nt.LIMIT\nt.angular", []),
+    ("t = Twist()\nt = Own()\nt.speed = 1", []),
+    ("t = Own()\nt.speed = 1", []),
+    ("t = Float64(1.0)\nt.value = 1", [("Float64", "value")]),
+    ("t = m.Twist()\nt.speed = 1", []),
+    ("t, u = Twist(), 1\nt.speed = 1", []),
+    ("for t in [Twist()]:\n    t.speed = 1", []),
+    ("t = Twist()\nfor t in ts:\n    t.speed = 1", []),
+    ("t = u = Twist()\nt.speed = 1", []),
+]
+
+
+@pytest.mark.parametrize(("body", "found"), MADE)
+def test_a_field_that_a_new_message_does_not_have_is_absent(body, found):
+    text = "def f():\n" + "\n".join(f"    {line}" for line in body.split("\n"))
+    assert absent(text) == found
+    assert absent(body) == [], "only functions are examined"
+
+
+RECEIVED = [
+    ("rospy.Subscriber('a', Twist, on)", "def on(msg):\n    print(msg.speed)", [("Twist", "speed")]),
+    ("self.create_subscription(Twist, 'a', self.on, 1)",
+     "def on(self, msg):\n    print(msg.speed)", [("Twist", "speed")]),
+    ("rospy.Subscriber('a', Twist, on)", "def on(msg):\n    msg = msg.other()\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Own, on)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, callback=on)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, on)\nrospy.Subscriber('b', Float64, on)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, on)\nrospy.Subscriber('b', Own, on)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, on)", "def on(msg, x):\n    print(x.speed)", []),
+    ("rospy.Subscriber('a', Twist, on)", "def on():\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, lambda m: m.speed)", "def on(msg):\n    print(msg.speed)", []),
+    ("rospy.Subscriber('a', Twist, on)", "def on(msg):\n    print(msg.speed)\ndef on(msg):\n    print(msg.speed)", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("register", "function", "found"), RECEIVED)
+def test_a_field_that_a_received_message_does_not_have_is_absent(register, function, found):
+    assert absent(f"{function}\n{register}") == found
+
+
+def test_without_known_message_types_nothing_is_absent():
+    module = Module(
+        "a.py", "a", "", ast.parse("from demo.msg import Twist\ndef f():\n    t = Twist()\n    t.x = 1")
+    )
+    assert list(misfits(module, Outline(module.tree), Texts({}))) == []
+
+
+@pytest.mark.parametrize(
+    ("call", "found"),
+    [
+        ("rospy.ServiceProxy('a', Add)", ("a", "Add")),
+        ("rospy.ServiceProxy(name='a', service_class=srv.Add)", ("a", "Add")),
+        ("self.create_client(Add, 'a')", ("a", "Add")),
+        ("self.create_client(srv_name='a', srv_type=Add)", ("a", "Add")),
+        ("rospy.ServiceProxy('a')", ("a", "")),
+        ("rospy.ServiceProxy(name, Add)", None),
+        ("rospy.ServiceProxy(1, Add)", None),
+        ("rospy.ServiceProxy()", None),
+        ("rospy.Service('a', Add)", None),
+    ],
+)
+def test_the_service_that_a_client_calls_is_a_literal(call, found):
+    services = [(name, kind) for _, name, kind in called_services(Outline(ast.parse(call)))]
+    assert services == ([found] if found else [])
+
+
+@pytest.mark.parametrize(
+    ("api", "sent", "received"),
+    [
+        ("rospy.ServiceProxy.__call__", " (request)", " (response)"),
+        ("rclpy.create_client.call", " (request)", " (response)"),
+        ("actionlib.SimpleActionClient.send_goal", " (goal)", " (result)"),
+        ("rospy.Service", " (response)", " (request)"),
+        ("rclpy.create_service", " (response)", " (request)"),
+        ("rclpy.action.ActionServer.result", " (result)", " (goal)"),
+        ("rclpy.action.ActionServer.publish_feedback", " (feedback)", " (feedback)"),
+        ("actionlib.SimpleActionClient.feedback", " (feedback)", " (feedback)"),
+        ("rospy.Publisher.publish", "", ""),
+        ("rospy.Subscriber", "", ""),
+    ],
+)
+def test_an_end_of_a_flow_is_a_part_of_a_service_or_action(api, sent, received):
+    assert part(api, sent=True) == sent
+    assert part(api, sent=False) == received
