@@ -120,7 +120,7 @@ def test_without_options_the_working_directory_is_linted_with_the_cache():
 
 def test_options_are_passed_on():
     found = parsed("a", "b.py", "--select", "TARL1,TARL2", "--ignore", "TARL102", "--no-cache", "--jobs", "3",
-                   "--fail-on", "implicit", "--per-file-ignores", "t/:TARL1", "--exclude", "x", 
+                   "--fail-on", "implicit", "--per-file-ignores", "t/:TARL1", "--exclude", "x",
                    "--extend-exclude", "y,z",
                    "--baseline", "b.json", "--write-baseline")  # fmt: skip
     assert found.paths == (Path("a"), Path("b.py"))
