@@ -102,8 +102,9 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
     pending: list[ast.AST] = list(body) if isinstance(body, list) else [body]
     while pending:
         node = pending.pop()
-        yield node
-        pending += [c for c in children(node) if not isinstance(c, FUNCTIONS)]
+        if not isinstance(node, FUNCTIONS):
+            yield node
+            pending += children(node)
 
 
 def _writes(node: ast.Attribute | ast.Name, outline: Outline, elsewhere: Assigned | None) -> bool:
