@@ -44,27 +44,37 @@ def dtype_from_fields(
     return kind(layout)
 
 
-def _structured(cloud: Any, names: Sequence[str] | None, skip_nans: bool, uvs: Iterable[Any] | None) -> Any:
+def _structured(cloud: Any, names: Sequence[str] | None, skip_nans: bool, uvs: Any) -> Any:
+    """Return the points as a structured array.
+
+    `uvs` selects points: by column and row in ROS 1, where none selects all, and by their number in ROS 2, counted
+    after the points with NaN are left out. In ROS 2, a dense cloud is not searched for NaN.
+    """
     import numpy as np
 
     kind = dtype_from_fields(cloud.fields, cloud.point_step, cloud.is_bigendian)
     rows = np.frombuffer(bytes(cloud.data), dtype=np.uint8).reshape(cloud.height, cloud.row_step)
     used = np.ascontiguousarray(rows[:, : cloud.width * cloud.point_step])
     points = np.frombuffer(used.tobytes(), dtype=kind)
-    if uvs is not None:
-        points = points[[int(v) * cloud.width + int(u) for u, v in uvs]]
+    chosen, ros1 = None if uvs is None else list(uvs), _is_ros1(cloud)
+    if ros1 and chosen:
+        points = points[[int(v) * cloud.width + int(u) for u, v in chosen]]
     if names is not None:
         missing = set(names) - set(points.dtype.names)
         if missing:
             raise AssertionError(f"Requests field is not in the fields of the PointCloud! {sorted(missing)}")
         points = points[list(names)]
-    if skip_nans and points.size:
+    if skip_nans and (ros1 or not cloud.is_dense):
         keep = np.ones(points.shape, dtype=bool)
         for name in points.dtype.names:
             if points.dtype[name].kind == "f":
                 keep &= ~np.isnan(points[name])
         points = points[keep]
-    return points
+    return points if ros1 or chosen is None else points[np.array(chosen, dtype=int)]
+
+
+def _is_ros1(message: Any) -> bool:
+    return hasattr(type(message), "_slot_types")
 
 
 def read_points(
@@ -75,8 +85,8 @@ def read_points(
     reshape_organized_cloud: bool = False,
 ) -> Any:
     """Return the points: tuples one by one in ROS 1, a structured array in ROS 2."""
-    points = _structured(cloud, field_names, skip_nans, uvs or None)
-    if hasattr(type(cloud), "_slot_types"):
+    points = _structured(cloud, field_names, skip_nans, uvs)
+    if _is_ros1(cloud):
         return _one_by_one(points)
     return (
         points.reshape(cloud.height, cloud.width) if reshape_organized_cloud and cloud.height > 1 else points
@@ -91,7 +101,7 @@ def read_points_list(
     cloud: Any, field_names: Any = None, skip_nans: bool = False, uvs: Any = None
 ) -> list[Any]:
     """Return the points as a list of named tuples."""
-    points = _structured(cloud, field_names, skip_nans, uvs or None)
+    points = _structured(cloud, field_names, skip_nans, uvs)
     point = namedtuple("Point", points.dtype.names)  # type: ignore[misc]
     return [point._make(values) for values in points.tolist()]
 
@@ -103,7 +113,7 @@ def read_points_numpy(cloud: Any, field_names: Any = None, skip_nans: bool = Fal
     """
     import numpy as np
 
-    points = _structured(cloud, field_names, skip_nans, uvs or None)
+    points = _structured(cloud, field_names, skip_nans, uvs)
     kinds = {points.dtype[name] for name in points.dtype.names}
     if len(kinds) != 1:
         raise AssertionError("All fields need to have the same datatype. Use `read_points()` otherwise.")

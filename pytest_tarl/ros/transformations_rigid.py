@@ -134,7 +134,7 @@ def quaternion_matrix(quaternion: Numbers) -> Any:
 
 
 def quaternion_from_matrix(matrix: Any) -> Any:
-    """Return the quaternion of a rotation matrix; divides by the largest component for precision."""
+    """Return the quaternion of a rotation matrix: w is positive below 120°, as in tf, else the largest component."""
     m = matrix
     squares = [  # 4x², 4y², 4z², 4w²
         1 + m[0][0] - m[1][1] - m[2][2],
@@ -148,7 +148,10 @@ def quaternion_from_matrix(matrix: Any) -> Any:
         [m[0][2] + m[2][0], m[1][2] + m[2][1], squares[2], m[1][0] - m[0][1]],
         [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1], squares[3]],
     ]
-    return unit_vector(rows[squares.index(max(squares))])
+    largest = (
+        3 if squares[3] > 1 else squares.index(max(squares))
+    )  # divide by a large component for precision
+    return unit_vector(rows[largest])
 
 
 def translation_matrix(direction: Numbers) -> Any:
