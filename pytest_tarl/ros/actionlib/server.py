@@ -11,10 +11,14 @@ from pytest_tarl.ros.messages import message_type
 from pytest_tarl.ros.rospy.exceptions import ROSException
 from pytest_tarl.ros.rospy.log import logerr, logwarn
 from pytest_tarl.ros.rospy.node import this_node
-from pytest_tarl.ros.rospy.timing import get_rostime
+from pytest_tarl.ros.rospy.timing import Time, get_rostime
 from pytest_tarl.ros.scheduler import Task
 
 _REPLACED = "This goal was canceled because another goal was received by the simple action server"
+_TOO_OLD = (
+    "This goal handle was canceled by the action server because its timestamp is before the timestamp of the last "
+    "cancel request"
+)
 
 
 class SimpleActionServer:
@@ -37,6 +41,7 @@ class SimpleActionServer:
         self._next: Any = None
         self._status: dict[str, int] = {}
         self._preempt_requested = False
+        self._cancelled_until = Time()  # latest stamp of a cancel request
         self._worker: Task | None = None
         self._started = False
         if auto_start:
@@ -123,6 +128,9 @@ class SimpleActionServer:
 
     def _take_goal(self, message: Any) -> None:
         self._set(message.goal_id, protocol.PENDING)
+        if Time() < message.goal_id.stamp <= self._cancelled_until:
+            self._end_goal(message, protocol.RECALLED, None, _TOO_OLD)
+            return
         if self._next is not None:
             self._end_goal(self._next, protocol.RECALLED, None,
                            _REPLACED)  # fmt: skip
@@ -135,11 +143,17 @@ class SimpleActionServer:
             self._node.process.scheduler.wake(self._worker)
 
     def _take_cancel(self, message: Any) -> None:
-        everything = not message.id and not message.stamp
-        if self._next is not None and (everything or message.id == self._next.goal_id.id):
+        """Cancel the goal with the message's ID, goals sent up to its stamp, or all goals if it has neither."""
+
+        def meant(goal_id: Any) -> bool:
+            earlier = bool(message.stamp) and goal_id.stamp <= message.stamp
+            return earlier or message.id == goal_id.id or not (message.id or message.stamp)
+
+        self._cancelled_until = max(self._cancelled_until, message.stamp)
+        if self._next is not None and meant(self._next.goal_id):
             goal, self._next = self._next, None
             self._end_goal(goal, protocol.RECALLED, None, "")
-        if self.is_active() and (everything or message.id == self._current.goal_id.id):
+        if self.is_active() and meant(self._current.goal_id):
             self._request_preempt()
 
     def _request_preempt(self) -> None:

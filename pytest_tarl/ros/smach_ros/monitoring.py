@@ -64,7 +64,8 @@ class MonitorState(State):
 class ConditionState(State):
     """Calls `cond_cb(userdata)` until it returns a true value.
 
-    Its outcomes are "true" in that case, "false" after `max_checks` calls or `timeout`, and "preempted".
+    Its outcomes are "true" in that case, "false" after `timeout` or one call more than `max_checks`, as in smach_ros,
+    and "preempted". With -1, the number of calls has no limit.
     """
 
     def __init__(
@@ -85,19 +86,17 @@ class ConditionState(State):
     def execute(self, ud: Any) -> str:
         """Check the condition, and return the outcome."""
         began, checks = get_time(), 0
-        while not is_shutdown():
+        while not is_shutdown() and (self._most == -1 or checks <= self._most):
+            if self._limit and get_time() - began > self._limit:
+                break
             if self.preempt_requested():
                 self.service_preempt()
                 return "preempted"
-            if self._limit is not None and get_time() - began > self._limit:
-                return "false"
             if self._condition(ud):
                 return "true"
             checks += 1
-            if 0 < self._most <= checks:
-                return "false"
             sleep(self._pause)
-        return "preempted"
+        return "preempted" if is_shutdown() else "false"
 
 
 def set_preempt_handler(sc: Any) -> None:
