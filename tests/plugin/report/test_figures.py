@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from pytest_tarl.model import Region
-from pytest_tarl.report.figures import _axis, plane, reward_curves, utility_figure
+from pytest_tarl.report.figures import _axis, number, plane, reward_curves, split_values, utility_figure
 from pytest_tarl.report.slices import Scale, chart, scale
 from pytest_tarl.sensors import Sensor
+from tests.plugin.report.conftest import X
 
 
 def figure(comparison, number=0):
@@ -189,3 +190,37 @@ def test_the_axis_of_a_category_has_a_tick_for_each_value() -> None:
     assert (axis["outside"], axis["title"]) == (False, "mode")
     assert axis["ticks"] == ["1=0", "1=1"]
     assert axis["centres"] == [0.0, 1.0]
+
+
+def test_cells_without_a_known_utility_give_a_figure_without_a_scale(two_lists):
+    one = two_lists.lists[0]
+    unknown = replace(one, offline=one.offline * math.nan, online=one.online * math.nan)
+    found = utility_figure(two_lists, unknown)
+    assert (found["range"], found["reach"]) == ([0.0, 0.0], 0.0)
+
+
+def test_only_the_values_with_most_cells_get_a_row(varied):
+    lane = Sensor("lane", categories=tuple("abcdefgh"))
+    cells = tuple((x, value) for value in range(8) for x in range(1 + (value * 3) % 8))
+    shown = plane(varied(sensors=(X, lane), cells=cells))
+    assert (shown.position, shown.split) == (0, 1)
+    # a to h have 1, 4, 7, 2, 5, 8, 3, 6 cells
+    assert split_values(varied(sensors=(X, lane), cells=cells), shown) == [1, 2, 4, 5, 6, 7]
+    equal = tuple((0, value) for value in range(8))
+    assert split_values(varied(sensors=(X, lane), cells=equal), shown) == [0, 1, 2, 3, 4, 5]
+
+
+def test_figures_have_five_digits_and_no_infinite_numbers():
+    assert [number(value) for value in (1.2345678, -12345678.0, math.inf, math.nan)] == [
+        1.2346,
+        -12346000.0,
+        None,
+        None,
+    ]
+
+
+def test_curves_of_the_repair_are_named_after_the_recorded_world(varied):
+    totals = dict.fromkeys(("offline", "online", "repaired", "nominal_repaired"), (1.0, 2.0))
+    names = [curve["name"] for curve in reward_curves(varied(totals=totals, searches=(), permanent=True))]
+    assert names == ["designed", "deployed (mud)", "repaired", "repaired, old world"]
+    assert reward_curves(varied(totals=totals, searches=(), drift=None))[1]["name"] == "deployed"

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from difflib import unified_diff
 from html import unescape
 
 from hypothesis import given
@@ -52,3 +53,31 @@ def test_numbering_restarts_with_each_file():
     kinds = [line.kind for line in patch_lines(diff)]
     assert kinds == ["file", "file", "hunk", "removed", "added", "file", "file", "hunk", "kept", "added"]
     assert [line.new for line in patch_lines(diff)][-2:] == [7, 8]
+
+
+TEXTS = st.lists(st.sampled_from(["a = 1", "b = 2", "c = 3", ""]), max_size=12)
+
+
+@given(TEXTS, TEXTS, st.integers(0, 2))
+def test_each_line_of_a_patch_is_found_at_its_numbers(
+    before: list[str], after: list[str], around: int
+) -> None:
+    made = list(unified_diff(before, after, "a/x", "b/x", lineterm="", n=around))
+    found = list(patch_lines("\n".join(made)))
+    assert len(found) == len(made)
+    for line, written in zip(found, made, strict=True):
+        kind = {"-": "removed", "+": "added", " ": "kept", "@": "hunk"}[written[:1]]
+        assert line.kind == ("file" if written in ("--- a/x", "+++ b/x") else kind)
+        if line.old is not None:
+            assert before[line.old - 1] == written[1:]
+        if line.new is not None:
+            assert after[line.new - 1] == written[1:]
+        assert (line.old is not None) == (line.kind in ("kept", "removed"))
+        assert (line.new is not None) == (line.kind in ("kept", "added"))
+
+
+def test_the_lines_after_a_hunk_belong_to_the_next_file() -> None:
+    diff = "--- a/x\n+++ b/x\n@@ -1,3 +1,2 @@\n a\n b\n-c\n--- a/y\n+++ b/y\n@@ -1,2 +1,3 @@\n a\n b\n+c\n--- a/z\n"
+    kinds = [line.kind for line in patch_lines(diff)]
+    part = ["file", "file", "hunk", "kept", "kept"]
+    assert kinds == [*part, "removed", *part, "added", "file"]

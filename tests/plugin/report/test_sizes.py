@@ -54,3 +54,33 @@ def test_equal_rewards_are_drawn_on_one_line() -> None:
     flat: Any = SimpleNamespace(sizes={"mud": ONE}, totals={"offline": (1.0,), "online": (1.0,) * 4})
     (plot,) = sizes.plots(flat)
     assert {y for _, y in plot.points["online"]} == {0.0}
+
+
+def test_a_range_that_does_not_begin_at_zero_is_drawn_from_its_lower_end() -> None:
+    worn = Sizes("worn", 0.5, 0.9, {"online": (0.5, 0.6, 0.9)})
+    (plot,) = sizes.plots(
+        SimpleNamespace(sizes={"worn": worn}, totals={"offline": (4.0,), "online": (3.0, 2.0, 1.0)})  # type: ignore[arg-type]
+    )
+    assert plot.points["online"] == (
+        (0.0, sizes.HEIGHT / 3),
+        (sizes.WIDTH / 4, 2 * sizes.HEIGHT / 3),
+        (sizes.WIDTH, sizes.HEIGHT),
+    )
+    assert (plot.across[0], plot.across[-1]) == ((0.0, "0.5"), (sizes.WIDTH, "0.9"))
+    assert plot.up == ((sizes.HEIGHT, "1.00"), (0.0, "4.00"))
+    assert [row.band.part for row in plot.rows] == ["worn"] * 3
+
+
+def test_a_drawing_has_the_rows_of_its_own_range() -> None:
+    two: Any = SimpleNamespace(
+        sizes={"mud": ONE, "worn": Sizes("worn", 0.5, 0.9, {"online": (0.5, 0.6, 0.7, 0.9)})},
+        totals=COMPARISON.totals,
+    )
+    assert [{row.band.part for row in plot.rows} for plot in sizes.plots(two)] == [{"mud"}, {"worn"}]
+
+
+def test_without_totals_of_the_designed_world_its_line_is_at_zero() -> None:
+    only: Any = SimpleNamespace(sizes={"mud": ONE}, totals={"online": (4.0, 3.0, 2.0, 1.0)})
+    (plot,) = sizes.plots(only)
+    assert plot.offline == sizes.HEIGHT
+    assert [label for _, label in plot.up] == ["0.00", "4.00"]
