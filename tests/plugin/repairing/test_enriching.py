@@ -144,3 +144,24 @@ def test_the_search_for_failing_missions_stays_within_any_budget(
     goal = enriched(road, trials)
     assert trials.spent == len(road.ran) <= min(budget, ENOUGH + LOOKED_AT)
     assert replace(goal, harder={}, tolerated={}, controls=(), pairs=()) == replace(road.order.goal, pairs=())
+
+
+@pytest.mark.parametrize(("less", "found"), [(0.01, True), (0.0, False)])
+def test_a_mission_fails_if_it_earns_less_than_designed_by_more_than_the_slack(
+    less: float, found: bool
+) -> None:
+    """The first recorded mission that visits the bins of failed ones loses reward; the others lose nothing."""
+    road: Any = Road(0.12)
+    slack, first = road.order.reference.mean - road.order.goal.near, list[int]()
+    total = HARD - slack - less
+
+    def run(_: Candidate, seed: int, drift: str | None) -> Outcome:
+        if drift is not None and not first:
+            first.append(seed)
+        lost = drift is not None and seed in first
+        return Outcome(total if lost else road.total(seed, None), passed=True)
+
+    road.run = run
+    goal = enriched(road, Trials(never, 300))
+    assert (Pair(first[0], total) in goal.pairs) is found
+    assert len(goal.pairs) == len(road.order.goal.pairs[:ENOUGH]) + found

@@ -70,3 +70,40 @@ def test_without_a_jump_or_a_sensor_that_rests_at_zero_there_is_nothing_to_smoot
     candidate: Candidate, designed: int
 ) -> None:
     assert list(smoothed(order(designed, 3), candidate)) == []
+
+
+def visited(*bins: tuple[int, float]) -> Any:
+    """Return a world in which the sensor is in bins, each for a number of steps."""
+    chain = SimpleNamespace(cell=np.arange(len(bins)), count=np.array([steps for _, steps in bins]))
+    return SimpleNamespace(cells=[(place,) for place, _ in bins], chain=chain)
+
+
+def test_the_size_of_a_change_is_compared_with_the_mean_over_the_steps_where_it_holds() -> None:
+    asked = order(0, 3)
+    # 0.35 for 30 steps and 0.75 for 10 steps; the condition does not hold in the other bins
+    asked.online.recorded.sample = visited((3, 30.0), (7, 10.0), (0, 500.0), (2, 100.0), (10, 70.0))
+    found = list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG)))
+    assert form_values(found[1].mutations[0]) == {"share": pytest.approx(0.25 / 0.5 / 0.45, rel=0.05)}
+
+
+def test_a_condition_that_never_held_has_no_size() -> None:
+    asked = order(0, 3)
+    asked.online.recorded.sample = visited((1, 30.0), (2, 100.0))
+    assert list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG))) == []
+
+
+@pytest.mark.parametrize(("away", "smooth"), [(10.0, True), (10.1, False)])
+def test_a_sensor_rests_at_zero_if_it_is_there_in_nine_of_ten_steps(away: float, smooth: bool) -> None:
+    asked = order(0, 3)
+    asked.fixture.sample = visited((0, 50.0), (5, away), (0, 40.0))
+    assert bool(list(smoothed(asked, Candidate((Mutation(NAMED, 1.5),), LONG)))) is smooth
+
+
+@pytest.mark.parametrize(
+    ("factor", "summed"), [(1.35, True), (1.349, False), (2.4, True), (2.41, False), (0.65, False)]
+)
+def test_a_plain_sum_is_tried_if_change_and_sensor_differ_by_at_most_a_factor_of_two(
+    factor: float, summed: bool
+) -> None:
+    found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, factor),), LONG)))  # 0.35 / 2 to 0.35 * 2
+    assert ("sum" in names(found)) is summed
