@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -80,8 +81,10 @@ class Fault:
 def faults(path: Path, name: str) -> list[Fault]:
     """Return every fault of a file that still compiles."""
     data = path.read_bytes()
-    found = sorted(set(_Finder(data, name).module(ast.parse(data))))
-    return [one for one in found if one.was != one.now and _compiles(one.sown(data))]
+    tree = ast.parse(data)
+    found = sorted(set(_Finder(data, name).module(tree)))
+    functions = _outermost(tree, data)
+    return [one for one in found if one.was != one.now and _compiles(one, data, functions)]
 
 
 def _last_line(statement: ast.stmt) -> int:
@@ -92,9 +95,29 @@ def _last_line(statement: ast.stmt) -> int:
     return max(statement.lineno, inside[0].lineno - 1 if inside else statement.end_lineno or statement.lineno)
 
 
-def _compiles(data: bytes) -> bool:
+def _outermost(tree: ast.Module, data: bytes) -> list[tuple[int, int]]:
+    """Return the byte offsets of the lines of each function that is in no other function, in order."""
+    lines = [0, *(at + 1 for at, byte in enumerate(data) if byte == ord("\n")), len(data)]
+    found: list[tuple[int, int]] = []
+    waiting: list[ast.AST] = [tree]
+    while waiting:
+        for node in ast.iter_child_nodes(waiting.pop()):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
+                found.append((lines[first - 1], lines[node.end_lineno or node.lineno]))
+            else:
+                waiting.append(node)
+    return sorted(found)
+
+
+def _compiles(fault: Fault, data: bytes, functions: list[tuple[int, int]]) -> bool:
+    """Return whether the outermost function with the fault compiles; it is much shorter than its file."""
+    start, end = functions[bisect_right(functions, (fault.start, len(data))) - 1]
+    text = data[start : fault.start] + fault.now.encode() + data[fault.end : end]
+    if text[:1].isspace():
+        text = b"if True:\n" + text  # the body of a class is indented
     try:
-        compile(data, "<mutant>", "exec", dont_inherit=True)
+        compile(text, "<mutant>", "exec", dont_inherit=True)
     except (SyntaxError, ValueError):
         return False
     return True

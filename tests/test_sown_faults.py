@@ -79,6 +79,43 @@ def test_the_lines_of_a_match_statement_are_those_of_its_subject(sown: Any, tmp_
     }
 
 
+INSIDE = """\
+LIMIT = 3
+if LIMIT > 2:
+    @cache
+    def f(a):
+        text = '''
+unindented'''
+        def inner():
+            nonlocal text
+            text = f"{a + 1:{a - 2}d} {a < 2!r}" if a > 1 else f"{not a}"
+        return inner
+class C:
+    x = 1
+    @property
+    async def g(self):
+        async with self.a + 1 as b: await b.c(-1)
+def h(): return 1
+"""
+
+
+def test_faults_that_do_not_compile_are_left_out_wherever_they_are(sown: Any, tmp_path: Path) -> None:
+    file, data = tmp_path / "module.py", INSIDE.encode()
+    file.write_text(INSIDE)
+
+    def compiles(text: bytes) -> bool:
+        try:
+            compile(text, "module.py", "exec", dont_inherit=True)
+        except (SyntaxError, ValueError):
+            return False
+        return True
+
+    every = {one for one in sown._Finder(data, "module.py").module(ast.parse(data)) if one.was != one.now}
+    found = sown.faults(file, "module.py")
+    assert found == sorted(one for one in every if compiles(one.sown(data)))
+    assert {one.line for one in found} >= {9, 15, 16}
+
+
 FAILS_ALWAYS = "def test_other(): assert False\n"
 TESTS = {
     "from half import half\ndef test_half(): assert half(4) == 2\n": "caught",
