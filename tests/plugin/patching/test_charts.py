@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pytest_tarl.patching.charts import SHARE, Chart, offset
+from pytest_tarl.patching.charts import SHARE, Chart, Scale, distance, offset, step_to
 from pytest_tarl.patching.mutate import mutations, stepped
 from tarl_lint.model import Operand, SiteId, Span
 
@@ -39,3 +39,28 @@ def test_a_step_of_one_and_a_step_that_changes_the_sign_are_not_applied() -> Non
         assert stepped(operand(0.9), 1.0, chart, mutations) is None
         assert stepped(operand(0.9), -1.0, chart, mutations) is None
     assert SHARE.step(0.9, 1.0) is None
+
+
+@pytest.mark.parametrize(
+    ("step", "moved"), [(1.0, 0.0), (1.5, 0.5), (5.0, 4.0), (0.5, -1.0), (0.2, -4.0), (2 / 3, -0.5)]
+)
+def test_a_step_moves_by_multiples_of_the_size_up_and_down_alike(step: float, moved: float) -> None:
+    assert distance(step) == pytest.approx(moved)
+    assert step_to(moved) == pytest.approx(step)
+
+
+def test_a_scale_is_positive_with_two_digits() -> None:
+    assert (offset(-0.01234), offset(3.0).size, Chart(Scale.SHIFT).size) == (
+        Chart(Scale.SHIFT, 0.012),
+        3.0,
+        1.0,
+    )
+
+
+@pytest.mark.parametrize("step", [0.0, -0.5])
+def test_there_is_no_factor_for_a_step_that_is_not_positive(step: float) -> None:
+    assert SHARE.factor(0.5, step) is None
+    assert offset(1.0).factor(0.5, step) is None
+    assert SHARE.factor(0.0, 2.0) is None
+    assert SHARE.factor(0.5, 0.5) == 0.0
+    assert SHARE.step(0.5, 1.5) is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import example, given, settings
@@ -57,3 +58,58 @@ def test_other_files_are_not_read_as_patches(tmp_path: Path, content: bytes) -> 
     path.write_bytes(content)
     with pytest.raises(RepairError, match="is not a patch of TARL"):
         reading.read(path)
+
+
+NODE = "import a\n\nx = 1\ny = 2\nz = 3\n"
+
+
+def result(found: reading.Patch) -> dict[str, Any]:
+    """Return the only result of the patch as SARIF."""
+    ((one,),) = (run["results"] for run in json.loads(suggesting.sarif(found))["runs"])
+    return dict(one)
+
+
+def test_a_result_is_located_at_the_last_change_that_removes_lines(tmp_path: Path) -> None:
+    found = patch(tmp_path, NODE, "import a\nimport b\n\nx = 9\ny = 2\nz = 8\nmore = 1\n")
+    (location,) = result(found)["locations"]
+    assert location["physicalLocation"]["region"] == {
+        "startLine": 5,
+        "startColumn": 1,
+        "endLine": 6,
+        "endColumn": 1,
+    }
+    (only,) = result(patch(tmp_path, NODE, NODE + "more = 1\n"))["locations"]
+    assert only["physicalLocation"]["region"]["startLine"] == 6
+    assert only["physicalLocation"]["artifactLocation"] == {"uri": "node.py", "uriBaseId": "%SRCROOT%"}
+
+
+def test_a_fix_replaces_whole_lines_and_says_what_was_found(tmp_path: Path) -> None:
+    one = result(patch(tmp_path, NODE, NODE.replace("y = 2", "y = 4")))
+    ((change,),) = (fix["artifactChanges"] for fix in one["fixes"])
+    assert change["replacements"] == [
+        {
+            "deletedRegion": {"startLine": 4, "startColumn": 1, "endLine": 5, "endColumn": 1},
+            "insertedContent": {"text": "y = 4\n"},
+        }
+    ]
+    assert one["fixes"][0]["description"]["text"] == "5 → 12 at node.py:9"
+    assert one["message"]["text"] == (
+        "test_it.py::test_* earns less than designed under the drift mud. Reward ."
+    )
+
+
+def test_insertions_are_suggested_together_with_a_neighbouring_line(tmp_path: Path) -> None:
+    found = patch(tmp_path, NODE, NODE.replace("y = 2\n", "y = 2\nfirst = 1\nsecond = 2\n"))
+    (comment,) = json.loads(suggesting.review(found))["comments"]
+    assert (comment["line"], comment["body"]) == (4, "```suggestion\ny = 2\nfirst = 1\nsecond = 2\n```")
+    start = patch(tmp_path, NODE, "top = 1\n" + NODE)
+    (comment,) = json.loads(suggesting.review(start))["comments"]
+    assert (comment["line"], comment["body"]) == (1, "```suggestion\ntop = 1\nimport a\n```")
+
+
+def test_the_fence_of_a_suggestion_is_longer_than_any_in_the_text(tmp_path: Path) -> None:
+    found = patch(tmp_path, "a = 1\n", "a = '````'\n")
+    assert "`````suggestion\na = '````'\n`````\n" in suggesting.markdown(found)
+    assert "`node.py`, line 1:" in suggesting.markdown(found)
+    several = suggesting.markdown(patch(tmp_path, "a = 1\nb = 2\n", "c = 3\n"))
+    assert "`node.py`, lines 1 to 2:\n\n```suggestion\nc = 3\n```\n" in several
