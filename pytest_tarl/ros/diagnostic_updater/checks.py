@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -56,7 +57,8 @@ class FrequencyStatus(DiagnosticTask):
         began, before = self._marks[0]
         self._marks = [*self._marks[1:], (_now(), self.count)]
         events, window = self.count - before, _now() - began
-        frequency = events / window
+        # virtual time may stand still between two calls, real time never does
+        frequency = events / window if window else math.inf if events else 0.0
         least = self.params.freq_bound["min"] * (1 - self.params.tolerance)
         bound = self.params.freq_bound.get("max")
         most = None if bound is None else bound * (1 + self.params.tolerance)
