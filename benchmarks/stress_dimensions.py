@@ -6,15 +6,16 @@
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
-are small simulations, written without knowledge of the search. Each task of benchmarks/drift has four directions: its
-own drift, from the nominal value to that of the task, and three faults of the topic of its first numeric sensor
-(bias, latency, dropout), of the same relative size in every task. Each method may run BUDGET episodes. A peer
-receives a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the cost is the
-distance from nominal; otherwise it is the margin above the largest distance. A failure counts if fresh seeds confirm
-it; these episodes are not charged. Each method may offer its nearest OFFERS failing drifts, of which the k-th is
-tested at RISK / k(k + 1). A stress run offers the drifts that it confirmed, for which it spent episodes, and those
-that it expects to fail. The method `confirmed` offers only the confirmed ones of the same run. A cell counts
-for how many seeds `ours` and `confirmed` are at least as near.
+are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py, whose drifts have
+units and whose nominal values are not always in the middle or at an end of the range. Each task of benchmarks/drift
+has four directions: its own drift, from the nominal value to that of the task, and three faults of the topic of its
+first numeric sensor (bias, latency, dropout), of the same relative size in every task. Each method may run BUDGET
+episodes. A peer receives a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the
+cost is the distance from nominal; otherwise it is the margin above the largest distance. A failure counts if fresh
+seeds confirm it; these episodes are not charged. Each method may offer its nearest OFFERS failing drifts, of which
+the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it confirmed, for which it spent episodes,
+and those that it expects to fail. The method `confirmed` offers only the confirmed ones of the same run. A cell
+counts for how many seeds `ours` and `confirmed` are at least as near.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ from stress_worlds import space as world_space  # noqa: E402
 from stress_worlds_2 import FRESH_WORLDS  # noqa: E402
 from stress_worlds_3 import NEW_WORLDS  # noqa: E402
 from stress_worlds_4 import FOURTH_WORLDS, QUIET_WORLDS  # noqa: E402
+from stress_worlds_5 import MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -136,7 +138,10 @@ def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> 
 
 
 def formula(name: str) -> Arena:
-    """Return a world of stress_worlds.py."""
+    """Return a world of stress_worlds.py or of the later sets."""
+    if name in MACHINES:
+        machine = MACHINES[name]
+        return recorded(name, machine, machine.space, machine.marked)
     return recorded(name, Formula(FORMULAS[name]), world_space(), FORMULA)
 
 
@@ -354,12 +359,12 @@ def main() -> None:
     methods: list[str] = arguments.methods
     every: dict[str, list[float | None]] = {method: [] for method in methods}
     print(f"| task | {' | '.join(methods)} |\n|---|{'---|' * len(methods)}")
-    for task in arguments.tasks or [*FORMULAS, *TASKS]:
+    for task in arguments.tasks or [*FORMULAS, *MACHINES, *TASKS]:
 
         def visitor(stage: Stage) -> dict[str, list[float | None]]:
             return compare(arena(stage), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
 
-        if task in FORMULAS:
+        if task in FORMULAS or task in MACHINES:
             found = compare(formula(task), methods, arguments.seeds, arguments.home, arguments.peer_seconds)
         else:
             found = visit(task, visitor, None, HERE / "drift")

@@ -71,6 +71,12 @@ def harmless(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 WORLDS: Mapping[str, World] = {one.__name__: one for one in (plane, product, corner, ellipsoid, rare, island)}
 
 
+def finished(plan: EpisodePlan, passed: bool, total: float) -> EpisodeRun:
+    """Return an episode of a world that is no node: its reward and nothing else."""
+    trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
+    return EpisodeRun(plan, trace, passed)
+
+
 @dataclass(frozen=True)
 class Formula:
     """A rollout of a world."""
@@ -84,9 +90,7 @@ class Formula:
         passed, total = self.world(
             np.array(list(plan.point.values())), generator(plan.seed, f"world {plan.point}")
         )
-        total += float(generator(plan.seed, "shared").normal(0.0, SHARED))
-        trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
-        return EpisodeRun(plan, trace, passed)
+        return finished(plan, passed, total + float(generator(plan.seed, "shared").normal(0.0, SHARED)))
 
     def begin(self, plan: EpisodePlan) -> Pending:
         """Return an episode that runs when its result is requested."""

@@ -1,0 +1,355 @@
+"""Six machines with drifts in physical units, written without knowledge of the search and of its results.
+
+Each mission is a small simulation that takes a generator and four drifts, whose ranges have nominal values anywhere in
+the range. As in a test that uses `tarl.rng`, an episode's noise depends only on its seed, so two drifts meet the same
+gusts and the same pushes. Each machine has the success rate and the tolerance that a tester would write for it.
+
+    python benchmarks/stress_worlds_5.py [MACHINE ...]       # how safe nominal is, and how many random drifts fail
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import cos, exp, hypot, pi, sin, sqrt
+from statistics import fmean
+from typing import Any
+
+import numpy as np
+from stress_worlds import finished
+
+from pytest_tarl.designation import Designation
+from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.seeds import generator
+from pytest_tarl.spaces import Point, Space, Span
+
+Mission = Callable[..., tuple[bool, float]]
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A mission with the ranges of its drifts, and the test's markers."""
+
+    mission: Mission
+    directions: Mapping[str, Span]
+    min_success: float
+    tolerance: float
+
+    workers = 1
+
+    @property
+    def space(self) -> Space:
+        """Return the space of drifts."""
+        return Space(self.directions, {})
+
+    @property
+    def marked(self) -> Designation:
+        """Return the markers."""
+        return Designation((), (), min_success=self.min_success, tolerance=self.tolerance)
+
+    def run(self, seed: int, point: Point) -> tuple[bool, float]:
+        """Return whether the mission with this seed passes at a point, and its reward."""
+        return self.mission(generator(seed, "world"), **point)
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode."""
+        assert plan.point is not None
+        return finished(plan, *self.run(plan.seed, plan.point))
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Return an episode that runs when its result is requested."""
+        return Deferred(self, plan)
+
+
+def clipped(value: float, limit: float) -> float:
+    """Return the value limited to -limit … limit."""
+    return max(-limit, min(limit, value))
+
+
+def crane(rng: np.random.Generator, rope: float, wind: float, load: float, late: float) -> tuple[bool, float]:
+    """Carry a container over 24 m with a speed profile shaped for a rope of 9 m, then hold it over the mark.
+
+    The gusts come every 7.4 s or so, the period of a rope of 13.6 m.
+    """
+    step, steps = 0.2, 210
+    period, phase = float(rng.normal(7.4, 0.15)), float(rng.uniform(0.0, 2 * pi))
+    rough = rng.normal(0.0, 0.25, steps)
+    shaped = round(
+        pi * sqrt(9.0 / GRAVITY) / step
+    )  # half a period: the second half of each push cancels the sway
+    delay, seen = round(late / step), [0.0] * 8
+    trolley = speed = sway = rate = worst = 0.0
+    limit = min(0.6, 14.0 / (load + 4.0))  # in m/s², of the motor
+    for now in range(steps):
+        seen.append(rope * sin(sway))
+        if now < 110:
+            wanted = 0.75 * ((10 <= now < 90) + (10 + shaped <= now < 90 + shaped))
+        else:
+            wanted = clipped(0.3 * (24.0 - trolley) + 0.5 * seen[-1 - delay], 0.8)
+        force = clipped((wanted - speed) / step, limit)
+        gust = wind * (1.0 + 0.3 * sin(2 * pi * now * step / period + phase)) + rough[now]
+        pressed = 22.0 * (gust * abs(gust) - wind * wind) / (1000.0 * load)
+        rate += step * (-GRAVITY / rope * sin(sway) - force / rope * cos(sway) + pressed / rope - 0.02 * rate)
+        sway += step * rate
+        speed += step * force
+        trolley += step * speed
+        if now >= steps - 40:
+            worst = max(worst, abs(trolley + rope * sin(sway) - 24.0))
+    return worst < 1.0, 20.0 - 6.0 * clipped(max(worst - 0.5, 0.0), 2.0)
+
+
+def balancer(
+    rng: np.random.Generator, height: float, slope: float, tilt: float, volts: float
+) -> tuple[bool, float]:
+    """Keep a two-wheeled robot at its place while somebody pushes it twice.
+
+    `tilt` is the offset of the tilt sensor, which may add to the slope or make up for it.
+    """
+    step, steps = 0.04, 150
+    first, second = int(rng.integers(20, 50)), int(rng.integers(80, 110))
+    shove = float(rng.normal(0.0, 0.25)), float(rng.normal(0.0, 0.25))
+    noise = rng.normal(0.0, 0.004, steps)
+    pitch = rate = place = speed = 0.0
+    error, limit = 0.0, 7.0 * (volts / 24.0) ** 2
+    for now in range(steps):
+        seen = pitch + tilt + noise[now]
+        push = clipped(38.0 * seen + 9.0 * rate + 1.6 * place + 3.4 * speed, limit)
+        if now == first:
+            rate += shove[0] / height
+        if now == second:
+            rate += shove[1] / height
+        driven = push - GRAVITY * slope - 0.4 * speed
+        rate += step * (GRAVITY * sin(pitch) - driven * cos(pitch)) / height
+        pitch += step * rate
+        speed += step * driven
+        place += step * speed
+        error += max(abs(place) - 0.6, 0.0)
+        if abs(pitch) > 0.8:
+            return False, 0.0
+    return abs(place) < 1.6, 10.0 - 6.0 * min(error / steps, 1.5)
+
+
+def infusion(
+    rng: np.random.Generator, sensitivity: float, meal: float, late: float, leak: float
+) -> tuple[bool, float]:
+    """Hold the glucose of a patient between 70 and 180 mg/dl for eight hours and a meal, with a pump.
+
+    The patient announces a usual meal whatever they eat, so a small meal brings too much insulin.
+    """
+    steps = 96  # of five minutes
+    eaten = int(rng.integers(14, 24))
+    strong, noise = float(rng.normal(1.0, 0.08)), rng.normal(0.0, 4.0, steps)
+    glucose, gut, stored, active = 118.0, 0.0, 0.0, 1.0
+    delay, seen = round(late / 5.0), [118.0] * 9
+    lowest, inside = glucose, 0
+    for now in range(steps):
+        seen.append(glucose + noise[now])
+        known = seen[-1 - delay]
+        trend = known - seen[-4 - delay]
+        dose = max(0.0, 1.0 + 0.04 * (known - 112.0) + 0.04 * trend)
+        if known < 78.0:
+            dose = 0.0
+        if now == eaten:
+            dose += 18.0  # announced: as much as a usual meal needs
+        gut += meal if now == eaten else 0.0
+        absorbed, gut = 0.075 * gut, 0.925 * gut
+        stored += 0.12 * (min(dose, 20.0) * (1.0 - leak) - stored)
+        active += 0.12 * (stored - active)
+        glucose += 4.2 * absorbed - 3.4 * sensitivity * strong * active * glucose / 118.0 + 3.4
+        glucose = max(glucose, 20.0)
+        lowest = min(lowest, glucose)
+        inside += 70.0 <= glucose <= 180.0
+    return lowest > 60.0, 100.0 * inside / steps
+
+
+def centrifuge(
+    rng: np.random.Generator, stiffness: float, imbalance: float, damping: float, ramp: float
+) -> tuple[bool, float]:
+    """Spin a sample up to 3,000 rpm; the rotor trips if it shakes too much.
+
+    The critical speed grows with the stiffness of the bearings. It lies below the working speed at nominal, and a
+    medium increase brings the two together. A slow ramp stays longer near the critical speed.
+    """
+    weight = abs(imbalance + float(rng.normal(0.0, 0.6)))
+    critical = 2350.0 * sqrt(stiffness) * float(rng.normal(1.0, 0.008))
+    noise = rng.normal(0.0, 0.12, 120)
+    speed = shaking = done = 0.0
+    worst = 0.0
+    for now in range(120):
+        speed = min(speed + ramp, 3000.0)
+        ratio = (speed / critical) ** 2
+        settled = 0.55 * weight * ratio / hypot(1.0 - ratio, 2.0 * damping * sqrt(ratio))
+        quick = 0.07 + 1.6 * damping
+        shaking += quick * (settled - shaking)
+        worst = max(worst, shaking + abs(noise[now]))
+        done += (speed / 3000.0) ** 2 * (1.0 if shaking < 9.0 else 0.2)
+        if worst > 15.0:
+            return False, done / 10.0
+    return True, done / 10.0
+
+
+def picker(
+    rng: np.random.Generator, light: float, sway: float, colour: float, wear: float
+) -> tuple[bool, float]:
+    """Pick the ripe ones of 24 fruits with a camera and a soft gripper before the time is up.
+
+    The camera sees badly in dim light and in glare. Dim light also makes fruits look less ripe.
+    """
+    ripe = rng.random(24) < 0.65
+    looks = np.where(ripe, 0.75, 0.25) + rng.normal(0.0, 0.09, 24)
+    luck, places = rng.random((24, 3)), np.abs(rng.normal(0.0, 1.0, (24, 3)))
+    dim, glare = 1.0 / (1.0 + exp((light - 190.0) / 45.0)), 1.0 / (1.0 + exp((1500.0 - light) / 130.0))
+    seen = looks + colour - 0.22 * dim
+    blur = 0.55 + 1.3 * dim + 1.6 * glare
+    left, basket, wrong = 62.0, 0, 0
+    for fruit in range(24):
+        if seen[fruit] < 0.5:
+            continue
+        for attempt in range(3):
+            left -= 1.0 + 0.12 * sway
+            if left < 0.0:
+                break
+            off = hypot(blur * places[fruit, attempt] * 0.6, 0.45 * sway * places[fruit, attempt - 1])
+            if off < 1.9 and luck[fruit, attempt] > 0.03 + 0.5 * wear**2 * (1.0 + 0.25 * off):
+                basket += bool(ripe[fruit])
+                wrong += not ripe[fruit]
+                break
+    share = basket / max(int(ripe.sum()), 1)
+    return share >= 0.7 and wrong <= 4, 10.0 * share - 0.8 * max(wrong - 1, 0)
+
+
+def ward_tug(
+    rng: np.random.Generator, capacity: float, lift: float, crowd: float, docking: float
+) -> tuple[bool, float]:
+    """Deliver six trolleys on other floors of a hospital, each within its time; charge if the battery gets low.
+
+    There is slack, so lifts or crowds matter alone only near the ends of their ranges. Charging costs minutes, and a
+    smaller battery may charge at a quieter time. In one mission of a hundred, a trolley is not where it should be.
+    """
+    charge, clock, late, hours = 0.9 * capacity, 0.0, 0, 0.0
+    for delivery in range(6):
+        ways, wait = rng.normal(150.0, 12.0, 2), rng.gamma(6.0, 1.0 / 6.0, 2)
+        tries = rng.random(6)
+        busy = crowd * (1.6 if delivery in (2, 3) else 0.8)
+        slow = 1.0 + 0.35 * busy**2
+        spent = float(ways.sum()) * slow + float(wait.sum()) * lift
+        for one in tries:
+            spent += 18.0
+            if one > docking:
+                break
+        used = 0.085 + 0.04 * busy + 0.00012 * spent
+        if charge - used < 0.12:
+            spent += 420.0 * min(1.0, (0.9 * capacity - charge) / 0.5 + 0.3)
+            charge = 0.9 * capacity
+        charge -= used
+        clock += spent
+        over = clock - 600.0 * (delivery + 1) - 230.0
+        late += over > 0.0
+        hours += max(over, 0.0) / 60.0
+        clock = max(clock, 480.0 * (delivery + 1))  # the next trolley is not ready earlier
+    return late <= 1 and bool(rng.random() > 0.01), 30.0 - hours
+
+
+MACHINES: Mapping[str, Machine] = {
+    "crane": Machine(
+        crane,
+        {
+            "rope": Span(4.0, 16.0, 9.0),
+            "wind": Span(0.0, 18.0, 5.0),
+            "load": Span(3.0, 40.0, 18.0),
+            "late": Span(0.0, 1.4, 0.2),
+        },
+        min_success=0.9,
+        tolerance=1.5,
+    ),
+    "balancer": Machine(
+        balancer,
+        {
+            "height": Span(0.25, 1.5, 0.6),
+            "slope": Span(-0.25, 0.25, 0.0),
+            "tilt": Span(-0.1, 0.1, 0.0),
+            "volts": Span(14.0, 26.0, 24.0),
+        },
+        min_success=0.95,
+        tolerance=1.0,
+    ),
+    "infusion": Machine(
+        infusion,
+        {
+            "sensitivity": Span(0.4, 2.5, 1.0),
+            "meal": Span(0.0, 110.0, 45.0),
+            "late": Span(0.0, 25.0, 5.0),
+            "leak": Span(0.0, 0.7, 0.0),
+        },
+        min_success=0.95,
+        tolerance=10.0,
+    ),
+    "centrifuge": Machine(
+        centrifuge,
+        {
+            "stiffness": Span(0.5, 2.4, 0.8),
+            "imbalance": Span(0.0, 12.0, 3.0),
+            "damping": Span(0.02, 0.3, 0.2),
+            "ramp": Span(20.0, 160.0, 100.0),
+        },
+        min_success=0.9,
+        tolerance=1.0,
+    ),
+    "picker": Machine(
+        picker,
+        {
+            "light": Span(50.0, 2000.0, 700.0),
+            "sway": Span(0.0, 6.0, 0.5),
+            "colour": Span(-0.3, 0.3, 0.0),
+            "wear": Span(0.0, 1.0, 0.1),
+        },
+        min_success=0.85,
+        tolerance=1.0,
+    ),
+    "ward_tug": Machine(
+        ward_tug,
+        {
+            "capacity": Span(0.4, 1.0, 0.95),
+            "lift": Span(10.0, 120.0, 40.0),
+            "crowd": Span(0.0, 1.0, 0.2),
+            "docking": Span(0.0, 0.6, 0.05),
+        },
+        min_success=0.95,
+        tolerance=2.0,
+    ),
+}
+
+
+def rates(machine: Machine, point: Point, episodes: int) -> tuple[float, float]:
+    """Return the success rate and the mean reward at a point."""
+    runs = [machine.run(seed, point) for seed in range(episodes)]
+    return fmean(passed for passed, _ in runs), fmean(total for _, total in runs)
+
+
+def fails(machine: Machine, usual: float, found: tuple[float, float]) -> bool:
+    """Return whether rates are worse than the markers allow, where `usual` is the nominal reward."""
+    return found[0] < machine.min_success or found[1] < usual - machine.tolerance
+
+
+def told(name: str, machine: Machine, drifts: int = 400, episodes: int = 40) -> str:
+    """Return a line on a machine: nominal, the ends of each range, random drifts."""
+    usual = rates(machine, machine.space.nominal, 1000)
+    ends: dict[str, Any] = {}
+    for direction, extent in machine.directions.items():
+        for end in {extent.low, extent.high} - {extent.nominal}:
+            there = {**machine.space.nominal, direction: end}
+            ends[f"{direction}={end:g}"] = "{:.2f}, {:.2f}".format(*rates(machine, there, 200))
+    draws = np.random.default_rng(5)
+    drawn = [
+        {way: float(draws.uniform(extent.low, extent.high)) for way, extent in machine.directions.items()}
+        for _ in range(drifts)
+    ]
+    failing = fmean(fails(machine, usual[1], rates(machine, point, episodes)) for point in drawn)
+    return f"{name}: nominal {usual[0]:.3f}, {usual[1]:.2f}; of random drifts {failing:.0%} fail; {ends}"
+
+
+if __name__ == "__main__":
+    for chosen in sys.argv[1:] or MACHINES:
+        print(told(chosen, MACHINES[chosen]), flush=True)
