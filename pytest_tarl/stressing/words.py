@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
-from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress
+from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress, confirmed
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
@@ -160,23 +160,40 @@ def repair_lines(stress: Stress) -> Iterator[str]:
 
 
 def broken_promises(stress: Stress) -> list[str]:
-    """Return a sentence for each direction that fails inside its declared `must_hold` range."""
-    found = []
-    for curve in stress.curves:
-        name = curve.ray.names[0]
-        limits = stress.must_hold.get(name)
-        if curve.confirmed is None or limits is None:
-            continue
-        number = curve.ray.value(curve.confirmed)
-        value = value_of(stress.space.extents[name], number)
-        if isinstance(stress.space.extents[name], Choice):
-            if value in limits:
-                found.append(f"The guarantee fails with {name}={value!r}, but must_hold includes {value!r}.")
-        elif limits[0] - ROUNDING <= number <= limits[1] + ROUNDING:
-            found.append(
-                f"The guarantee fails at {name}={number:.3g}, but must_hold is {limits[0]:g} to {limits[1]:g}."
-            )
-    return found
+    """Return a sentence for each confirmed failure inside `must_hold`: for each direction, then for combinations."""
+    alone = [one for one in confirmed(stress.curves) if _promised(stress, one)]
+    together = [one for one in stress.combinations if _promised(stress, one)]
+    return [
+        *(f"The guarantee fails {_but_must_hold(stress, one)}." for one in alone),
+        *(
+            f"The guarantee fails with {of_point(stress.space, one.point)}, but must_hold includes this combination."
+            for one in together
+        ),
+    ]
+
+
+def _but_must_hold(stress: Stress, one: Failure) -> str:
+    """Return where a failure along one direction is, and what `must_hold` says of the direction."""
+    (name,) = one.names
+    told, limits = of_point(stress.space, one.point), stress.must_hold[name]
+    if isinstance(extent := stress.space.extents[name], Choice):
+        return f"with {told}, but must_hold includes {shown(extent, one.point[name])}"
+    return f"at {told}, but must_hold is {limits[0]:g} to {limits[1]:g}"
+
+
+def _promised(stress: Stress, one: Failure) -> bool:
+    """Return whether every direction of a failure is inside its `must_hold`; without it, only nominal is."""
+    return all(_inside(stress, name, one.point[name]) for name in one.names)
+
+
+def _inside(stress: Stress, name: str, number: float) -> bool:
+    limits = stress.must_hold.get(name)
+    if limits is None:
+        return False
+    extent = stress.space.extents[name]
+    if isinstance(extent, Choice):
+        return value_of(extent, number) in limits
+    return bool(limits[0] - ROUNDING <= number <= limits[1] + ROUNDING)
 
 
 def shown(extent: Span | Choice, number: float) -> str:

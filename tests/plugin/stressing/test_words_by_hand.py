@@ -259,6 +259,30 @@ def test_a_failure_inside_a_must_hold_range_violates_it_and_one_outside_does_not
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
 
 
+@pytest.mark.parametrize(
+    ("must_hold", "broken"),
+    [
+        ({"mud": (2.0, 4.0), "slope": (-0.5, 0.5)}, True),
+        ({"mud": (2.0, 4.0), "slope": (-0.5, 0.1)}, False),  # outside in one direction
+        ({"mud": (2.0, 4.0)}, False),  # only the nominal slope is promised
+        ({}, False),
+    ],
+)
+def test_a_failing_combination_violates_must_hold_if_all_its_directions_are_inside(
+    must_hold: dict[str, Any], broken: bool
+) -> None:
+    found = stress(curve(MUD, GOOD), combinations=(combined(mud=3.0, slope=0.25),), must_hold=must_hold)
+    told = "The guarantee fails with mud=3 and slope=0.25, but must_hold includes this combination."
+    assert words.broken_promises(found) == ([told] if broken else [])
+
+
+def test_an_option_in_a_failing_combination_is_compared_with_the_options_of_must_hold() -> None:
+    found = stress(combinations=(combined(mud=3.0, camera=1.0),))
+    inside = replace(found, must_hold={"mud": (2.0, 4.0), "camera": ("down",)})
+    assert "mud=3 and camera='down'" in words.broken_promises(inside)[0]
+    assert not words.broken_promises(replace(inside, must_hold={"mud": (2.0, 4.0), "camera": ("left",)}))
+
+
 def test_failures_are_sorted_by_their_distance_from_nominal() -> None:
     both = combined(mud=3.9, slope=0.05)
     found = stress(
