@@ -120,10 +120,14 @@ class Share:
 
 @dataclass(frozen=True)
 class Sobol:
-    """The Sobol indices of all directions, and the number of episodes behind them."""
+    """The Sobol indices of all directions, and the number of episodes behind them.
+
+    `hopeless` is true if the margin of every episode was at its lower limit. Then the indices say nothing.
+    """
 
     episodes: int
     shares: tuple[Share, ...]
+    hopeless: bool = False
 
 
 @dataclass(frozen=True, slots=True)

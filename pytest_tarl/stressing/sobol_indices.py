@@ -42,7 +42,7 @@ def sobol(evaluator: Evaluator) -> Sobol | None:
     names = [*evaluator.space.extents]
     if float(np.ptp(margins)) == 0.0:  # no variance to explain
         shares = tuple(Share(name, 0.0, 0.0, 0.0, 0.0) for name in names)
-        return Sobol(evaluator.spent - before, shares)
+        return Sobol(evaluator.spent - before, shares, hopeless=float(margins[0]) == LOWEST)
     from SALib.analyze import sobol as estimates
 
     found = estimates.analyze(

@@ -112,6 +112,12 @@ def sobol_words(stress: Stress) -> Iterator[str]:
     if stress.sobol is None:
         return
     shares = sorted(stress.sobol.shares, key=lambda one: -one.total)
+    if stress.sobol.hopeless:
+        yield (
+            f"All {stress.sobol.episodes} episodes drawn from the whole space fail clearly, so the shares of the "
+            "directions are unknown: narrow the ranges."
+        )
+        return
     if not any(one.total for one in shares):
         yield f"The margin varies nowhere in the space ({stress.sobol.episodes} episodes)."
         return

@@ -57,6 +57,17 @@ def test_an_option_has_a_share_and_a_constant_margin_has_none() -> None:
     assert not any(one.total for one in found.shares)
 
 
+def test_a_space_in_which_every_draw_fails_clearly_is_not_called_one_without_effect() -> None:
+    found = sobol(evaluator_of(lambda point, _: (point["a"] == point["b"] == 0.0, 1.0), SPACE, budget=400))
+    assert found is not None
+    assert found.hopeless
+    (told,) = words.sobol_words(replace(stressed(added, SPACE, budget=150), sobol=found))
+    assert told.startswith("All 384 episodes drawn from the whole space fail clearly")
+    found = sobol(evaluator_of(lambda *_: (True, 1.0), SPACE, budget=400))
+    assert found is not None
+    assert not found.hopeless
+
+
 def test_the_sample_is_as_large_as_the_budget_allows() -> None:
     assert affordable(1, 10**6) == 0  # one direction explains everything
     assert affordable(4, 32 * 7 - 1) == 0
