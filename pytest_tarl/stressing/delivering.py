@@ -32,7 +32,7 @@ def deliver(request: Request, root: Path) -> Delivered:
     Raise RecordingError if the test itself is broken.
     """
     name = f"{slug(request.fixture.test)}-{slug(request.drift)}"
-    memory = root / ".tarl" / "stress" / f"{name}-failing.json"
+    memory = kept.Kept(root / ".tarl" / "stress" / "failing", f"{request.fixture.test}[{request.drift}]")
     try:
         before = _replayed(request, memory)
     except KeyboardInterrupt:
@@ -73,14 +73,15 @@ def _as_text(content: str) -> Callable[[Path], None]:
     return lambda path: write_atomically(path, content.encode())
 
 
-def _replayed(request: Request, memory: Path) -> tuple[str, ...]:
+def _replayed(request: Request, memory: kept.Kept) -> tuple[str, ...]:
     space = request.designation.drifts[request.drift].value
-    points = kept.read(memory, space)
+    points = memory.read(space)
     given = guarantee(request.fixture, request.designation)
     lines: list[str] = []
-    for point, fails in kept.replayed(points, request.rollout, request.drift, request.options.seed, given):
-        where = words.of_point(space, point)
-        lines.append(f"  {'kept' if not lines else '':10} {where} {'still fails' if fails else 'holds now'}.")
+    for one in kept.replayed(points, request.rollout, request.drift, request.options.seed, given):
+        told = f"{words.of_point(space, one.point)} {'still fails' if one.fails else 'holds now'}"
+        episodes = f"{one.passed} of {kept.EPISODES} episodes pass, and the mean loss is {one.loss:.3g}"
+        lines.append(f"  {'kept' if not lines else '':10} {told}: {episodes}.")
     return tuple(lines)
 
 
@@ -93,7 +94,7 @@ def _without_salib(found: Stress) -> tuple[str, ...]:
     return () if advice is None else (f"  {'variance':10} {advice}",)
 
 
-def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
+def _written(found: Stress, root: Path, name: str, memory: kept.Kept) -> list[str]:
     """Write the files; return a line for each failed one, and one with the path of the page."""
     folder = root / ".tarl"
     report = _page(root, name)
@@ -109,7 +110,7 @@ def _written(found: Stress, root: Path, name: str, memory: Path) -> list[str]:
         )
     # an incomplete run that found no failure must not delete the earlier ones
     if not found.ended or found.failures:
-        jobs[memory] = lambda path: kept.write(found.failures, path)
+        jobs[memory.folder] = lambda _: memory.write(found.failures)
     failed = {path: problem for path, write in jobs.items() if (problem := _failure(write, path)) is not None}
     lines = [f"{one} The result above stands." for one in unwritten(failed, root)]
     if report in failed:  # the page on disk, if any, is from an earlier run

@@ -1,16 +1,19 @@
-"""Failing drifts of earlier runs, stored below `.tarl/stress`; they are replayed first.
+"""Failing drifts of earlier runs, in a database of Hypothesis below `.tarl/stress`; they are replayed first.
 
 The replay only reports whether they still fail. It does not affect the search.
 """
 
 from __future__ import annotations
 
+import errno
 import json
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from statistics import fmean
+from typing import TYPE_CHECKING, Any
 
-from pytest_tarl.files import read_regular, write_atomically
+from pytest_tarl.files import check_writable
 from pytest_tarl.finite_numbers import finite_number
 from pytest_tarl.rollout import EpisodePlan, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
@@ -18,51 +21,104 @@ from pytest_tarl.spaces import Choice, Point, Space
 from pytest_tarl.stressing.evaluating import outcome
 from pytest_tarl.stressing.findings import Failure
 from pytest_tarl.stressing.guarantee import Guarantee, Outcome
+from pytest_tarl.stressing.rays import distance
 
-FORMAT_VERSION = 1  # 1: first version
+if TYPE_CHECKING:
+    from hypothesis.database import ExampleDatabase
+
 MOST = 5  # maximum number of failing drifts to keep
 EPISODES = 4  # number of episodes per replayed drift
 
 
-def write(failures: Sequence[Failure], path: Path) -> None:
-    """Write the first MOST failing drifts, or remove the file if there are none.
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The failing drifts of one test and space in the database in `folder`; `key` names the test and the space.
 
-    Raise OSError if the file cannot be written or removed.
+    Hypothesis stores each drift in a file of its own, so that runs of several tests do not disturb each other.
     """
-    if not failures:
-        path.unlink(missing_ok=True)
-        return
-    document = {"format": FORMAT_VERSION, "failing": [dict(one.point) for one in failures[:MOST]]}
-    write_atomically(path, f"{json.dumps(document, indent=1, ensure_ascii=False)}\n".encode())
+
+    folder: Path
+    key: str
+
+    def write(self, failures: Sequence[Failure]) -> None:
+        """Replace the stored drifts by the first MOST of these. Raise OSError if that is impossible."""
+        after = {_as_bytes(one.point) for one in failures[:MOST]}
+        if after or self.folder.exists():
+            check_writable(self.folder / "check")
+        before = self._values()
+        database = self._database()
+        for value in before - after:
+            database.delete(self._name, value)
+        for value in after - before:
+            database.save(self._name, value)
+        if self._values() != after:  # Hypothesis raises no error
+            raise OSError(errno.EIO, "Hypothesis could not store the failing drifts", str(self.folder))
+
+    def read(self, space: Space) -> list[Point]:
+        """Return the stored drifts of the space, except the nominal one, nearest first.
+
+        Return an empty list if the database is missing or damaged. Drifts of another space are skipped.
+        """
+        try:
+            points = [point for value in sorted(self._values()) if (point := _as_point(value, space))]
+        except OSError:
+            return []
+        return sorted(points, key=lambda point: distance(space, point))[:MOST]
+
+    @property
+    def _name(self) -> bytes:
+        return self.key.encode("utf-8", "surrogatepass")
+
+    def _database(self) -> ExampleDatabase:
+        from hypothesis.database import DirectoryBasedExampleDatabase
+
+        return DirectoryBasedExampleDatabase(str(self.folder))
+
+    def _values(self) -> set[bytes]:
+        """Return what is stored. Raise OSError if the folder contains a pipe or a device, which could block."""
+        for path in self.folder.rglob("*"):
+            if not path.is_file() and not path.is_dir():
+                raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+        return set(self._database().fetch(self._name))
 
 
-def read(path: Path, space: Space) -> list[Point]:
-    """Return the stored drifts of the space, except the nominal one.
+def _as_bytes(point: Point) -> bytes:
+    return json.dumps(dict(point), sort_keys=True, ensure_ascii=False).encode("utf-8", "surrogatepass")
 
-    Return an empty list if the file is missing or damaged. Drifts of another space are skipped.
-    """
+
+def _as_point(value: bytes, space: Space) -> Point | None:
+    """Return the point of the space that a stored value represents, or None."""
     try:
-        found = json.loads(read_regular(path).decode("utf-8"))
-        points = found["failing"] if found["format"] == FORMAT_VERSION else []
-        return [point for point in points if _inside(space, point)][:MOST]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError, MemoryError):
-        return []
+        found = json.loads(value.decode("utf-8", "surrogatepass"))
+        return {name: found[name] for name in space.extents} if _inside(space, found) else None
+    except (ValueError, RecursionError, MemoryError):
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """The result of replaying a stored drift: the number of episodes that passed, and the mean loss of reward."""
+
+    point: Point
+    fails: bool
+    passed: int
+    loss: float
 
 
 def replayed(
     points: Sequence[Point], rollout: Rollout, drift: str, seed: int, given: Guarantee
-) -> Iterator[tuple[Point, bool]]:
-    """Yield each stored drift, and whether it still fails in EPISODES episodes."""
+) -> Iterator[Replayed]:
+    """Run EPISODES episodes at each stored drift; it still fails if one of them fails or the mean loss is too large."""
     seeds = episode_seeds(seed, f"stress {drift} search", EPISODES)
     for point in points:
         plans = (EpisodePlan(each, drift, point=point) for each in seeds)
-        yield point, _fails([outcome(one.result()) for one in in_order(rollout, plans)], given)
+        yield _judged(point, [outcome(one.result()) for one in in_order(rollout, plans)], given)
 
 
-def _fails(outcomes: Sequence[Outcome], given: Guarantee) -> bool:
-    mean = sum(one.total for one in outcomes) / len(outcomes)
-    recorded = sum(given.totals) / len(given.totals)
-    return not all(one.passed for one in outcomes) or recorded - mean > given.tolerance
+def _judged(point: Point, outcomes: Sequence[Outcome], given: Guarantee) -> Replayed:
+    passed = sum(one.passed for one in outcomes)
+    loss = fmean(given.totals) - fmean(one.total for one in outcomes)
+    return Replayed(point, passed < len(outcomes) or loss > given.tolerance, passed, loss)
 
 
 def _inside(space: Space, point: Any) -> bool:

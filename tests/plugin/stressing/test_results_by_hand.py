@@ -34,7 +34,7 @@ from pytest_tarl.stressing.guarantee import (
     unlike_recorded,
 )
 from pytest_tarl.stressing.holding import least
-from pytest_tarl.stressing.kept import _fails
+from pytest_tarl.stressing.kept import Replayed, _judged
 from pytest_tarl.stressing.margin_changes import Row, compared
 from pytest_tarl.stressing.margin_changes import words as boundary_words
 from pytest_tarl.stressing.margins import Margin, Margins
@@ -213,18 +213,20 @@ def test_a_nominal_world_with_lower_rewards_or_failures_differs_from_the_recordi
 
 
 @pytest.mark.parametrize(
-    ("outcomes", "expected"),
+    ("outcomes", "fails", "passed", "loss"),
     [
-        ([FINE] * 4, False),
-        ([FINE, FINE, FINE, FAILED], True),
-        ([Outcome(True, 9.5)] * 4, False),
-        ([Outcome(True, 9.4)] * 4, True),
+        ([FINE] * 4, False, 4, 0.0),
+        ([FINE, FINE, FINE, FAILED], True, 3, 0.0),
+        ([Outcome(True, 9.5)] * 4, False, 4, 0.5),
+        ([Outcome(True, 9.4)] * 4, True, 4, 0.6),
     ],
 )
 def test_a_drift_kept_from_an_earlier_run_counts_only_if_it_fails_again(
-    outcomes: list[Outcome], expected: bool
+    outcomes: list[Outcome], fails: bool, passed: int, loss: float
 ) -> None:
-    assert _fails(outcomes, GIVEN) is expected
+    found = _judged({"mud": 1.0}, outcomes, GIVEN)
+    assert found == Replayed({"mud": 1.0}, fails, passed, found.loss)
+    assert found.loss == pytest.approx(loss)
 
 
 def test_the_search_confirms_clearly_failing_drift_sizes_and_some_larger_ones() -> None:

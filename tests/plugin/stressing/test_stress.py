@@ -10,6 +10,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from hypothesis.database import DirectoryBasedExampleDatabase
 
 from pytest_tarl import Drift, faults
 from pytest_tarl.drifts import drift
@@ -71,7 +72,7 @@ def test_a_run_prints_and_writes_results_and_replays_failures(spaced: pytest.Pyt
     assert margins_file.read(margins.read_bytes(), "it").sides[0].fails_at == pump["boundary"]["failed_at"]
     assert "!margins/**" in (spaced.path / ".tarl" / ".gitignore").read_text("utf-8")
     again = spaced.runpytest(*STRESS, "--tarl-workers=2")
-    assert "still fails." in again.stdout.str()
+    assert "still fails: 4 of 4 episodes pass, and the mean loss is 0." in again.stdout.str()
     assert written(spaced) == first
 
 
@@ -88,7 +89,7 @@ def test_kept_failures_and_workers_do_not_change_the_result_of_a_search_in_two_d
     assert {one["name"] for one in found["directions"]} == {"pump", "high"}
     assert found["failures"]
     again = spaced.runpytest(*budget, "--tarl-workers=2")
-    assert "still fails." in again.stdout.str()
+    assert "still fails:" in again.stdout.str()
     assert written(spaced) == first
 
 
@@ -225,17 +226,24 @@ def test_other_values_of_the_flag_must_hold_are_refused(value: Any, told: str) -
         must_hold("t", value, DRIFTS)
 
 
-def test_a_damaged_file_of_failures_or_one_of_another_space_is_ignored(tmp_path: Path) -> None:
+def test_kept_failures_are_read_in_their_own_space_and_by_their_own_test(tmp_path: Path) -> None:
     space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0), camera=Drift.choice("up", "down"))
-    path = tmp_path / "kept.json"
-    assert kept.read(path, space) == []
+    memory = kept.Kept(tmp_path / "failing", "test_a.py::test_a[world]")
+    assert memory.read(space) == []
     point = {"mud": 0.5, "camera": 1.0}
-    kept.write([failure(space, point)], path)
-    assert kept.read(path, space) == [point]
-    assert kept.read(path, space_of(mud=Drift.range(0.0, 1.0, nominal=1.0))) == []
-    assert kept.read(path, space_of(mud=Drift.range(0.6, 1.0, nominal=1.0), camera=Drift.choice(1, 2))) == []
-    for text in ("", "{", "[]", '{"format": 2, "failing": [{}]}', '{"format": 1, "failing": [3]}'):
-        path.write_text(text)
-        assert kept.read(path, space) == []
-    kept.write([], path)
-    assert not path.exists()
+    memory.write([failure(space, point)])
+    assert memory.read(space) == [point]
+    assert memory.read(space_of(mud=Drift.range(0.0, 1.0, nominal=1.0))) == []
+    assert memory.read(space_of(mud=Drift.range(0.6, 1.0, nominal=1.0), camera=Drift.choice(1, 2))) == []
+    other = replace(memory, key="test_a.py::test_b[world]")
+    other.write([failure(space, {"mud": 0.25, "camera": 0.0})])
+    assert memory.read(space) == [point]
+    memory.write([])
+    assert (memory.read(space), len(other.read(space))) == ([], 1)
+
+
+def test_hypothesis_reads_the_kept_failures(tmp_path: Path) -> None:
+    space = space_of(mud=Drift.range(0.0, 1.0, nominal=1.0))
+    kept.Kept(tmp_path, "test_a.py::test_a[world]").write([failure(space, {"mud": 0.5})])
+    database = DirectoryBasedExampleDatabase(tmp_path)
+    assert [*database.fetch(b"test_a.py::test_a[world]")] == [b'{"mud": 0.5}']
