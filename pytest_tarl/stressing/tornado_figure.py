@@ -39,8 +39,8 @@ def tornado(stress: Stress) -> str:
         x, dash = middle + side * unit, ' stroke-dasharray="4"' if side else ""
         drawn.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="2" y2="{low}" stroke="{INK}"{dash}/>')
         drawn.append(svg_text(x, low + 16, "limit" if side else "nominal", "middle"))
-    drawn.append(svg_text(middle - unit / 2, low + 38, "← lower values", "middle"))
-    drawn.append(svg_text(middle + unit / 2, low + 38, "higher values →", "middle"))
+    drawn.append(svg_text(middle - 8, low + 38, "← lower values", "end"))
+    drawn.append(svg_text(middle + 8, low + 38, "higher values →", "start"))
     return "\n".join([*drawn, "</svg>"])
 
 

@@ -80,8 +80,8 @@ def test_the_texts_of_a_tornado_stand_at_its_ends_and_limits() -> None:
         "1": (MIDDLE + 1.5 * UNIT + 6, base + step, "start"),
         "nominal": (MIDDLE, low + 16, "middle"),
         "limit": (MIDDLE + UNIT, low + 16, "middle"),
-        "← lower values": (MIDDLE - UNIT / 2, low + 38, "middle"),
-        "higher values →": (MIDDLE + UNIT / 2, low + 38, "middle"),
+        "← lower values": (MIDDLE - 8, low + 38, "end"),
+        "higher values →": (MIDDLE + 8, low + 38, "start"),
     }
     assert {name: (x, y) for name, (x, y, _) in found.items()} == {
         name: pytest.approx((x, y), abs=0.06) for name, (x, y, _) in expected.items()
