@@ -24,6 +24,7 @@ from pytest_tarl.stressing.words import (
     sobol_words,
     statement_words,
     together,
+    undecided_promises,
 )
 
 WIDTH, HEIGHT, EDGE = 640, 200, 44  # px: size of a figure; EDGE is the space for the axes
@@ -52,6 +53,7 @@ def render(stress: Stress) -> str:
             f"<h1>{title}</h1>",
             *(f"<p>{escape(one)}</p>" for one in _opening(stress)),
             *(f'<p class="broken">{escape(one)}</p>' for one in broken_promises(stress)),
+            *(f"<p>must_hold: {escape(one)}</p>" for one in undecided_promises(stress)),
             *_maps(stress),
             *_sections(stress),
             *_combinations(stress),

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from pytest_tarl.spaces import Choice, Point, Space, Span, nominal, value_of
-from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress, confirmed
+from pytest_tarl.stressing.findings import CONFIDENCE, Boundary, Curve, Failure, Stress, confirmed, failure
 from pytest_tarl.stressing.rays import Ray
 
 MOST_SHOWN = 5  # maximum number of combinations shown, and of statements shown
@@ -32,6 +32,8 @@ def lines(stress: Stress) -> Iterator[str]:
             yield f"  {name if not number else '':10} {sentence}"
     for number, sentence in enumerate(together(stress)):
         yield f"  {'together' if not number else '':10} {sentence}"
+    for number, sentence in enumerate(undecided_promises(stress)):
+        yield f"  {'must_hold' if not number else '':10} {sentence}"
     for number, sentence in enumerate(statement_words(stress)):
         yield f"  {'statements' if not number else '':10} {sentence}"
     yield from (f"  {'variance':10} {sentence}" for sentence in sobol_words(stress))
@@ -176,6 +178,17 @@ def broken_promises(stress: Stress) -> list[str]:
             for one in together
         ),
     ]
+
+
+def undecided_promises(stress: Stress) -> list[str]:
+    """Return a sentence for each direction that seems to fail inside `must_hold` although no failure was confirmed."""
+    found = []
+    for curve in stress.curves:
+        places = [t for t in curve.failing if _promised(stress, failure(stress.space, curve.ray.point(t)))]
+        if places and curve.confirmed is None:
+            told = of_point(stress.space, curve.ray.point(places[0]))
+            found.append(f"Undecided: {told} is inside and suspicious, but no failure was confirmed.")
+    return found
 
 
 def _but_must_hold(stress: Stress, one: Failure) -> str:

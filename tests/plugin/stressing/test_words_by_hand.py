@@ -259,6 +259,19 @@ def test_a_failure_inside_a_must_hold_range_violates_it_and_one_outside_does_not
     assert bool(words.broken_promises(stress(one, must_hold=must_hold))) is broken
 
 
+def test_a_suspicious_value_inside_must_hold_is_named_as_undecided() -> None:
+    found = stress(curve(MUD, GOOD), must_hold={"mud": (1.0, 4.0)})
+    assert words.undecided_promises(found) == [
+        "Undecided: mud=1 is inside and suspicious, but no failure was confirmed."
+    ]
+    assert [line for line in words.lines(found) if line.startswith("  must_hold  Undecided: mud=1")]
+    assert words.undecided_promises(replace(found, must_hold={"mud": (1.1, 4.0)})) == []
+    assert (
+        words.undecided_promises(stress(curve(MUD, GOOD, confirmed=0.75), must_hold={"mud": (1.0, 4.0)}))
+        == []
+    )
+
+
 @pytest.mark.parametrize(
     ("must_hold", "broken"),
     [
