@@ -129,8 +129,9 @@ class Tarl:
 
         `entry` names the function to call if the node is an entry point in `setup.py`: `entry="main"` for
         `driver = robot.driver:main`. `argv` is the node's command line, including remappings. `parameters` apply to all
-        nodes of the episode. Further parameters come from the launch file `launch`. Without `launch`, TARL
-        searches the workspace for launch files that start the script; with `launch=False`, it reads no launch file.
+        nodes of the episode. Further parameters, and the command line if `argv` is empty, come from the launch file
+        `launch`. Without `launch`, TARL searches the workspace for launch files that start the script; with
+        `launch=False`, it reads no launch file.
         """
         self.drives_ros = True
         self._starter.start(script, name, argv, parameters or {}, entry, launch)

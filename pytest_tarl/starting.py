@@ -36,7 +36,7 @@ class Starter:
         entry: str | None,
         launch: str | Literal[False] | None,
     ) -> None:
-        """Start a file with the parameters of its launch file.
+        """Start a file with the parameters of its launch file, and with its arguments if `argv` is empty.
 
         Raise SettingsError if there is no such file.
         """
@@ -49,7 +49,9 @@ class Starter:
         if launch is not False:
             from pytest_tarl.ros.launched import given
 
-            ros.launch(given(path, None if launch is None else (self._folder / launch).resolve()))
+            got = given(path, None if launch is None else (self._folder / launch).resolve())
+            ros.launch(got)
+            argv = argv or got.argv
         ros.start(self._program(path, entry), name=name or path.stem, argv=argv)
 
     def launch(

@@ -14,7 +14,7 @@ from pytest_tarl.ros.bus import Bus, Channel, Topic
 from pytest_tarl.ros.episode import Ros
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.keyboard import terminals
-from pytest_tarl.ros.launched import Given
+from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import stamp_if_unset, translate, type_name

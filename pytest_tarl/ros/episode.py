@@ -13,7 +13,7 @@ from pytest_tarl.ros.argv import command_line
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.keyboard import Terminal
-from pytest_tarl.ros.launched import NOTHING, Given
+from pytest_tarl.ros.launch_sources import NOTHING, Given
 from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.process import Network, Process
 from pytest_tarl.ros.scheduler import Spinning, running_task

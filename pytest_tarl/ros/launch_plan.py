@@ -13,7 +13,8 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.ros.launched import WITH_TEXTS, Given, parameters, python_files
+from pytest_tarl.ros.launch_sources import Given
+from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
 from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
 from tarl_lint.node_names import node_name
 from tarl_lint.workspace.folders import workspace_root

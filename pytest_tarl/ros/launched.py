@@ -1,117 +1,91 @@
-"""Read a node's parameters from the launch files of its workspace."""
+"""Read a node's parameters and arguments from the launch files of its workspace."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros.launch_choice import chosen
+from pytest_tarl.ros.launch_sources import NOTHING, Given, Source
 from pytest_tarl.ros.messages.workspace import on_forget, workspaces
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.executables import is_python
 from tarl_lint.workspace.folders import folders
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
-from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, stated
+from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, leaves, stated
 from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError
+from tarl_lint.workspace.ros_arguments import plain
 from tarl_lint.workspace.ros_names import joined
 
-
-@dataclass(frozen=True)
-class Given:
-    """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file.
-
-    `node` is the absolute name of a node that `tarl.launch` starts; it is empty for one that `tarl.start` starts.
-    `valueless` holds names of parameters without a usable value: either the value is only known at launch, or it is
-    null in YAML, which ROS 1 cannot store.
-    """
-
-    private: Mapping[str, Any] = field(default_factory=dict)
-    shared: Mapping[str, Any] = field(default_factory=dict)
-    note: str = ""
-    node: str = ""
-    valueless: tuple[str, ...] = ()
-
-
-NOTHING = Given()
 WITH_TEXTS: list[Callable[[], None]] = []  # functions that clear the caches of launch and parameter files
 
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return a script's parameters from the file `launch`; without it, from all launch files that start the script.
+    """Return what the file `launch` gives a script; without it, what the workspace's launch files give the script.
 
-    If these files give different parameters, use only the files in the script's package; if those differ as well,
-    return the parameters on which they agree, and a note.
-
-    Raise SettingsError if the named file does not exist or does not start the script.
+    If these files differ, `launch_choice.chosen` decides. Raise SettingsError if the named file does not exist or does
+    not start the script.
     """
     workspace = next((one for one in workspaces() if script.is_relative_to(one.root)), None)
     if workspace is None:
         return NOTHING
-    launches = _launches(workspace, script) if launch is None else (_read(launch, workspace),)
-    starts = [
-        (one, node) for one in launches for node in one.nodes if node.file == one.file or launch is not None
+    if launch is None:
+        starts = _starts(workspace, script)
+    else:
+        one = _read(launch, workspace)
+        starts = [(one, node) for node in one.nodes if _runs(workspace, node, script)]
+        if not starts:
+            raise SettingsError(f"tarl.start: {launch} starts no node from {script.name}.")
+    package = workspace.package_of(script)
+    found = [(_given(one, node), one.file) for one, node in starts]
+    got = chosen(script, None if package is None else package.folder, found)
+    return replace(got, sources=tuple(_source(workspace, one, node) for one, node in starts))
+
+
+def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNode]]:
+    """Return the launch files that start a script, with its nodes.
+
+    Where a file needs launch arguments for the node, files that include it with these arguments take its place.
+    """
+    named = {one.name for package in workspace.packages for one in package.executables if one.path == script}
+    direct = [
+        (one, node)
+        for one in _launches(workspace, sorted({script.name, *named}))
+        for node in one.nodes
+        if node.file == one.file and _runs(workspace, node, script)
     ]
-    found = [(one, node) for one, node in starts if _runs(workspace, node, script)]
-    if launch is not None and not found:
-        raise SettingsError(f"tarl.start: {launch} starts no node from {script.name}.")
-    return _chosen(
-        workspace, script, [_given(one, node) for one, node in found], [one.file for one, _ in found]
-    )
+    found = []
+    for one, node in direct:
+        files = () if _source(workspace, one, node).complete else _launches(workspace, [one.file.name])
+        including = [
+            (outer, inner)
+            for outer in files
+            for inner in outer.nodes
+            if outer.file != one.file
+            and (inner.file, inner.line) == (node.file, node.line)
+            and _source(workspace, outer, inner).complete
+        ]
+        found += including or [(one, node)]
+    return found
 
 
-def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: Sequence[Path]) -> Given:
-    """Return the parameters if all files agree, or else those on which all files of the script's package agree."""
-    own = workspace.package_of(script)
-    telling = [(one, file) for one, file in zip(found, files, strict=True) if one.private or one.shared]
-    near = [(one, file) for one, file in telling if own is not None and file.is_relative_to(own.folder)]
-    for some in (telling, near):
-        if some and all(_same(one, some[0][0]) for one, _ in some):
-            return some[0][0]
-    if not telling:
-        return NOTHING
-    differing = near or telling
-    names = sorted({file.name for _, file in differing})
-    shown = ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
-    private = _agreed([one.private for one, _ in differing])
-    shared = _agreed([one.shared for one, _ in differing])
-    got = "only those that are equal in all of them" if private or shared else "none of them"
-    note = (
-        f"{script.name} is started with different parameters by launch files ({shown}), so it got {got}: "
-        "name one with tarl.start(…, launch=FILE), or state parameters={…}."
-    )
-    valueless = {name: None for one, _ in differing for name in one.valueless}
-    return Given(private, shared, note, valueless=tuple(valueless))
-
-
-def _agreed(mappings: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the entries that are equal in all mappings; compare nested mappings entry by entry."""
-    first, *others = mappings
-    agreed: dict[str, Any] = {}
-    for name, value in first.items():
-        values = [other.get(name, NOTHING) for other in others]
-        if all(_equal(value, other) for other in values):
-            agreed[name] = value
-        elif isinstance(value, Mapping) and all(isinstance(other, Mapping) for other in values):
-            part = _agreed([value, *values])
-            if part:
-                agreed[name] = part
-    return agreed
-
-
-def _equal(one: Any, other: Any) -> bool:
-    """Return whether two YAML values are identical; unlike in Python, 1, 1.0 and True differ."""
-    return repr(one) == repr(other)
-
-
-def _same(one: Given, other: Given) -> bool:
-    return (one.private, one.shared) == (other.private, other.shared)
+def _source(workspace: Workspace, launch: Launch, node: LaunchedNode) -> Source:
+    """Return a launch file as the source of what it gives a node."""
+    package = workspace.package_of(launch.file)
+    name = f"{package.name}/{launch.file.name}" if package is not None else launch.file.name
+    own = node.name if node.name and "$(" not in node.name else node.executable
+    got = _given(launch, node)
+    argv = plain(node.arguments, for_ros2=launch.ros2)
+    values = {**dict(leaves(got.shared)), **dict(leaves(got.private))}
+    return Source(launch.file, name, own, argv, {**values, **got.private}, got.valueless, launch.required)
 
 
 def _runs(workspace: Workspace, node: LaunchedNode, script: Path) -> bool:
@@ -132,10 +106,18 @@ def python_files(package: Path) -> tuple[Path, ...]:
 
 
 def _given(launch: Launch, node: LaunchedNode) -> Given:
-    """Return the values of a node's parameters, with YAML parsed, for a test that starts it in the namespace `/`."""
+    """Return what a launch file gives a node, with YAML parsed, for a test that starts it in the namespace `/`."""
     found = parameters(launch, node, joined(node.namespace, node.name) if node.name else node.namespace + "/")
+    argv = plain(node.arguments, for_ros2=launch.ros2)
+    known = argv if not any("$(" in one for one in argv) else ()
     shared = {_rooted(name, node): value for name, value in found.shared.items()}
-    return replace(found, shared=shared, private={_rooted(k, node): v for k, v in found.private.items()})
+    private = {_rooted(name, node): value for name, value in found.private.items()}
+    note = found.note
+    if known:
+        note = note.replace(
+            "parameters of", "parameters and arguments of" if private or shared else "arguments of", 1
+        )
+    return replace(found, shared=shared, private=private, argv=known, note=note)
 
 
 def parameters(launch: Launch, node: LaunchedNode, full_name: str) -> Given:
@@ -180,12 +162,11 @@ def _of_setting(setting: Setting, full_name: str) -> Iterator[Stated]:
         raise SettingsError(f"{setting.file}: {reason}") from None
 
 
-def _launches(workspace: Workspace, script: Path) -> tuple[Launch, ...]:
-    """Return the launch files that contain the script's name or the name of its entry point."""
-    named = {one.name for package in workspace.packages for one in package.executables if one.path == script}
-    words = [name.encode() for name in sorted({script.name, *named})]
+def _launches(workspace: Workspace, names: Sequence[str]) -> list[Launch]:
+    """Return the launch files that contain one of these names."""
+    words = [name.encode() for name in names]
     files = [file for package in workspace.packages for file in package.launch_files]
-    return tuple(_read(file, workspace) for file in files if any(word in _bytes(file) for word in words))
+    return [_read(file, workspace) for file in files if any(word in _bytes(file) for word in words)]
 
 
 @cache

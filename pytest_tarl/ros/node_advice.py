@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from types import FrameType, TracebackType
 
 from pytest_tarl.ros import blame
-from pytest_tarl.ros.launched import Given
+from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
 from pytest_tarl.ros.missing_modules import PYTHON_2, module_advice
 
 _PYTHON_2_SYNTAX = re.compile(
@@ -26,7 +26,7 @@ _PYTHON_2_NAMES = re.compile(
 def advice(error: BaseException, given: Given) -> str:
     """Return one sentence of advice about a node's error; empty if the error's own text is enough.
 
-    `given` holds the parameters that launch files give the node.
+    `given` holds what launch files give the node.
     """
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
@@ -38,8 +38,10 @@ def advice(error: BaseException, given: Given) -> str:
         return PYTHON_2 if _PYTHON_2_NAMES.search(str(error)) else ""
     if isinstance(error, KeyError):
         return _of_lookup(error, given)
+    if type(error).__name__ == "ParameterUninitializedException" and error.args:
+        return _of_parameter(str(error.args[0]).rpartition(": ")[2], given)
     if isinstance(error, SystemExit | IndexError):
-        return _of_arguments(error)
+        return _of_arguments(error, given)
     if isinstance(error, TypeError) and "required positional argument: 'Loader'" in str(error):
         return (
             "PyYAML 6 has no default for it: call yaml.safe_load in the node, or run pip install 'PyYAML<6' in the "
@@ -60,7 +62,14 @@ def _of_lookup(error: KeyError, given: Given) -> str:
         )
     if last.f_code.co_name != "get_param":
         return ""
-    plain = name.removeprefix("~")
+    return _of_parameter(name.removeprefix("~"), given)
+
+
+def _of_parameter(plain: str, given: Given) -> str:
+    """Return advice for a parameter that has no value."""
+    sources = parameter_from(given.sources, plain)
+    if sources:
+        return f'{sources}, or pass parameters={{"{plain}": …}} to tarl.start.'
     why = (
         "The launch file gives the parameter no value that is known before the launch"
         if plain in given.valueless
@@ -69,9 +78,10 @@ def _of_lookup(error: KeyError, given: Given) -> str:
     return f'{why}: pass parameters={{"{plain}": …}} to tarl.start.'
 
 
-def _of_arguments(error: BaseException) -> str:
+def _of_arguments(error: BaseException, given: Given) -> str:
     """Return advice about missing command line arguments, including the message of the node's argument parser."""
-    hint = "pass argv=[…] to tarl.start."
+    sources = arguments_from(given.sources)
+    hint = f"{sources}, or pass argv=[…] to tarl.start." if sources else "pass argv=[…] to tarl.start."
     for frame in _frames(error):
         module = frame.f_globals.get("__name__")
         if module in ("argparse", "optparse") and frame.f_code.co_name == "error":

@@ -10,7 +10,7 @@ from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, Unsupported
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.exiting import ProcessExit
-from pytest_tarl.ros.launched import NOTHING
+from pytest_tarl.ros.launch_sources import NOTHING
 from pytest_tarl.ros.node_advice import advice
 from pytest_tarl.ros.parameter_server import ParameterServer
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task

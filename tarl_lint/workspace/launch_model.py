@@ -61,7 +61,8 @@ class LaunchedNode:
 class Launch:
     """A launch file with its included files. `settings` are the parameters outside of nodes.
 
-    `arguments` are the names of its launch arguments; `ros2` says whether it is for ROS 2.
+    `arguments` are the names of its launch arguments, and `required` those without a value or default; `ros2` says
+    whether it is for ROS 2.
     """
 
     file: Path
@@ -70,3 +71,4 @@ class Launch:
     problems: tuple[Problem, ...] = ()
     arguments: tuple[str, ...] = ()
     ros2: bool = False
+    required: tuple[str, ...] = ()

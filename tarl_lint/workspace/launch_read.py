@@ -49,7 +49,8 @@ def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Laun
     runner = Runner(_opened)
     runner.run(_opened(path, context, runner.problems), context)
     names = tuple(sorted({*runner.arguments, *context.asked}))
-    return Launch(path, tuple(runner.nodes), (), tuple(dict.fromkeys(runner.problems)), names, ros2=True)
+    problems, required = tuple(dict.fromkeys(runner.problems)), tuple(sorted(runner.required))
+    return Launch(path, tuple(runner.nodes), (), problems, names, ros2=True, required=required)
 
 
 def is_ros2_xml(path: Path, workspace: Workspace) -> bool:

@@ -89,6 +89,7 @@ class Runner:
     nodes: list[LaunchedNode] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names of the declared arguments
+    required: set[str] = field(default_factory=set)  # those of them that have no value
     # the files that include the current action, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0
@@ -162,6 +163,7 @@ class Runner:
             self.arguments.add(name)
             if name not in context.configurations:
                 default = values.get("default_value")
+                self.required |= {name} if default is None else set()
                 text = f"$(var {name})" if default is None else performed(default, context)
                 context.configurations[name] = text
         elif kind == "set":

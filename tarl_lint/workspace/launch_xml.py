@@ -42,6 +42,7 @@ class _Reader:
     settings: list[Setting] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names of the arguments of the outermost file
+    required: set[str] = field(default_factory=set)  # those of them that have no value
     seen: int = 0
     visits: int = 0  # number of files included so far
 
@@ -100,6 +101,8 @@ class _Reader:
         name = element.get("name", "")
         if len(place.including) == 1 and "value" not in element.attrib:
             self.arguments.add(name)
+            if "default" not in element.attrib and name not in place.scope.arguments:
+                self.required.add(name)
         if name in place.scope.arguments and "value" not in element.attrib:
             return place  # set by the including file
         stated = element.get("value", element.get("default"))
@@ -243,6 +246,7 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
         tuple(reader.settings),
         tuple(reader.problems),
         tuple(sorted(reader.arguments)),
+        required=tuple(sorted(reader.required)),
     )
 
 

@@ -87,3 +87,17 @@ def _words(arguments: str) -> list[str]:
     except ValueError:
         words = whole.split()
     return [one.replace("\0", " ") for one in words]
+
+
+def plain(arguments: str, *, for_ros2: bool) -> tuple[str, ...]:
+    """Return the arguments of a node that are for its own program: without remappings, parameters and ROS options."""
+    words = _words(arguments)
+    if not for_ros2:
+        return tuple(one for one in words if ":=" not in one)
+    found, inside = [], False
+    for word in words:
+        if word == "--ros-args" or (inside and word == "--"):
+            inside = word == "--ros-args"
+        elif not inside:
+            found.append(word)
+    return tuple(found)

@@ -9,6 +9,7 @@ import pytest
 
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros import Ros
+from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import given
 from pytest_tarl.ros.messages import workspace
 from tests.plugin.ros.conftest import Start
@@ -101,9 +102,19 @@ def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    "argument", ['name="target" default=""', 'name="target"'], ids=["null in YAML", "no default"]
+    ("argument", "advice"),
+    [
+        ('name="target" default=""', "no value that is known before the launch: pass parameters="),
+        (
+            'name="target"',
+            r"save\.launch starts this node with ~target from its launch arguments: use tarl\.launch",
+        ),
+    ],
+    ids=["null in YAML", "no default"],
 )
-def test_a_parameter_without_a_value_is_not_set(argument: str, start: Start, tmp_path: Path) -> None:
+def test_a_parameter_without_a_value_is_not_set(
+    argument: str, advice: str, start: Start, tmp_path: Path
+) -> None:
     (tmp_path / ".git").mkdir()
     (tmp_path / "package.xml").write_text("<package><name>saver</name></package>")
     (tmp_path / "save.launch").write_text(
@@ -119,6 +130,115 @@ def test_a_parameter_without_a_value_is_not_set(argument: str, start: Start, tmp
     source = "import rospy\nrospy.init_node('saver')\nrospy.get_param('~target')"
     with ros.installed():
         ros.launch(found)
-        with pytest.raises(NodeError, match="no value that is known before the launch: pass parameters="):
+        with pytest.raises(NodeError, match=advice):
             start(source, ros=ros)
     ros.close()
+
+
+def in_package(folder: Path, **files: str) -> Given:
+    """Write a package `saver` with a node and these launch files; return what they give the node."""
+    (folder / ".git").mkdir()
+    (folder / "package.xml").write_text("<package><name>saver</name></package>")
+    for name, text in files.items():
+        (folder / f"{name}.launch").write_text(f"<launch>{text}</launch>")
+    (folder / "node.py").write_text("")
+    workspace.search(folder)
+    workspace.forget()
+    return given(folder / "node.py")
+
+
+def failure(start: Start, found: Given, source: str) -> str:
+    """Return the message of a node that fails when it is started with what launch files give it."""
+    ros = Ros()
+    with ros.installed():
+        ros.launch(found)
+        with pytest.raises(NodeError) as error:
+            start(source, ros=ros, argv=found.argv)
+    ros.close()
+    return str(error.value)
+
+
+def test_a_missing_parameter_names_the_launch_files_that_set_it(start: Start, tmp_path: Path) -> None:
+    node = '<node pkg="saver" type="node.py" name="{0}"><param name="port" value="{1}"/></node>'
+    found = in_package(
+        tmp_path, left=node.format("left_arm", "/dev/a"), right=node.format("right_arm", "/dev/b")
+    )
+    message = failure(start, found, "import rospy\nrospy.init_node('saver')\nrospy.get_param('~port')")
+    assert message.endswith(
+        "left.launch starts this node with ~port:=/dev/a, and right.launch with ~port:=/dev/b: use "
+        'tarl.launch("saver/left.launch", only=["left_arm"]) or tarl.launch("saver/right.launch", only=["right_arm"]), '
+        'or pass parameters={"port": …} to tarl.start.'
+    )
+
+
+def test_a_missing_parameter_names_the_launch_arguments_that_it_needs(start: Start, tmp_path: Path) -> None:
+    text = """<arg name="port"/><arg name="rate" default="5"/>
+        <node pkg="saver" type="node.py" name="arm"><param name="port" value="$(arg port)"/></node>"""
+    found = in_package(tmp_path, bringup=text)
+    message = failure(start, found, "import rospy\nrospy.init_node('saver')\nrospy.get_param('~port')")
+    assert message.endswith(
+        "bringup.launch starts this node with ~port from its launch arguments: use "
+        'tarl.launch("saver/bringup.launch", arguments={"port": …}, only=["arm"]), or pass parameters={"port": …} to '
+        "tarl.start."
+    )
+
+
+def test_a_parameter_of_rclpy_without_a_value_gets_the_same_advice(start: Start) -> None:
+    source = """
+        import rclpy
+        rclpy.init()
+        node = rclpy.create_node("arm")
+        node.declare_parameter("port", rclpy.Parameter.Type.STRING)
+        node.get_parameter("port")
+    """
+    with pytest.raises(
+        NodeError, match=r'sets this parameter: pass parameters=\{"port": …\} to tarl\.start\.$'
+    ):
+        start(source)
+
+
+READS = """
+import argparse
+parser = argparse.ArgumentParser()
+parser.add_argument("--pip")
+parser.add_argument("file")
+"""
+
+
+def test_a_missing_command_line_names_the_launch_file_that_has_one(start: Start, tmp_path: Path) -> None:
+    text = '<arg name="ip"/><node pkg="saver" type="node.py" name="walker" args="--pip=$(arg ip) f.txt _a:=1 in:=out"/>'
+    found = in_package(tmp_path, nao=text)
+    assert found.argv == ()
+    message = failure(start, found, READS + "parser.parse_args()")
+    assert message.endswith(
+        "the following arguments are required: file): nao.launch starts this node with the arguments "
+        '`--pip=$(arg ip) f.txt`: use tarl.launch("saver/nao.launch", arguments={"ip": …}, only=["walker"]), or '
+        "pass argv=[…] to tarl.start."
+    )
+
+
+def test_the_command_line_comes_from_the_launch_file(start: Start, tmp_path: Path) -> None:
+    text = (
+        '<node pkg="saver" type="node.py" name="walker" args="--pip 1.2.3.4 \'a b.txt\' _rate:=1 in:=out"/>'
+    )
+    found = in_package(tmp_path, nao=text)
+    assert found.argv == ("--pip", "1.2.3.4", "a b.txt")
+    assert found.note == "parameters and arguments of walker come from nao.launch."
+    ros = start(READS + "found = vars(parser.parse_args())", argv=found.argv)
+    assert ros.namespace["found"] == {"pip": "1.2.3.4", "file": "a b.txt"}  # type: ignore[attr-defined]
+
+
+def test_a_file_that_includes_the_launch_file_supplies_its_arguments(tmp_path: Path) -> None:
+    driver = """<arg name="port"/><node pkg="saver" type="node.py" name="arm" args="$(arg port)">
+        <param name="port" value="$(arg port)"/></node>"""
+    robot = '<include file="$(find saver)/driver.launch"><arg name="port" value="/dev/arm"/></include>'
+    found = in_package(tmp_path, driver=driver, robot=robot)
+    assert (found.private, found.argv) == ({"port": "/dev/arm"}, ("/dev/arm",))
+    assert found.note == "parameters and arguments of arm come from robot.launch (driver.launch)."
+
+
+def test_of_differing_launch_files_the_one_named_after_the_script_counts(tmp_path: Path) -> None:
+    node = '<node pkg="saver" type="node.py" name="saver"><param name="rate" value="{0}"/></node>'
+    found = in_package(tmp_path, slow=node.format(1), fast=node.format(2), sample_node=node.format(3))
+    assert found.private == {"rate": 3}
+    assert found.note.endswith("come from sample_node.launch. Other launch files give it other values.")

@@ -11,7 +11,8 @@ import pytest
 
 from pytest_tarl.errors import NodeError, SettingsError, UnsupportedApiError
 from pytest_tarl.ros import Ros, launched, siblings, uninstalled
-from pytest_tarl.ros.launched import NOTHING, Given, given
+from pytest_tarl.ros.launch_sources import NOTHING, Given
+from pytest_tarl.ros.launched import given
 from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.messages.workspace import package_folders
 from pytest_tarl.ros.packages import ResourceNotFound, RosPack
