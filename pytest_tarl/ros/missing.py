@@ -13,7 +13,6 @@ _ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user
     "on a real ROS (--tarl-ros=real).",
     "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",
     "image_transport": f"since its plugins are compiled libraries: {_REPLACE}, or use rospy and cv_bridge.",
-    "tf2_kdl": f"since PyKDL is a compiled library: {_REPLACE}, or use tf2_geometry_msgs.",
 }
 
 

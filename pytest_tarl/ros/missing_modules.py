@@ -34,7 +34,7 @@ _DEVICES: Final = frozenset(
     ["Adafruit_PCA9685", "Jetson", "RPi", "alsaaudio", "board", "busio", "picamera", "pigpio", "pyaudio",
      "pyrealsense2", "rpi_ws281x", "smbus", "smbus2", "spidev"]
 )  # fmt: skip
-_COMPILED: Final = frozenset(["PyKDL", "kdl_parser_py", "ompl", "openravepy", "pcl", "tf_conversions"])
+_COMPILED: Final = frozenset(["ompl", "openravepy", "pcl", "trac_ik_python"])
 
 
 def module_advice(error: ModuleNotFoundError) -> str:

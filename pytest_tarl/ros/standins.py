@@ -156,6 +156,13 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "tf2_ros.buffer_client": "tf2_ros.serving",
     "tf2_ros.buffer_server": "tf2_ros.serving",
     "topic_tools": "topic_tools",
+    "PyKDL": "kdl",
+    "tf_conversions": "tf_conversions",
+    "tf_conversions.posemath": "posemath",
+    "tf_conversions.transformations": "transformations",
+    "tf2_kdl": "tf2_kdl",
+    "kdl_parser_py": "kdl_parser",
+    "kdl_parser_py.urdf": "kdl_parser",
     "urdf_parser_py": "urdf_parser",
     "urdf_parser_py.urdf": "urdf_parser.urdf",
     "urdf_parser_py.xml_reflection": "urdf_parser",
@@ -165,8 +172,8 @@ TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_tra
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
             "interactive_markers", "rosidl_runtime_py", "diagnostic_updater", "laser_geometry",
-            "tf2_sensor_msgs", "smach", "smach_ros")  # fmt: skip
-MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_kdl",
+            "tf2_sensor_msgs", "smach", "smach_ros", "tf_conversions", "tf2_kdl", "kdl_parser_py")  # fmt: skip
+MISSING = ("roslaunch", "moveit_commander", "image_transport",
             "nav2_simple_commander")  # fmt: skip
 STANDALONE = (
     "cv_bridge",
@@ -175,4 +182,5 @@ STANDALONE = (
     "ament_index_python",
     "urdf_parser_py",
     "angles",
+    "PyKDL",
 )  # if installed, the real package takes precedence, because it works without a running ROS

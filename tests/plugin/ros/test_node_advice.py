@@ -19,7 +19,7 @@ CASES = {
     "import sklearn_not, sklearn": "run pip install sklearn_not",
     "import skimage": "run pip install scikit-image, or put a replacement into sys.modules in the test",
     "import RPi.GPIO as GPIO": "it drives a device, so put a replacement into sys.modules",
-    "import PyKDL": "it is a compiled library of a ROS installation, so put a replacement",
+    "import trac_ik_python": "it is a compiled library of a ROS installation, so put a replacement",
     "import urllib2": "This is Python 2, which no supported ROS uses: port the node to Python 3",
     "raw_input('go?')": "This is Python 2",
     "{}.iteritems()": "This is Python 2",

@@ -477,7 +477,7 @@ def test_errors_name_missing_apis(start: Start) -> None:
         r"rospy\.get_node_info": "import rospy; rospy.get_node_info()",
         r"rospy\.impl": "import rospy.impl",
         r"rosgraph\.network": "import rosgraph.network",
-        r"tf2_kdl": "import tf2_kdl",
+        r"tf2_kdl\.Stamped": "from tf2_kdl import Stamped",
         r"Spaceship": "import rospy; from std_msgs.msg import Spaceship",
     }.items():
         with pytest.raises(UnsupportedApiError, match=missing):
