@@ -156,6 +156,8 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "tf2_ros.buffer_client": "tf2_ros.serving",
     "tf2_ros.buffer_server": "tf2_ros.serving",
     "topic_tools": "topic_tools",
+    "nav2_simple_commander": "nav2_commander",
+    "nav2_simple_commander.robot_navigator": "nav2_commander.navigator",
     "PyKDL": "kdl",
     "tf_conversions": "tf_conversions",
     "tf_conversions.posemath": "posemath",
@@ -172,9 +174,9 @@ TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_tra
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
             "interactive_markers", "rosidl_runtime_py", "diagnostic_updater", "laser_geometry",
-            "tf2_sensor_msgs", "smach", "smach_ros", "tf_conversions", "tf2_kdl", "kdl_parser_py")  # fmt: skip
-MISSING = ("roslaunch", "moveit_commander", "image_transport",
-            "nav2_simple_commander")  # fmt: skip
+            "tf2_sensor_msgs", "smach", "smach_ros", "tf_conversions", "tf2_kdl",
+            "kdl_parser_py", "nav2_simple_commander")  # fmt: skip
+MISSING = ("roslaunch", "moveit_commander", "image_transport")
 STANDALONE = (
     "cv_bridge",
     "image_geometry",

@@ -106,7 +106,47 @@ bool sees_dock
 ---
 bool is_docked
 ---
+== nav2_msgs/AssistedTeleop
+duration time_allowance
+---
+duration total_elapsed_time
+uint16 error_code
+string error_msg
+---
+duration current_teleop_duration
 == nav2_msgs/BackUp
+geometry_msgs/Point target
+float32 speed
+duration time_allowance
+---
+duration total_elapsed_time
+uint16 error_code
+string error_msg
+---
+float32 distance_traveled
+== nav2_msgs/ComputePathThroughPoses
+geometry_msgs/PoseStamped[] goals
+geometry_msgs/PoseStamped start
+string planner_id
+bool use_start
+---
+nav_msgs/Path path
+duration planning_time
+uint16 error_code
+string error_msg
+---
+== nav2_msgs/ComputePathToPose
+geometry_msgs/PoseStamped goal
+geometry_msgs/PoseStamped start
+string planner_id
+bool use_start
+---
+nav_msgs/Path path
+duration planning_time
+uint16 error_code
+string error_msg
+---
+== nav2_msgs/DriveOnHeading
 geometry_msgs/Point target
 float32 speed
 duration time_allowance
@@ -160,6 +200,18 @@ duration navigation_time
 duration estimated_time_remaining
 int16 number_of_recoveries
 float32 distance_remaining
+== nav2_msgs/SmoothPath
+nav_msgs/Path path
+string smoother_id
+duration max_smoothing_duration
+bool check_for_collisions
+---
+nav_msgs/Path path
+duration smoothing_duration
+bool was_completed
+uint16 error_code
+string error_msg
+---
 == nav2_msgs/Spin
 float32 target_yaw
 duration time_allowance

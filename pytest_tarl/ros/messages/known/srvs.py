@@ -264,10 +264,32 @@ TransitionDescription[] available_transitions
 == lifecycle_msgs/GetState
 ---
 State current_state
+== nav2_msgs/ClearCostmapAroundRobot
+float32 reset_distance
+---
+std_msgs/Empty response
+== nav2_msgs/ClearCostmapExceptRegion
+float32 reset_distance
+---
+std_msgs/Empty response
 == nav2_msgs/ClearEntireCostmap
 std_msgs/Empty request
 ---
 std_msgs/Empty response
+== nav2_msgs/GetCostmap
+nav2_msgs/CostmapMetaData specs
+---
+nav2_msgs/Costmap map
+== nav2_msgs/LoadMap
+string map_url
+---
+uint8 RESULT_SUCCESS=0
+uint8 RESULT_MAP_DOES_NOT_EXIST=1
+uint8 RESULT_INVALID_MAP_DATA=2
+uint8 RESULT_INVALID_MAP_METADATA=3
+uint8 RESULT_UNDEFINED_FAILURE=255
+nav_msgs/OccupancyGrid map
+uint8 result
 == nav2_msgs/ManageLifecycleNodes
 uint8 STARTUP=0
 uint8 PAUSE=1
@@ -277,6 +299,15 @@ uint8 SHUTDOWN=4
 uint8 command
 ---
 bool success
+== nav2_msgs/SaveMap
+string map_topic
+string map_url
+string image_format
+string map_mode
+float32 free_thresh
+float32 occupied_thresh
+---
+bool result
 == rcl_interfaces/DescribeParameters
 string[] names
 ---
