@@ -9,8 +9,6 @@ from pytest_tarl.errors import UnsupportedApiError, UnsupportedModuleError
 
 _REPLACE: Final = "put a module of that name into sys.modules in your test"
 _ADVICE: Final[Mapping[str, str]] = {  # package → alternative for the user
-    "moveit_commander": f"since MoveIt plans in compiled libraries: {_REPLACE} that plays the planner, or run the test "
-    "on a real ROS (--tarl-ros=real).",
     "roslaunch": f"since tarl.launch starts launch files: call it in the test, or {_REPLACE}.",
     "image_transport": f"since its plugins are compiled libraries: {_REPLACE}, or use rospy and cv_bridge.",
 }

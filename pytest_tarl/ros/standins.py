@@ -156,6 +156,12 @@ STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "tf2_ros.buffer_client": "tf2_ros.serving",
     "tf2_ros.buffer_server": "tf2_ros.serving",
     "topic_tools": "topic_tools",
+    "moveit_commander": "moveit_commander",
+    "moveit_commander.conversions": "moveit_commander.conversions",
+    "moveit_commander.exception": "moveit_commander.exception",
+    "moveit_commander.move_group": "moveit_commander.move_group",
+    "moveit_commander.planning_scene_interface": "moveit_commander.scene",
+    "moveit_commander.robot": "moveit_commander.robot",
     "nav2_simple_commander": "nav2_commander",
     "nav2_simple_commander.robot_navigator": "nav2_commander.navigator",
     "PyKDL": "kdl",
@@ -175,8 +181,8 @@ TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_tra
             "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag", "sound_play",
             "interactive_markers", "rosidl_runtime_py", "diagnostic_updater", "laser_geometry",
             "tf2_sensor_msgs", "smach", "smach_ros", "tf_conversions", "tf2_kdl",
-            "kdl_parser_py", "nav2_simple_commander")  # fmt: skip
-MISSING = ("roslaunch", "moveit_commander", "image_transport")
+            "kdl_parser_py", "moveit_commander", "nav2_simple_commander")  # fmt: skip
+MISSING = ("roslaunch", "image_transport")
 STANDALONE = (
     "cv_bridge",
     "image_geometry",

@@ -248,7 +248,6 @@ def test_errors_name_missing_libraries_and_functions(start: Start) -> None:
     for said, line in {
         r"rosgraph\.Master\.registerPublisher is not in": "import rosgraph; rosgraph.Master('/me').registerPublisher",
         r"roslaunch is not in .*call it in the test": "import roslaunch",
-        r"moveit_commander is not in .*MoveIt plans in compiled": "from moveit_commander import RobotCommander",
         r"tf2_ros\.Spaceship is not in": "from tf2_ros import Spaceship",
         r"actionlib\.ActionServer is not in": "import actionlib; actionlib.ActionServer",
         r"tf2_ros\.spaceship is not in": "import tf2_ros.spaceship",

@@ -72,13 +72,13 @@ def test_a_node_may_do_without_a_module_that_is_not_implemented(start: Start) ->
     ros = start("""
         import rospy
         found = []
-        for name in ("moveit_commander", "roslaunch.parent", "rospy.impl"):
+        for name in ("image_transport", "roslaunch.parent", "rospy.impl"):
             try:
                 __import__(name)
             except ImportError as error:
                 found.append(error.name)
     """)
-    assert ros.namespace["found"] == ["moveit_commander", "roslaunch", "rospy.impl"]
+    assert ros.namespace["found"] == ["image_transport", "roslaunch", "rospy.impl"]
 
 
 def test_advice_names_the_file_that_hides_a_package(start: Start, tmp_path: Path) -> None:
