@@ -11,7 +11,7 @@ from pytest_tarl.errors import RecordingError, UnsupportedApiError
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.messages.values import FieldError
-from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.names import absolute, given_name
 from pytest_tarl.ros.scheduler import Program, Scheduler, running_task
 from pytest_tarl.ros.services import Reply, ServiceDirectory
 
@@ -109,7 +109,12 @@ class Bus:
         return self.topic(topic).latest
 
     def subscribe(self, topic: str, callback: Listener) -> None:
-        """Call the world's `callback` with every message that a node publishes on the topic."""
+        """Call the world's `callback` with every message that a node publishes on the topic.
+
+        Raise RecordingError if it is not callable.
+        """
+        if not callable(callback):
+            raise RecordingError(f"tarl.bus.subscribe({topic!r}, …): {callback!r} is not callable.")
         self.topic(topic).listeners.append(callback)
 
     def observe(self, observer: Callable[[str, Any], None]) -> None:
@@ -152,7 +157,7 @@ class Bus:
         """Return the topic with that name; create it on first use."""
         found = self._by_spelling.get(name)
         if found is None:
-            resolved = absolute(name)
+            resolved = given_name(name)
             found = self._topics.setdefault(resolved, Topic(resolved))
             self._by_spelling[name] = found
         return found

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros import params_files
 from pytest_tarl.ros.literals import parse_value
 
@@ -24,6 +25,13 @@ class CommandLine:
 def absolute(name: str) -> str:
     """Add the leading slash to a name and remove doubled and trailing ones, such as `odom` → `/odom`."""
     return "/" + "/".join(part for part in name.split("/") if part)
+
+
+def given_name(name: object) -> str:
+    """Return the absolute form of a name that a test gives. Raise RecordingError if it is not a string."""
+    if not isinstance(name, str):
+        raise RecordingError(f"The name of a topic or service must be a text, not {name!r}.")
+    return absolute(name)
 
 
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:

@@ -5,9 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
+from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.messages.snapshot import snapshot, translate
-from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.names import given_name
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
+from pytest_tarl.ros.service_types import (
+    request_class,
+    require_part,
+    require_service,
+    response_class,
+    service_type,
+)
 
 Answer = Callable[[Any], None]  # is called with the response, or None if the handler returned none
 
@@ -39,6 +47,20 @@ class ServiceDirectory:
         if name not in self._endpoints and name in self._offers:
             self._offers[name]()  # this call adds the endpoint
         return self._endpoints.get(name)
+
+    def find_as(self, name: str, service_class: Any, caller: str) -> Endpoint | None:
+        """Return the endpoint of a service for a node that calls it, or None if there is none.
+
+        An endpoint of another type is an error of the test: on a robot, its server and `caller` would not connect.
+        """
+        endpoint = self.find(name)
+        if endpoint is None or service_type(endpoint.service_class) == service_type(service_class):
+            return endpoint
+        self._scheduler.failure = self._scheduler.failure or RecordingError(
+            f"{name} is served as {service_type(endpoint.service_class)}, but node {caller!r} calls it as "
+            f"{service_type(service_class)}."
+        )
+        return None
 
     def add(self, name: str, endpoint: Endpoint) -> None:
         """Add a service and wake the tasks that wait for it."""
@@ -77,14 +99,24 @@ class ServiceDirectory:
         return name in self
 
     def serve(self, name: str, service_class: Any, handler: Callable[[Any], Any]) -> None:
-        """Serve a service from the world; `handler(request)` returns the response."""
-        self.add(absolute(name), WorldService(self._scheduler, service_class, handler))
+        """Serve a service from the world; `handler(request)` returns the response.
+
+        Raise RecordingError if `service_class` is not a service type, or `handler` is not callable.
+        """
+        require_service(name, service_class, handler)
+        resolved = given_name(name)
+        self.add(resolved, WorldService(resolved, self._scheduler, service_class, handler))
 
     def call(self, name: str, request: Any) -> Reply | None:
-        """Call a node's service from the world. Return None if no node offers it."""
-        endpoint = self.find(absolute(name))
+        """Call a node's service from the world. Return None if no node offers it.
+
+        Raise RecordingError for a request of another type.
+        """
+        resolved = given_name(name)
+        endpoint = self.find(resolved)
         if endpoint is None:
             return None
+        require_part(request, endpoint.request_type, f"The request to {resolved}")
         reply = Reply()
         sent = adapted(request, endpoint.request_type)
         if running_task() is not None:
@@ -109,7 +141,10 @@ class Reply:
 class WorldService:
     """A service that the simulated world answers without delay."""
 
-    def __init__(self, scheduler: Scheduler, service_class: Any, handler: Callable[[Any], Any]) -> None:
+    def __init__(
+        self, name: str, scheduler: Scheduler, service_class: Any, handler: Callable[[Any], Any]
+    ) -> None:
+        self._name = name
         self.service_class = service_class
         self.request_type = request_class(service_class)
         self._scheduler = scheduler
@@ -118,15 +153,20 @@ class WorldService:
     def handle(self, request: Any, answer: Answer) -> None:
         """Call the world's handler; its errors are raised in the test, not in the node."""
         try:
-            answer(self._handler(request))
+            answer(self._checked(self._handler(request)))
         except Exception as error:
             self._scheduler.failure = self._scheduler.failure or error
             answer(None)
 
-
-def request_class(service_class: Any) -> Any:
-    """Return a service's request class, for either ROS generation."""
-    return getattr(service_class, "Request", None) or service_class._request_class
+    def _checked(self, response: Any) -> Any:
+        """Return the response. Raise RecordingError if it has a wrong type; in ROS 1, None refuses the request."""
+        if response is not None or not hasattr(self.service_class, "_response_class"):
+            require_part(
+                response,
+                response_class(self.service_class),
+                f"The response of the test's handler of {self._name}",
+            )
+        return response
 
 
 def adapted(message: Any, wanted: type) -> Any:

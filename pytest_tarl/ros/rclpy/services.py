@@ -106,7 +106,7 @@ class Client(Introspected):
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         future = Future()
-        service = self._directory.find(self.srv_name)
+        service = self._directory.find_as(self.srv_name, self.srv_type, self.node.process.label)
         if service is not None:
             service.handle(
                 adapted(request, service.request_type), lambda response: self.answer(future, response)

@@ -113,7 +113,8 @@ class ServiceProxy:
     def call(self, *args: Any, **kwds: Any) -> Any:
         """Call the service with a request or its fields. Raise ServiceException."""
         request = self._request(args, kwds)
-        service = self._node.process.ros.services.find(self.resolved_name)
+        process = self._node.process
+        service = process.ros.services.find_as(self.resolved_name, self.service_class, process.label)
         if service is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
         clock, task, answers = self._node.process.scheduler, current_task(), []
