@@ -118,7 +118,7 @@ def record(
     if refused:
         return RecordResult("", refused, tuple(notes))
     notes = [*accounts(recorded.sample.judgements), *notes, *_silent_lists(recorded.sample, plan)]
-    notes += detectable(recorded.sample.total) if recorded.simulator else []
+    notes += detectable(recorded.sample.total)
     new = Fixture(
         test=test,
         seed=options.seed,
@@ -159,13 +159,15 @@ def detectable(totals: Floats) -> list[str]:
 
     `totals` holds the reward of each episode, shape (episodes,).
     """
-    if not 1 < totals.size < FEW or not totals.std():
+    if totals.size >= FEW:
         return []
     loss = detectable_loss(totals, totals, SIGNIFICANT)
     if not isfinite(loss):
         return [
             f"{totals.size} episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
         ]
+    if not np.ptp(totals):  # any loss is shown
+        return []
     note = (
         f"{totals.size} episodes: a comparison with as many shows a loss of {amount(loss)} per episode in "
         f"{100 * POWER:.0f} % of runs; for a loss half as large, record and compare {4 * totals.size}"

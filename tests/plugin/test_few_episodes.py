@@ -1,6 +1,7 @@
 """A recording of few episodes says which loss they can show."""
 
 import numpy as np
+import pytest
 
 from pytest_tarl.recording import detectable
 
@@ -14,10 +15,24 @@ def test_few_episodes_show_only_large_losses() -> None:
     assert scaled != note
 
 
-def test_the_note_says_that_two_episodes_show_nothing_and_is_absent_for_many_or_equal_ones() -> None:
-    (note,) = detectable(np.array([1.0, 2.0]))
-    assert (
-        note == "2 episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
-    )
+def test_the_note_is_absent_for_many_or_equal_episodes() -> None:
     assert not detectable(np.arange(30.0))
-    assert not detectable(np.ones(20))
+    assert not detectable(np.full(20, 0.1))
+
+
+def test_the_note_says_that_up_to_three_episodes_show_nothing() -> None:
+    shown = "episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
+    assert detectable(np.array([1.0, 2.0])) == [f"2 {shown}"]
+    assert detectable(np.ones(3)) == [f"3 {shown}"]
+    assert "shows a loss of" in detectable(np.arange(4.0))[0]
+
+
+def test_a_recording_prints_the_note(tank: pytest.Pytester) -> None:
+    few = tank.runpytest("--tarl-record", "--tarl-episodes=6")
+    few.stdout.re_match_lines(
+        [r"  6 episodes: a comparison with as many shows a loss of [\d.]+ per episode in 80 %"]
+    )
+    alone = tank.runpytest("--tarl-record", "--tarl-episodes=2")
+    alone.stdout.fnmatch_lines(["  2 episodes are too few: *"])
+    many = tank.runpytest("--tarl-record", "--tarl-episodes=30")
+    many.stdout.no_fnmatch_line("*a comparison with as many*")
