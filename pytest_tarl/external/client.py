@@ -11,6 +11,7 @@ import threading
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
+from time import monotonic
 from typing import Any
 
 PACKAGES = Path(__file__).resolve().parents[2]
@@ -37,6 +38,7 @@ class Client:
         )
         self.events: queue.SimpleQueue[Event] = queue.SimpleQueue()
         self._shown = 0
+        self._gone = False  # whether the guardian has closed its end
         threading.Thread(target=self._read, name="tarl-simulator", daemon=True).start()
 
     @property
@@ -50,6 +52,15 @@ class Client:
         with suppress(OSError, ValueError):
             self._process.stdin.write(json.dumps({"do": what, **arguments}) + "\n")
             self._process.stdin.flush()
+
+    def stop(self) -> None:
+        """End the simulator and wait for the end of its processes, so that `output` is complete; discard events."""
+        deadline = monotonic() + PATIENCE
+        self.do("stop")
+        while not self._gone and (left := deadline - monotonic()) > 0:
+            with suppress(queue.Empty):
+                if self.events.get(timeout=left)["kind"] == "stopped":
+                    return
 
     def close(self) -> None:
         """End the simulator and the guardian."""
@@ -89,4 +100,5 @@ class Client:
         with suppress(OSError, ValueError):
             for line in self._process.stdout:
                 self.events.put(json.loads(line))
+        self._gone = True
         self.events.put({"kind": "gone"})

@@ -13,6 +13,7 @@ from pytest_tarl.errors import SimulatorError, SimulatorLostError
 from pytest_tarl.external.arguments import Call, Setup
 from pytest_tarl.external.client import Client, Event
 from pytest_tarl.external.plain import filled, to_plain
+from pytest_tarl.external.shutdown_output import without_interrupts
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.messages import find_class, unknown_type
 from pytest_tarl.ros.messages.snapshot import snapshot, type_name
@@ -113,23 +114,32 @@ class Simulator:
 
     def end(self) -> None:
         """End the simulator, unless a reset makes it usable for further episodes, and print its output."""
+        _print(self.setup, self._client.output())
         if self.setup.reset is None or not self._usable:
-            self._client.do("stop")
-            KEPT.running = None
-        if output := self._client.output().strip():
-            print(f"output of {self.setup.shown}:\n{output}")
+            self._stop(self.setup)
 
     @property
     def _time(self) -> int:
         return -1 if self._clock is None else self._clock
 
+    def _stop(self, running: Setup) -> None:
+        """End the running simulator, and print what it said while it ended."""
+        KEPT.running = None
+        self._client.stop()
+        _print(running, without_interrupts(self._client.output()), " after TARL had ended it")
+
     def _start(self) -> None:
         one = self.setup
-        KEPT.running = None
+        if KEPT.running is not None:
+            self._stop(KEPT.running)
         if one.ros == "ros1":  # rospy can use only one master per process
             KEPT.close()
             self._client = KEPT.opened()
-        environment = {**os.environ, **one.environment}
+        environment = {
+            "PYTHONUNBUFFERED": "1",
+            **os.environ,
+            **one.environment,
+        }  # a message quotes its last words
         self._client.do(
             "start",
             command=list(one.command),
@@ -337,3 +347,8 @@ class Simulator:
     def _words(self) -> str:
         words = self._client.last_words()
         return f"; its last output: {words}" if words else ""
+
+
+def _print(of: Setup, output: str, when: str = "") -> None:
+    if output.strip():
+        print(f"output of {of.shown}{when}:\n{output.strip()}")

@@ -173,6 +173,22 @@ def test_the_error_describes_a_simulator_whose_own_clock_stops_or_jumps(
         run.steps(50)
 
 
+def test_the_output_belongs_to_its_episode_and_does_not_show_the_interrupt(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    last = "import atexit; atexit.register(print, 'drained')\n"
+    program = tmp_path / "chatty.py"
+    program.write_text(last + PROGRAM.read_text())
+    for _ in range(2):
+        with Run(tmp_path, command=[sys.executable, str(program)], **STEPPED) as run:
+            run.steps(2)
+        output = capfd.readouterr().out
+        first, after, end = output.partition(" after TARL had ended it:\n")
+        assert "filling" in first, output
+        assert after, output
+        assert end.strip() == "drained", output
+
+
 def test_the_error_names_a_missing_simulator_program(tmp_path: Path) -> None:
     with (
         pytest.raises(SimulatorError, match=r"cannot be started \(No such file or directory\)"),
