@@ -53,7 +53,7 @@ def _guarded(arguments: Sequence[str] | None) -> int:
     try:
         return _run(parser().parse_args(arguments))
     except LintError as error:
-        print(f"tarl-lint: {error}", file=sys.stderr)
+        print(paint.harmless(f"tarl-lint: {error}"), file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
         if arguments is None:
@@ -133,7 +133,7 @@ def _with_progress(work: Callable[[Tell], T]) -> T:
     from tarl_lint.run.progress import Progress
 
     with Progress(sys.stderr) as progress:
-        return work(progress.tell)
+        return work(lambda text: progress.tell(paint.harmless(text)))
 
 
 def _check(config: Config) -> None:
@@ -170,7 +170,7 @@ def _show(typed: Namespace, result: Result) -> None:
         _print(report.render(typed.format, result, view))
     if typed.format not in report.FOR_PEOPLE:
         for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
-            print(plain(line), file=sys.stderr)
+            print(paint.harmless(plain(line)), file=sys.stderr)
 
 
 def _view(typed: Namespace, stream: TextIO | None = None) -> View:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import errno
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -18,16 +20,20 @@ from pytest_tarl.errors import RefusedError, TarlError
 from pytest_tarl.extras import missing_extra, missing_fleet, missing_server
 from pytest_tarl.printable import print_lines, printable
 
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # errors of a full or failing disk
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command and return its exit code: 0; 1 if it refuses or a check fails; 2 after a user error."""
+    _prepare_streams()
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
     if sentence is not None:
         print(f"tarl: {sentence}", file=sys.stderr)
         return 2
     try:
-        return int(arguments.run(arguments))
+        code = int(arguments.run(arguments))
+        sys.stdout.flush()
     except RefusedError as refused:
         print(printable(f"tarl: {refused}"), file=sys.stderr)
         return 1
@@ -35,11 +41,33 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(printable(f"tarl: {problem}"), file=sys.stderr)
         return 2
     except BrokenPipeError:
-        sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - discard the remaining output
+        _discard_output()
         return 0
+    except OSError as problem:
+        if problem.filename is not None or problem.errno not in _FULL:
+            raise
+        _discard_output()
+        print(f"tarl: Cannot write to standard output: {problem.strerror}.", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         print("tarl: interrupted.", file=sys.stderr)
         return 130
+    return code
+
+
+def _prepare_streams() -> None:
+    """Open the null device for closed standard streams, and escape what a stream's encoding lacks, such as arrows."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - open until the end
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _discard_output() -> None:
+    """Discard the remaining output, since Python would otherwise report an error at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def parser() -> Parser:

@@ -15,6 +15,7 @@ from pytest_tarl.errors import LogError, SettingsError
 from pytest_tarl.monitoring import dashboard, state, watch, words
 from pytest_tarl.monitoring.status import Status
 from pytest_tarl.monitoring.watch import Watch
+from pytest_tarl.printable import print_lines, printable, printable_line
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
@@ -98,7 +99,7 @@ class Teller:
         if order.once:
             return
         for problem in problems:
-            print(f"tarl: {problem}", file=sys.stderr, flush=True)
+            print(printable(f"tarl: {problem}"), file=sys.stderr, flush=True)
         kept = order.json is not None and order.json != STANDARD_OUTPUT
         if kept and (fresh or problems):
             self.document(status)
@@ -107,13 +108,13 @@ class Teller:
             if order.json == STANDARD_OUTPUT:
                 self.document(status)
             else:
-                print(words.headline(self.watch, status), flush=True)
+                print(printable_line(words.headline(self.watch, status)), flush=True)
 
     def document(self, status: Status) -> None:
         """Write the JSON result if --json is given."""
         found = dashboard.document(self.watch, status)
         if self.order.json == STANDARD_OUTPUT:
-            print(dashboard.text(found), flush=True)
+            print(dashboard.line(found), flush=True)
         elif self.order.json is not None:
             dashboard.write(found, self.order.json)
 
@@ -122,7 +123,8 @@ class Teller:
         if self.order.json is not None:
             self.document(status)
         if self.order.json != STANDARD_OUTPUT:
-            print("\n".join(words.lines(self.watch, status)), flush=True)
+            print_lines(words.lines(self.watch, status))
+            sys.stdout.flush()
         return int(status.alarm)
 
 

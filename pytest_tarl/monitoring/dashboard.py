@@ -19,16 +19,17 @@ FORMAT_VERSION = 1  # 1: first version
 def write(document: dict[str, Any], path: Path) -> None:
     """Write a document atomically. Raise MonitorError if it cannot be written."""
     try:
-        write_atomically(path, f"{text(document, indent=1)}\n".encode())
+        text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+        write_atomically(path, f"{text}\n".encode())
     except OSError as problem:
         raise MonitorError(
             f"{path} cannot be written ({problem.strerror}): name another file with --json."
         ) from problem
 
 
-def text(document: dict[str, Any], indent: int | None = None) -> str:
-    """Return a document as JSON text."""
-    return json.dumps(document, indent=indent, ensure_ascii=False, allow_nan=False)
+def line(document: dict[str, Any]) -> str:
+    """Return a document as a line of JSON in ASCII, so that no terminal can obey its text."""
+    return json.dumps(document, allow_nan=False)
 
 
 def schema() -> dict[str, Any]:

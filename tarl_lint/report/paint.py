@@ -28,6 +28,11 @@ _CONTROLS: Final = {
 }
 
 
+def harmless(text: str) -> str:
+    """Return a text with control characters and direction marks escaped, for a terminal."""
+    return text.translate(_CONTROLS)
+
+
 def wants_colour(stream: TextIO, environment: Mapping[str, str] = os.environ) -> bool:
     """Return whether to use colours: on a capable terminal, unless NO_COLOR (https://no-color.org) is set."""
     if environment.get("NO_COLOR") or environment.get("TERM") == "dumb":
@@ -62,7 +67,7 @@ def write(lines: Iterable[Line], stream: TextIO, *, colour: bool) -> None:
         return
     encoding = stream.encoding or "utf-8"
     for line in lines:
-        text = plain(line).translate(_CONTROLS) + "\n"
+        text = harmless(plain(line)) + "\n"
         stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
@@ -75,5 +80,5 @@ def _write_coloured(lines: Iterable[Line], stream: TextIO) -> bool:
         return False
     console = Console(file=stream, force_terminal=True, highlight=False, soft_wrap=True, legacy_windows=False)
     for line in lines:
-        console.print(Text.assemble(*((text.translate(_CONTROLS), _COLOURS[style]) for text, style in line)))
+        console.print(Text.assemble(*((harmless(text), _COLOURS[style]) for text, style in line)))
     return True

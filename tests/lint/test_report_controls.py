@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tarl_lint import report
+from tarl_lint.cli import main
 from tarl_lint.report import FORMATS, paint
 from tarl_lint.report.line import View
 from tarl_lint.run.runner import run
@@ -84,3 +85,15 @@ def test_line_breaks_in_a_topic_are_escaped(tmp_path):
     text = rendered(tmp_path, "concise", "in", "out\nother.py:1:1 TARL201 forged")
     assert "out\\nother.py:1:1 TARL201 forged" in text
     assert not re.search(r"^other\.py", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["no\x1b[2J.py"], ["--config", "no\x9b\u202e.toml"], ["--no\x1b[2J"], ["--launch", "no\x1b[2J.launch"]],
+    ids=["file", "settings", "option", "launch file"],
+)
+def test_no_error_sends_control_characters_of_its_arguments(arguments, capsys):
+    assert main(arguments) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("tarl-lint: ")
+    assert not STEERING.search(told)

@@ -56,7 +56,7 @@ def shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(watch.words, "headline", lambda _, now: f"headline {now.missions}")
     monkeypatch.setattr(watch.words, "lines", lambda _, now: ["report", str(now.missions)])
     monkeypatch.setattr(watch.dashboard, "document", lambda _, now: {"missions": now.missions})
-    monkeypatch.setattr(watch.dashboard, "text", lambda found: f"json {found['missions']}")
+    monkeypatch.setattr(watch.dashboard, "line", lambda found: f"json {found['missions']}")
     monkeypatch.setattr(watch.dashboard, "write", lambda found, path: path.write_text(str(found["missions"])))
 
 
