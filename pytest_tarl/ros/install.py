@@ -21,6 +21,7 @@ from pytest_tarl.ros.messages.installed import asked_kind, installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.messages.workspace import packages
 from pytest_tarl.ros.missing import unsupported_module
+from pytest_tarl.ros.opencv_windows import windows_discarded
 from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
 from pytest_tarl.ros.standins import MISSING, STANDALONE, STANDINS, TALKING
 from pytest_tarl.ros.threads import threads_as_tasks
@@ -225,6 +226,7 @@ def standins_installed(
             virtual_event_loops(scheduler),
             threads_as_tasks(),
             terminals(processes),
+            windows_discarded(),
             variables_restored(),
             exits_of_nodes(),
         ):

@@ -70,6 +70,20 @@ class Terminal(io.TextIOBase):
             self._pause()
         return self._take(min(self._typed.find("\n") + 1 or limit, limit))
 
+    def key(self, patience: int | None) -> str:
+        """Return the next typed character, as a window gets it; an empty text after `patience` (ns; None: no limit).
+
+        At the end of the episode return an empty text at once.
+        """
+        scheduler = self._process.scheduler
+        until = None if patience is None else scheduler.time + patience
+        self.waited |= until is None
+        while not self._typed and not self._process.ending and (until is None or scheduler.time < until):
+            self._park(until)
+        if self._process.ending:
+            self._process.refuse_to_wait()
+        return self._take(1)
+
     def fileno(self) -> int:
         """Return a descriptor that termios can query and configure. Raise OSError if the system has no terminals."""
         if not self._descriptors:
@@ -120,10 +134,14 @@ class Terminal(io.TextIOBase):
         if self._process.ending:
             raise NodeInterruptedError
         self.waited = True
+        self._park(None)
+
+    def _park(self, until: int | None) -> None:
+        """Suspend the task until the test types, at most until the instant `until`."""
         task = current_task()
         self._waiting.append(task)
         try:
-            self._process.scheduler.wait()
+            self._process.scheduler.wait(until)
         finally:
             self._waiting.remove(task)
 
