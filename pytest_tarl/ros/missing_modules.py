@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
+from pytest_tarl.ros.messages.packages import PARTS
 from pytest_tarl.ros.messages.workspace import packages, workspaces
 from pytest_tarl.ros.uninstalled import candidates
 
@@ -37,12 +39,25 @@ _DEVICES: Final = frozenset(
 _COMPILED: Final = frozenset(["ompl", "openravepy", "pcl", "trac_ik_python"])
 
 
-def module_advice(error: ModuleNotFoundError) -> str:
-    """Return one sentence that says how to make a failed import work."""
+def module_advice(error: ModuleNotFoundError, line: str = "") -> str:
+    """Return one sentence that says how to make a failed import work; `line` is the line of code that imports."""
     root, _, inner = (error.name or "").partition(".")
     if inner or not root:
         return ""  # the package is there, so the name is misspelled
-    return _in_workspace(root) or _elsewhere(root)
+    interface = re.search(rf"\b{re.escape(root)}\.({'|'.join(PARTS)})\b", line)
+    return _in_workspace(root) or (_definitions(root, interface[1]) if interface else _elsewhere(root))
+
+
+def _definitions(root: str, part: str) -> str:
+    """Return a sentence for a package whose messages, services or actions are imported and not defined anywhere."""
+    return (
+        f"No package of the workspace {_workspaces()} defines {root}.{part}: put a copy of the package {root}, or only "
+        f"its .{part} files in a folder {root}/{part}, into the workspace."
+    )
+
+
+def _workspaces() -> str:
+    return " and ".join(str(one.root) for one in workspaces()) or "around the node"
 
 
 def _in_workspace(root: str) -> str:
@@ -71,8 +86,7 @@ def _elsewhere(root: str) -> str:
     """Return a sentence for a module that comes from outside of the workspace."""
     if root in _OF_PYTHON_2:
         return PYTHON_2
-    within = " and ".join(str(one.root) for one in workspaces()) or "around the node"
-    missing = f"No package of the workspace {within} installs {root}, and it is not installed here"
+    missing = f"No package of the workspace {_workspaces()} installs {root}, and it is not installed here"
     replacement = "put a replacement into sys.modules in the test"
     if root in _DEVICES:
         return f"{missing}: it drives a device, so {replacement}."

@@ -22,6 +22,11 @@ _PYTHON_2_NAMES = re.compile(
     r"has no attribute '(iteritems|itervalues|iterkeys|has_key|maxint)'|cannot import name 'maxint'"
 )
 
+_INTEGER_NEEDED = re.compile(
+    r"'float' object cannot be interpreted as an integer|can't multiply sequence by non-int of type 'float'|"
+    r"^slice indices must be integers|indices must be integers or slices, not float|only integers, slices"
+)
+
 
 def advice(error: BaseException, given: Given) -> str:
     """Return one sentence of advice about a node's error; empty if the error's own text is enough.
@@ -31,7 +36,7 @@ def advice(error: BaseException, given: Given) -> str:
     if isinstance(error, SyntaxError):
         return PYTHON_2 if _PYTHON_2_SYNTAX.search(str(error)) or isinstance(error, TabError) else ""
     if isinstance(error, ModuleNotFoundError):
-        return module_advice(error)
+        return module_advice(error, _line_of(error))
     if isinstance(error, ImportError) and (error.name or "").partition(".")[0] in ("rclpy", "rospy"):
         return f"The in-process ROS lacks this name of {error.name}: put a replacement into the module in the test."
     if isinstance(error, NameError | AttributeError | ImportError):
@@ -40,6 +45,8 @@ def advice(error: BaseException, given: Given) -> str:
         return _of_lookup(error, given)
     if type(error).__name__ == "ParameterUninitializedException" and error.args:
         return _of_parameter(str(error.args[0]).rpartition(": ")[2], given)
+    if isinstance(error, TypeError | IndexError) and _INTEGER_NEEDED.search(str(error)) and _divides(error):
+        return "In Python 3, / of two integers gives a float: write // where Python 2 rounded down."
     if isinstance(error, SystemExit | IndexError):
         return _of_arguments(error, given)
     if isinstance(error, TypeError) and "required positional argument: 'Loader'" in str(error):
@@ -93,6 +100,22 @@ def _of_arguments(error: BaseException, given: Given) -> str:
         else _indexes_arguments(_of_program(error)[-1:])
     )
     return f"The node reads its command line: {hint}" if looks else ""
+
+
+def _line_of(error: BaseException) -> str:
+    """Return the line of the node's own code that raised the error."""
+    own = _of_program(error)
+    return linecache.getline(own[-1].tb_frame.f_code.co_filename, own[-1].tb_lineno) if own else ""
+
+
+def _divides(error: BaseException) -> bool:
+    """Return whether the file of the node that raised the error divides by `/`."""
+    own = _of_program(error)
+    text = "".join(linecache.getlines(own[-1].tb_frame.f_code.co_filename)) if own else ""
+    try:
+        return any(isinstance(node, ast.Div) for node in ast.walk(ast.parse(text)))
+    except (SyntaxError, ValueError):
+        return False
 
 
 def _of_program(error: BaseException) -> list[TracebackType]:

@@ -20,6 +20,14 @@ CASES = {
     "import skimage": "run pip install scikit-image, or put a replacement into sys.modules in the test",
     "import RPi.GPIO as GPIO": "it drives a device, so put a replacement into sys.modules",
     "import trac_ik_python": "it is a compiled library of a ROS installation, so put a replacement",
+    "from servo_board.msg import Servo": (
+        r"No package of the workspace .* defines servo_board\.msg: put a copy of the package servo_board, or only its "
+        r"\.msg files in a folder servo_board/msg, into the workspace\.$"
+    ),
+    "import servo_board.srv": r"only its \.srv files in a folder servo_board/srv",
+    "[1, 2, 3][: 3 / 2]": r"/ of two integers gives a float: write // where Python 2 rounded down\.$",
+    "range(10 / 2)": "write // where Python 2 rounded down",
+    "[0] * (4 / 2)": "write // where Python 2 rounded down",
     "import urllib2": "This is Python 2, which no supported ROS uses: port the node to Python 3",
     "raw_input('go?')": "This is Python 2",
     "{}.iteritems()": "This is Python 2",
@@ -42,7 +50,16 @@ BLOCKS = {
     "import sys\ndef main(args):\n    return [][0]\nmain(sys.argv)": r"in main\)\.$",
     "import sys\nif sys.maxsize:\n    sys.exit(1)": r"line 3\)\.$",
 }
-SILENT = ["{}['key']", "[][0]", "None.name", "1 / 0", "sys.exit(3)", "undefined_name", "'a' + 1"]
+SILENT = [
+    "range(2.0)",
+    "{}['key']",
+    "[][0]",
+    "None.name",
+    "1 / 0",
+    "sys.exit(3)",
+    "undefined_name",
+    "'a' + 1",
+]
 IMPORTS = "import argparse, os, sys, yaml\nimport rospy\nrospy.init_node('it')\n"
 
 
