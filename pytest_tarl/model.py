@@ -63,7 +63,13 @@ class TaintList:
     @property
     def name(self) -> str:
         """Return the displayed name of the list, such as `/odom → /cmd_vel`."""
-        return f"{self.source} → {self.sink}"
+        return f"{_end(self.source)} → {_end(self.sink)}"
+
+
+def _end(topic: str) -> str:
+    """Return a topic, or where the call with an unknown topic is; that identifies it by `(call at path:line)`."""
+    call, separator, place = topic.removesuffix(")").partition(" at ")
+    return f"unknown topic at {place.rpartition('/')[2]}" if separator and call.startswith("(") else topic
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,10 @@ def operand_words(operand: OperandEffect) -> str:
 
 def repair_words(repair: Repair) -> str:
     """Describe the repair and its condition, such as `5 → 12 at traveller.py:30 where terrain`."""
-    edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
+    places: dict[str, list[str]] = {}
+    for edit in repair.edits:
+        places.setdefault(f"{edit.path}:{edit.line}", []).append(edit_words(edit))
+    edits = ", ".join(f"{', '.join(words)} at {place}" for place, words in places.items())
     return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
 
 

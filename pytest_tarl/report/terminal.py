@@ -28,7 +28,7 @@ NARROWEST = 40  # minimum width of the report, in columns
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
     """Return the report of one comparison, `width` columns wide; `page` is the path of the report page, if written.
 
-    Paths and commands are not wrapped, so that they can be copied; they may be wider.
+    A path is not broken, and a command is not wrapped, so that they can be copied; they may be wider.
     """
     width = max(width, NARROWEST)
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
@@ -70,13 +70,13 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Wrap `text` beside its label; with `whole`, do not wrap it, so that paths and commands can be copied."""
+    """Wrap `text` beside its label, between words; with `whole`, do not wrap it, so that commands can be copied."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    return wrap(text, width - LABEL - 2, break_on_hyphens=False) or [""]
+    return wrap(text, width - LABEL - 2, break_on_hyphens=False, break_long_words=False) or [""]
 
 
 def _rewards(comparison: Comparison) -> str:

@@ -63,6 +63,17 @@ def test_a_repair_is_described_by_its_edits_and_its_condition() -> None:
     assert repair_words.repair_words(Repair(True, "", EDITS)) == f"{WORDS} everywhere"
 
 
+def test_edits_of_one_line_share_its_place() -> None:
+    both = (
+        Edit("a.py", 3, "-0.1", -0.3),
+        Edit("b.py", 4, "KP", 0.5, factor=True),
+        Edit("a.py", 3, "0.1", 0.3),
+    )
+    assert repair_words.repair_words(Repair(True, "", both)) == (
+        "-0.1 → -0.3, 0.1 → 0.3 at a.py:3, KP × 0.5 at b.py:4 everywhere"
+    )
+
+
 def test_the_best_rejected_candidate_has_its_reward_if_it_was_run() -> None:
     assert repair_words.best_words(Repair(False, "", EDITS)) == f"{WORDS} everywhere"
     run = Repair(False, "", EDITS, mean=2.5, episodes=7)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -73,6 +74,20 @@ def test_code_that_does_not_fit_beside_its_location_is_on_the_next_line(two_list
     assert place.endswith("src/follower/node.py:63  (self.kp × 2.2: +3.40)")
     assert code.strip().startswith("twist.angular.z = self.kp")
     assert len(code) <= 80
+
+
+def test_a_path_that_is_longer_than_the_line_stays_whole(shuttle):
+    long = f"{'a_long_name_of_a_package/' * 4}node.py"
+    culprit = replace(shuttle.culprits[0], site=replace(shuttle.culprits[0].site, path=long))
+    text = told(replace(shuttle, culprits=(culprit,)), 60)
+    assert f"{long}:30" in text
+
+
+def test_a_topic_that_is_unknown_is_named_by_the_place_of_its_call(shuttle):
+    (only,) = shuttle.lists
+    source = "(rclpy.create_subscription at src/relay/relay.py:148)"
+    named = replace(only, taint_list=replace(only.taint_list, source=source))
+    assert named.taint_list.name == "unknown topic at relay.py:148 → /velocity"
 
 
 def test_without_a_repair_the_next_step_is_to_search_for_one(unrepaired):
