@@ -14,6 +14,7 @@ from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
 from pytest_tarl.repairing.enriching import enriched
+from pytest_tarl.repairing.exceeding import exceeding
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Refused
@@ -210,7 +211,11 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         repair=delivered(mutants, accepted, found.episodes, examiner.spent, history, bounds)
         if accepted
         else replace(withheld(order, refused, history), partial=part),
-        notes=(*order.comparison.notes, *_notes(mutants, examiner, found, watch)),
+        notes=(
+            *order.comparison.notes,
+            *(exceeding(order.comparison, totals) if accepted else ()),
+            *_notes(mutants, examiner, found, watch),
+        ),
         ranking=ranking_confidence(order, found.effects or {}, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent + spent}

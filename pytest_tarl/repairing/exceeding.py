@@ -1,0 +1,36 @@
+"""Repairs that earn more than the software did as designed, and so change more than the drift did."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pytest_tarl.learning.bounds import loss_between
+from pytest_tarl.model import Comparison
+from pytest_tarl.report.amounts import amount
+from pytest_tarl.report.words import designed_world, world_name
+
+CONFIDENCE = 0.95
+
+
+def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> list[str]:
+    """Return a note if an accepted repair earns more than the designed reward, by more than the tolerance.
+
+    Such a repair often uses something that the reward does not punish, such as a higher speed. `totals` holds the
+    rewards by episode of `offline`, `repaired` and `nominal_repaired`.
+    """
+    designed = totals["offline"]
+    places = {
+        "nominal_repaired": f"in the {designed_world(comparison)}",
+        "repaired": f"in {world_name(comparison)}",
+    }
+    for world, place in places.items():
+        low = loss_between(totals[world], designed, CONFIDENCE).low  # what the designed program earns less
+        if low > comparison.verdict.tolerance:
+            earned, before = (sum(one) / len(one) for one in (totals[world], designed))
+            told = (
+                f"{place} the repaired node earns {amount(earned)}, more than the {amount(before)} of the recording: "
+                "the repair does more than undo the drift. If it should not, add what it overdoes, such as speed or "
+                "force, to the reward."
+            )
+            return [told]
+    return []
