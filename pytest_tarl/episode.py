@@ -52,6 +52,7 @@ class Tarl:
         requirements: Requirements = NOTHING_REQUIRED,
         alone: bool = False,
         faults: Faults = NO_FAULTS,
+        drifted: bool = False,
     ) -> None:
         self.seed = seed
         self.drives_ros = False
@@ -61,6 +62,7 @@ class Tarl:
         self._replay = replay
         # a recorded mission already contains the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
+        self._drifted = drifted or bool(self._faults.active)  # True if silence is a result and not an error
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -331,7 +333,18 @@ class Tarl:
             for path, positions in self._imports.unrecorded.items()
         ]
         started = self._ros.notes if self._ros is not None else ()
-        return (*ended, *missing, *started, *(self._replay.notes if self._replay is not None else ()))
+        replayed = self._replay.notes if self._replay is not None else ()
+        return (*ended, *missing, *started, *replayed, *self._silence())
+
+    def _silence(self) -> tuple[str, ...]:
+        """Return a note if a drift of the world, not a declared fault, silenced the nodes."""
+        if not self._drifted or self._faults.active or not self._silent:
+            return ()
+        told = (
+            "The node published nothing in a whole episode of this drift. If the drift should not silence it, check "
+            f"that it receives the messages that it waits for (it subscribes to {self._heard})."
+        )
+        return (told,)
 
     def problem(self) -> TarlError | None:
         """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
@@ -347,18 +360,25 @@ class Tarl:
                 "The test never called tarl.reward: call it once in each simulation step, for example "
                 "tarl.reward(world.monitor())."
             )
-        if self._faults.active:
-            return None  # declared faults may silence sensors and nodes
+        if self._drifted:
+            return None  # a drift may silence sensors and nodes
         problem = self._situation.problem() or self._unmet()
-        if problem is not None:
-            return problem
-        if self.drives_ros and not self.ros.published:
-            heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
-            return RecordingError(
+        if problem is None and self._silent:
+            problem = RecordingError(
                 "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
-                f"the messages that it waits for (it subscribes to {heard})."
+                f"the messages that it waits for (it subscribes to {self._heard})."
             )
-        return None
+        return problem
+
+    @property
+    def _silent(self) -> bool:
+        """Return whether nodes ran and published nothing."""
+        return self.drives_ros and self._ros is not None and not self._ros.published
+
+    @property
+    def _heard(self) -> str:
+        """Return the topics to which nodes subscribe."""
+        return ", ".join(sorted(self.ros.subscribed)) or "no topic"
 
     def _unmet(self) -> SettingsError | None:
         """Return the error of a declared fault whose topic or node did not occur, or None if there is none."""

@@ -130,6 +130,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         requirements=episode.designation.requirements,
         alone=EPISODE not in item.stash,
         faults=_faults(episode),
+        drifted=episode.plan.drift is not None and not ini.value_of(item.config, "record"),
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
