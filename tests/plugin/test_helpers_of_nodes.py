@@ -109,6 +109,17 @@ def test_a_named_helper_in_a_folder_without_init_is_reported(tank: pytest.Pytest
     assert "is named in nodes" not in tank.runpytest(*RECORD).stdout.str()
 
 
+def test_a_named_file_of_constants_is_not_reported(tank: pytest.Pytester) -> None:
+    (tank.path / "settings.py").write_text("GAIN = 2.0\n")
+    (tank.path / "unused.py").write_text("GAIN = 2.0\n")
+    changed(tank, "keeper", "import rospy\n", "import rospy\nimport settings\nimport unused\n")
+    changed(tank, "keeper", "flow = GAIN * missing", "flow = settings.GAIN * missing")
+    changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["keeper.py", "settings.py", "unused.py"]')
+    told = tank.runpytest(*RECORD).stdout.str()
+    assert "unused.py is named in nodes, but no flow" in told
+    assert "settings.py is named in nodes" not in told
+
+
 def test_an_episode_that_ran_an_older_text_is_an_error() -> None:
     ended = EpisodeRun(EpisodePlan(1), Recorder().finish(), passed=True, older=(Path("gains.py"),))
     with pytest.raises(StaleTextError, match=r"gains\.py: the candidate was written into the file"):

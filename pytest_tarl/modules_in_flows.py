@@ -1,0 +1,58 @@
+"""Find the project modules whose names the statements of flows use, such as one that defines constants."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tarl_lint.api import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A statement of a flow that uses a name from a module: the module's file, and the place of the statement."""
+
+    file: Path
+    path: str
+    line: int
+
+
+def uses(analysis: Analysis, root: Path) -> Iterator[Use]:
+    """Yield the first use of each imported name; `root` is the folder to which paths of the analysis are relative."""
+    for shown, text in analysis.sources.items():
+        for name, file in _imports(ast.parse(text), (root / shown).resolve(), root.resolve()):
+            word = re.compile(rf"\b{re.escape(name)}\b")
+            passing = (s for s in analysis.sites if s.span.path == shown and word.search(s.code))
+            step = next(passing, None)
+            if step is not None:
+                yield Use(file, shown, step.span.line)
+
+
+def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path]]:
+    """Yield each name that a module imports from files of the project, and the file."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for each in node.names:
+                name = each.asname or each.name.partition(".")[0]
+                yield from ((name, file) for file in _files(each.name, 0, at, root))
+        elif isinstance(node, ast.ImportFrom):
+            for each in node.names:
+                inner = f"{node.module}.{each.name}" if node.module else each.name
+                files = [
+                    *_files(inner, node.level, at, root),
+                    *_files(node.module or "", node.level, at, root),
+                ]
+                yield from ((each.asname or each.name, file) for file in files[:1])
+
+
+def _files(module: str, level: int, at: Path, root: Path) -> list[Path]:
+    """Return the files of a module, next to the importing file or in a parent folder up to the root."""
+    starts = [at.parents[level - 1]] if level else [each for each in at.parents if each.is_relative_to(root)]
+    parts = module.split(".")
+    wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]
+    return [file for file in wanted if file.is_file() and file.is_relative_to(root)][:1]
