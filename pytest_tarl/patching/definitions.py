@@ -21,6 +21,8 @@ PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached
 SEVERAL = "declare_parameters"  # takes a namespace and a list of names with defaults
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # maximum number of configuration files to read per package
+ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
+_NUMERAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
 _PLAIN = re.compile(r"[-+]?\d+")
 
@@ -43,12 +45,16 @@ def defined(analysis: Analysis, operand: Operand) -> Place | None:
     if span is None or operand.literal or span.path not in analysis.sources:
         return None
     source = document(span.path, analysis.sources[span.path])
-    node = source.at(span)
+    node = _written(source.at(span))
     value = _number(node)
     if node is None or value is None or operand.value not in (None, value):
         return None
     name = parameter(analysis, operand) or _name(source, node) or operand.code
-    return Place(span.path, source.start(node), source.end(node), node.lineno, name, value)
+    start, end = source.start(node), source.end(node)
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        start = source.text.find(node.value, start, end)  # within the quotes; a numeral has no escapes
+        end = start + len(node.value)
+    return Place(span.path, start, end, node.lineno, name, value) if start >= 0 else None
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
@@ -126,8 +132,24 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
     return found
 
 
+def _written(node: ast.expr | None) -> ast.expr | None:
+    """Return where a number is written: in `float(os.environ.get("SPEED", "0.5"))`, the default."""
+    while isinstance(node, ast.Call):
+        function = ast.unparse(node.func)
+        if function in ("float", "int") and len(node.args) == 1 and not node.keywords:
+            node = node.args[0]
+        elif function in ENVIRONMENT:
+            named = (one.value for one in node.keywords if one.arg == "default")
+            return next(iter([*node.args[1:2], *named]), None)
+        else:
+            return None
+    return node
+
+
 def _number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the value of a literal number, with its sign; None for other expressions."""
+    """Return the value of a literal number, with its sign, or of a text that is one; None for other expressions."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str) and re.fullmatch(_NUMERAL, node.value):
+        return int(node.value) if _PLAIN.fullmatch(node.value) else float(node.value)
     sign = 1
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         node, sign = node.operand, -1

@@ -143,3 +143,46 @@ def test_an_entry_is_named_by_its_namespace_and_its_first_element(code: str, exp
     assert isinstance(call, ast.Call)
     entries = next(one for one in ast.walk(call) if isinstance(one, ast.List))
     assert _entry_name(call, entries.elts[0]) == expected
+
+
+@pytest.mark.parametrize(
+    ("definition", "after"),
+    [
+        ('float(os.environ.get("KP", "2.5"))', 'float(os.environ.get("KP", "5.0"))'),
+        ("float(os.getenv('KP', default='2.5'))", "float(os.getenv('KP', default='5.0'))"),
+        ('float(os.getenv("KP", 2.5))', 'float(os.getenv("KP", 5.0))'),
+        ('int(os.environ.get("KP", "3"))', 'int(os.environ.get("KP", "6"))'),
+        ('float(os.environ.get("KP", "-1e-3"))', 'float(os.environ.get("KP", "-0.002"))'),
+    ],
+)
+def test_a_number_from_the_environment_is_changed_at_its_default(
+    tmp_path: Path, definition: str, after: str
+) -> None:
+    path = tmp_path / "mast.py"
+    text = NODE.format(use="KP").replace("import rclpy\n", f"import os\nimport rclpy\nKP = {definition}\n", 1)
+    path.write_text(text)
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == "KP"}
+    place = defined(analysis, operand)
+    assert place is not None
+    assert place.name == "KP"
+    order: Any = SimpleNamespace(
+        analysis=analysis, root=tmp_path, rollout=None, fixture=SimpleNamespace(topics={})
+    )
+    written = Mutants(order).source(Candidate((Mutation(operand, 2.0, place),), Guard()))
+    assert written == {path: text.replace(definition, after)}
+
+
+@pytest.mark.parametrize(
+    "definition", ['os.environ.get("KP")', 'float(os.environ["KP"])', 'os.getenv("KP", "fast")']
+)
+def test_an_environment_variable_without_a_number_as_default_has_no_definition(
+    tmp_path: Path, definition: str
+) -> None:
+    path = tmp_path / "mast.py"
+    path.write_text(
+        NODE.format(use="KP").replace("import rclpy\n", f"import os\nKP = {definition}\nimport rclpy\n", 1)
+    )
+    analysis = analyse([path], root=tmp_path)
+    used = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == "KP"}
+    assert all(defined(analysis, one) is None for one in used)
