@@ -164,6 +164,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         if comparison.repair and comparison.repair.partial
         else "",
         "ways_out": repair_words.ways_out(comparison),
+        "wider_tolerance": repair_words.wider_tolerance(comparison),
         "designed_world": words.designed_world(comparison),
         "command": next_commands.repeat(comparison),
         "next_steps": list(next_commands.next_steps(comparison)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair
-from pytest_tarl.report.amounts import amount, signed
+from pytest_tarl.report.amounts import amount, atr, signed
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.words import designed_world, world_name
 
@@ -43,6 +43,11 @@ ENDS: dict[Reason, str] = {
     "a smaller step breaks it": "not run, a smaller step already makes the designed world worse",
     "breaks other missions": "dropped, missions that lost nothing get worse",
 }
+
+NEARLY = 0.8  # share of the loss that a rejected candidate must restore to be worth a wider tolerance
+SPARE = (
+    1.5  # suggested tolerance, as a multiple of the loss that remains: a test needs some room to show less
+)
 
 
 def edit_words(edit: Edit) -> str:
@@ -111,4 +116,27 @@ def ways_out(comparison: Comparison) -> str:
         "sensor that distinguishes the two worlds, so that the repair can be conditional; or, if the drift is "
         "permanent, declare it so: "
         f'drifts={{"{name}": Drift(…, permanent=True)}}'
+    )
+
+
+def wider_tolerance(comparison: Comparison) -> str:
+    """Return advice if the best rejected candidate restored nearly all of the loss, or ""."""
+    repair, tolerance = comparison.repair, comparison.verdict.tolerance
+    designed, deployed = atr(comparison, "offline"), atr(comparison, "online")
+    if repair is None or repair.accepted or designed is None or deployed is None:
+        return ""
+    lacking = [one for one in repair.history if one.fresh and one.reason == "gain too small"]
+    best = max(lacking, key=lambda one: one.mean, default=None)
+    if (
+        best is None
+        or best.mean - deployed < NEARLY * (designed - deployed)
+        or designed - best.mean <= tolerance
+    ):
+        return ""
+    left = designed - best.mean
+    wider = f"tolerance={SPARE * left:.2g}"
+    share = percent((best.mean - deployed) / (designed - deployed))
+    return (
+        f"{best.what} restores {share} of the loss; {amount(left)} per episode remain, more than the tolerance of "
+        f"{amount(tolerance)}. If that is acceptable, declare {wider} in the marker and search again"
     )

@@ -150,8 +150,7 @@ def _repair(comparison: Comparison) -> Iterator[str]:
     if repair.partial is not None:
         part = repair.partial
         yield f"partial: {part.what}: {repair_words.partial_words(part, comparison)}; tarl apply --partial {part.patch}"
-    if ways_out := repair_words.ways_out(comparison):
-        yield ways_out
+    yield from filter(None, (repair_words.ways_out(comparison), repair_words.wider_tolerance(comparison)))
     dropped = [one for one in repair.history if one.reason]
     if dropped and repair.accepted:
         yield f"{len(dropped)} tried before; the last: {repair_words.attempt_words(dropped[-1])}"

@@ -17,6 +17,7 @@ from pytest_tarl.model import (
     FormulaWorld,
     LossInterval,
     Partial,
+    Reason,
     Region,
     Repair,
     Verdict,
@@ -117,6 +118,37 @@ def test_a_repair_refused_only_by_the_designed_world_comes_with_two_remedies(var
     for nothing in (None, replace(refused, accepted=True), replace(refused, reason="budget")):
         assert repair_words.ways_out(varied(repair=nothing)) == ""
     assert repair_words.ways_out(varied(repair=refused, permanent=True)) == ""
+
+
+def refused(mean: float, *, reason: Reason = "gain too small", fresh: bool = True) -> Repair:
+    return Repair(False, "", EDITS, history=(Attempt("KP → 3", reason, mean, 8, fresh),))
+
+
+def test_a_repair_that_restores_nearly_all_is_told_with_the_tolerance_that_accepts_it(varied: Varied) -> None:
+    totals = {"offline": (10.0, 10.0), "online": (0.0, 0.0)}
+    margin = replace(varied().verdict, tolerance=0.5)
+    told = repair_words.wider_tolerance(varied(totals=totals, verdict=margin, repair=refused(9.0)))
+    assert told == (
+        "KP → 3 restores 90 % of the loss; 1.00 per episode remain, more than the tolerance of 0.50. If that is "
+        "acceptable, declare tolerance=1.5 in the marker and search again"
+    )
+
+
+@pytest.mark.parametrize(
+    "repair",
+    [
+        None,
+        Repair(True, "", EDITS),
+        refused(7.9),  # restores less than 80 %
+        refused(9.6),  # within the tolerance
+        refused(9.0, reason="fails too often"),
+        refused(9.0, fresh=False),
+    ],
+)
+def test_other_repairs_need_no_wider_tolerance(varied: Varied, repair: Repair | None) -> None:
+    totals = {"offline": (10.0, 10.0), "online": (0.0, 0.0)}
+    margin = replace(varied().verdict, tolerance=0.5)
+    assert repair_words.wider_tolerance(varied(totals=totals, verdict=margin, repair=repair)) == ""
 
 
 KEPT = {
