@@ -1,9 +1,10 @@
 """TARL201: state is shared between threads without the lock that guards it elsewhere.
 
-In rospy every subscriber, timer and service runs its callbacks in a thread of its own, beside the main loop. In rclpy
-this happens only with a MultiThreadedExecutor and callback groups that allow it, or with threads that the node starts.
-If one thread accesses an attribute or global under a lock and another thread changes or reads it without the lock, the
-other thread may see a partial change, or a change may be lost.
+In rospy every subscriber, timer and service runs its callbacks in a thread of its own, beside the main loop.
+In rclpy, callbacks run in several threads only with a MultiThreadedExecutor and callback groups that allow
+it, or if the node starts threads itself. If one thread accesses an attribute or global under a lock and
+another thread changes or reads it without the lock, the other thread may see a partial change, or a change
+may be lost.
 
 An access is reported only if other code guards the same state with a lock, and only if the access can go wrong:
 
@@ -12,16 +13,16 @@ An access is reported only if other code guards the same state with a lock, and 
 - a function reads the state twice and may see two different values,
 - a function reads several parts that belong together.
 
-A single read of a value that is only ever replaced is harmless, because Python replaces it atomically. The rule also
-does not report
+Reading a value once is harmless if the threads only ever replace the whole value, because Python replaces it
+atomically. The rule also does not report
 
 - flags that are set to constants,
-- checks before the lock is taken (whether a value exists, its length, whether to return),
+- checks before the lock is taken, such as whether a value exists, how long it is, or whether to return,
 - methods of objects that may do their own locking,
 - locks that are only taken if they are free (`acquire(blocking=False)`): they keep an activity from running twice,
 - coroutines that an event loop runs later,
 - code that runs before the threads start,
-- callbacks of which only one is registered, in opposite branches of an `if`.
+- callbacks that are registered in opposite branches of an `if`, so that only one of them ever runs.
 
 If a function is called with the lock in one place and without it in another, the message names the call without the
 lock.

@@ -8,10 +8,10 @@ invalid values, and the command follows them. Clamp the value at the reported li
 A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
 
 The type of a message decides whether it counts as sensor data (`LaserScan`, `Odometry`, `Imu` …); for a plain number,
-the topic decides (`/range`, `/cte`). Other messages may be decisions, such as commands, goals and parameters, and are
-not reported. Two kinds of values are not reported either: values that pass through code outside the analysed files,
-and speeds that may be measurements, such as a Float64 on `/speed` computed from ticks, from `twist`, or from a
-distance and a time.
+the topic decides (`/range`, `/cte`). Values of other messages, such as commands, goals and parameters, are
+not reported, because a person or a planner may have chosen them. Two kinds of values are not reported either:
+values that pass through code outside the analysed files, and speeds that may be measurements, such as a
+Float64 on `/speed` computed from ticks, from `twist`, or from a distance and a time.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
 The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
 what it stores. The subscription wastes bandwidth and time. Often the author forgot a line.
-The rule does not report callbacks that ignore the message but do something when it arrives. It does not report
-callbacks that intentionally do nothing either: `lambda msg: None`, or a parameter whose name starts with an
-underscore.
+The rule does not report callbacks that ignore the message but do something when it arrives. The rule also
+does not report callbacks that intentionally do nothing: `lambda msg: None`, or a parameter whose name starts
+with an underscore.
 """
 
 from __future__ import annotations

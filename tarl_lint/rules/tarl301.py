@@ -6,9 +6,9 @@ For this reason, the keyboard teleoperation of the Kobuki had no effect
 (https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace but
 the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
-The rule reports nothing if a node of the launch file was not read, or if its topics are computed, because that node
-might be the other end. It also reports nothing if no publisher has a similar name, because sensors and simulators
-are often started elsewhere.
+The rule reports nothing if a node of the launch file was not read, or if it computes the names of its topics,
+because that node might be the other end. The rule also reports nothing if no publisher has a similar name,
+because sensors and simulators are often started elsewhere.
 """
 
 from __future__ import annotations

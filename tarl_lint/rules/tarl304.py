@@ -2,7 +2,8 @@
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
 service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the launch file
-was not read. It also reports nothing if no server has a similar name, because the server may be started elsewhere.
+was not read. The rule also reports nothing if no server has a similar name, because the server may be started
+elsewhere.
 """
 
 from __future__ import annotations

@@ -5,11 +5,12 @@ warning. For example, one filter used two unsuitable defaults, because the names
 those of the node (https://github.com/manankharwar/fusioncore/issues/134).
 
 In a parameter file of ROS 2, a section `gate:` is for the node `/gate` and not for `/robot/gate`, so a node that is
-started in a namespace gets none of the values. This is reported if the section states no namespace, the node has its
-name, and no other section of the file gives it these parameters.
+started in a namespace gets none of the values. The rule reports this if the section has the node's name
+without a namespace, and no other section of the file gives the node these parameters.
 
 A parameter of a node is reported only if the node's program and all its imports could be read, and the program reads
-parameters only by literal names. A parameter that a group sets for all its nodes is reported if none of them has it.
+parameters only by literal names. If a group sets a parameter for all its nodes, the rule reports the
+parameter only if none of the nodes has it.
 """
 
 from __future__ import annotations

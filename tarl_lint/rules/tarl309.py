@@ -3,8 +3,9 @@
 The callback raises AttributeError at its first message. rospy logs the error and continues, so the rest of the robot
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
-The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known. It
-examines only variables that always hold a message: one that a callback receives, or one that the function creates.
+The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known.
+The rule examines only variables that always hold a message: a message that a callback receives, or one that
+the function creates.
 """
 
 from __future__ import annotations
