@@ -63,7 +63,7 @@ def test_the_robot_loses_the_line_in_the_first_bend_at_dusk() -> None:
         assert LINE.LAMP < world.along < 1.6
 
 
-def test_beyond_the_lamp_dusk_dims_light_and_contrast_equally() -> None:
+def test_dusk_dims_light_and_contrast_equally_beyond_the_lamp() -> None:
     day, dusk = LINE.World(random(1)), LINE.World(random(1), dusk=DUSK)
     assert day.light == dusk.light
     day.along = dusk.along = LINE.LAMP + 0.1

@@ -90,7 +90,7 @@ def test_the_terrain_sensor_sees_the_patch_in_both_worlds() -> None:
         assert seen == {4.9: False, 5.1: True, 6.9: True, 7.1: False}
 
 
-def test_mud_reduces_the_speed_to_the_stated_share_of_the_commanded_one() -> None:
+def test_mud_reduces_the_commanded_speed_to_the_stated_share() -> None:
     clean, _ = push(1.0, 2.0, 10.0, 30)
     muddy, _ = push(MUD, 6.0, 10.0, 30)
     commanded = 10.0 * SHUTTLE.WHEEL_RADIUS
@@ -98,7 +98,7 @@ def test_mud_reduces_the_speed_to_the_stated_share_of_the_commanded_one() -> Non
     assert muddy.body.velocity.x == pytest.approx(MUD * commanded, rel=0.03)
 
 
-def test_in_mud_the_missions_across_the_patch_are_late_and_no_others() -> None:
+def test_only_missions_across_the_patch_are_late_in_mud() -> None:
     for seed in SEEDS:
         world = mission(seed, mud=MUD)
         assert world.delivered is not world.patch

@@ -44,14 +44,14 @@ def test_fingerprints_depend_on_topic_callback_class_place_and_kind(example, sou
     assert fingerprint(changed(flow, source, sink, **parts), "p").digest() != fingerprint(flow, "p").digest()
 
 
-def test_the_package_is_the_ros_package_else_the_python_package_else_the_script(example):
+def test_a_fingerprint_names_the_ros_package_or_the_python_package_or_the_script(example):
     flow = example.flow()
     assert fingerprint(flow, "shuttle").package == "shuttle"
     assert fingerprint(changed(flow, {"module": "robot.nodes.follow"}), "").package == "robot.nodes"
     assert fingerprint(changed(flow, {"module": "follow"}), "").package == "follow"
 
 
-def test_a_method_that_subscribes_belongs_to_its_class(example):
+def test_the_fingerprint_of_a_method_that_subscribes_names_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "Node.__init__"}), "").owner == "Node"
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 

@@ -64,7 +64,7 @@ def flows_of(unit: Path) -> tuple[Flow, ...]:
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
-def test_the_marked_flows_are_found_and_no_others(unit):
+def test_only_the_marked_flows_are_found(unit):
     sources, wanted, clean = marks(unit)
     assert wanted
     assert clean or unit.name in PLAIN
@@ -78,7 +78,7 @@ def test_the_marked_flows_are_found_and_no_others(unit):
 
 
 @pytest.mark.parametrize("unit", STEPPED, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
-def test_the_marked_steps_are_found_and_no_other_data_steps(unit):
+def test_only_the_marked_data_steps_are_found(unit):
     sources, _, _ = marks(unit)
     marked = {
         (name, number)

@@ -38,7 +38,7 @@ def test_an_incomplete_program_is_named_in_every_format(name, result):
     assert "pilot" in text.replace("src/pilot.py", "")
 
 
-def test_json_has_the_key_incomplete_only_if_a_program_is(result, example):
+def test_json_has_the_key_incomplete_only_if_a_program_is_incomplete(result, example):
     entry = {"path": "src/pilot.py", "node": "pilot", "message": CUT.message}
     assert json.loads(text_of("json", result))["incomplete"] == [entry]
     assert "incomplete" not in json.loads(text_of("json", everything(example)))

@@ -262,7 +262,7 @@ def test_a_submodule_of_an_imported_package_is_read(tmp_path: Path) -> None:
     assert "demo.nodes.made(kind)" in (HEAD + dedent(text)).splitlines()[node.line - 1]
 
 
-def test_a_file_with_the_name_of_a_library_does_not_replace_it(tmp_path: Path) -> None:
+def test_a_file_with_the_name_of_a_library_does_not_replace_the_library(tmp_path: Path) -> None:
     (tmp_path / "launch").mkdir()
     for name in ("launch", "os", "launch_ros"):
         (tmp_path / "launch" / f"{name}.py").write_text("raise SystemExit\n")
@@ -284,7 +284,7 @@ def test_arguments_that_a_function_reads_are_known(tmp_path: Path) -> None:
     assert [one.name for one in found.nodes] == ["ab"]
 
 
-def test_a_python_file_without_the_usual_ending_is_a_launch_file_if_it_says_so(tmp_path: Path) -> None:
+def test_a_python_file_that_defines_generate_launch_description_is_a_launch_file(tmp_path: Path) -> None:
     launched(tmp_path, STYLES["generator and conditional expression"][0])
     (tmp_path / "launch/robot.py").write_text("def generate_launch_description():\n    pass\n")
     (package,) = read(tmp_path).packages

@@ -199,7 +199,7 @@ def test_parts_that_are_written_together_must_be_read_together(written, found):
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 
 
-def test_the_access_is_reported_if_both_ros_and_other_functions_call_its_function(tmp_path):
+def test_an_access_is_reported_if_ros_and_other_functions_call_the_function_that_contains_it(tmp_path):
     """A callback run by ROS without the lock has no calling line; no line of another file may be reported."""
     files = {
         "a_first.py": "import rospy\n\n\ndef name():\n    return 'x'\n",
@@ -297,11 +297,11 @@ ACTIVITY = """
     ("asked", "found"),
     [("blocking=False", 0), ("False", 0), ("blocking=True", 1), ("", 1), ("timeout=1.0", 1)],
 )
-def test_a_lock_that_is_only_tried_and_never_waited_for_guards_no_state(asked, found):
+def test_a_lock_that_no_function_waits_for_guards_no_state(asked, found):
     assert len(lines("TARL201", ACTIVITY.format(asked=asked))) == found
 
 
-def test_a_lock_guards_state_if_one_function_only_tries_it_and_another_waits_for_it():
+def test_a_lock_guards_state_if_at_least_one_function_waits_for_it():
     waits = "with self.lock:\n                self.pub.publish(sum(self.seen.values()))"
     both = ACTIVITY.format(asked="False").replace("self.pub.publish(sum(self.seen.values()))", waits)
     assert lines("TARL201", both) == []

@@ -67,11 +67,11 @@ def test_modules_that_only_publish_or_only_subscribe_are_not_run():
 
 
 @pytest.mark.parametrize("text", EXAMPLES.values(), ids=EXAMPLES)
-def test_modules_that_are_not_run_have_no_findings(text):
+def test_modules_that_the_prefilter_skips_have_no_findings(text):
     assert not (skipped(text, rules=HAZARDS) and found([module(text)]))
 
 
-def test_cases_that_are_not_run_have_no_findings():
+def test_cases_that_the_prefilter_skips_have_no_findings():
     for path in sorted(CASES.rglob("*.py")):
         if skipped(text := path.read_text(), rules=HAZARDS):
             assert not found([module(text)]), path
@@ -88,11 +88,11 @@ def test_cases_that_are_not_run_have_no_findings():
         ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
     ],
 )
-def test_a_publisher_that_may_have_a_hazard_or_subscribe_is_run(changed):
+def test_a_module_that_publishes_is_run_if_it_may_have_a_hazard_or_subscribe(changed):
     assert not skipped(TALKER.replace(*changed))
 
 
-def test_a_subscriber_whose_callback_may_have_no_effect_is_run():
+def test_a_module_that_subscribes_is_run_if_its_callback_may_have_no_effect():
     assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
     assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
 
@@ -123,7 +123,7 @@ def test_a_module_that_always_or_never_holds_the_lock_of_its_state_is_not_run():
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
 
-def test_a_method_of_a_lock_is_no_call_of_a_function_of_the_same_name():
+def test_calling_a_method_of_a_lock_does_not_call_a_function_of_the_same_name():
     """`Condition.wait` does not call the module's `wait`, unless the attribute may hold something else."""
     waiting = LOCKED.replace("threading.Lock()", "threading.Condition()").replace(
         "rospy.loginfo(self.last)",
@@ -195,7 +195,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 @pytest.mark.parametrize("rules_out", [True, False, None])
 @pytest.mark.parametrize("text", [LISTENER, TALKER])
-def test_a_new_rule_states_in_its_own_file_which_nodes_it_cannot_report(tmp_path, rules_out, text):
+def test_the_file_of_a_new_rule_states_which_nodes_the_rule_cannot_report(tmp_path, rules_out, text):
     """A rule without `ruled_out` runs on every node, also on nodes that only subscribe or only publish."""
     package = tmp_path / "tarl_lint"
     shutil.copytree(Path(tarl_lint.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))

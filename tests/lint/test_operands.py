@@ -79,7 +79,7 @@ def test_operands_are_the_constants_that_a_site_uses(tmp_path, expression, opera
         assert operand.literal == (operand.code[-1].isdigit() or operand.code == "True")
 
 
-def test_a_named_constant_has_the_place_of_its_definition(tmp_path):
+def test_a_named_constant_refers_to_its_definition(tmp_path):
     analysis = analysed(tmp_path, node=NODE.replace("{expression}", "GAIN * msg.data"))
     (operand,) = analysis.operands(next(s.site for s in analysis.sites if s.code.startswith("v = ")))
     assert operand.definition is not None
@@ -237,7 +237,7 @@ DECLARED = 'self.given = self.declare_parameters("", [("arm.pitch", 0.125), ("ar
         ),
     ],
 )
-def test_an_argument_that_is_unpacked_is_an_operand_where_it_is_used(tmp_path, made, before):
+def test_an_unpacked_argument_is_an_operand_where_it_is_used(tmp_path, made, before):
     text = PASSED.replace("{made}", made).replace("{before}", before)
     text = text.replace("class Node:", "from rclpy.node import Node\n    class Arm(Node):")
     analysis = analysed(tmp_path, node=text)
@@ -255,7 +255,7 @@ def deciding_operands(directory, text):
     }
 
 
-def test_the_limit_of_a_watchdog_is_an_operand_without_data_of_a_message(tmp_path):
+def test_the_limit_of_a_watchdog_is_an_operand_although_no_message_reaches_it(tmp_path):
     found = deciding_operands(
         tmp_path,
         """
@@ -290,7 +290,7 @@ def test_the_limit_of_a_watchdog_is_an_operand_without_data_of_a_message(tmp_pat
     assert not any(code.startswith("patience") for code in found)  # the definition of a constant is not a use
 
 
-def test_a_set_point_and_a_waiting_time_that_no_message_reaches_are_operands(tmp_path):
+def test_set_points_and_waiting_times_are_operands_even_if_no_message_reaches_them(tmp_path):
     found = deciding_operands(
         tmp_path,
         """

@@ -37,7 +37,7 @@ def test_the_response_of_a_service_names_the_service_and_its_type():
     assert (sink.topics, sink.type) == (("get_range",), "GetRange")
 
 
-def test_goals_are_sources_and_both_feedback_and_results_are_separate_sinks():
+def test_goals_are_sources_and_feedback_and_results_are_separate_sinks():
     found = ends("sources/action_goals.py")
     assert ("rclpy.action.ActionServer", "rclpy.action.ActionServer.publish_feedback") in found
     assert ("rclpy.create_subscription", "rclpy.action.ActionServer.response") in found

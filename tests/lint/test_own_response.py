@@ -60,7 +60,7 @@ def test_flows_to_the_response_of_the_same_service_are_counted_and_shown_on_requ
     )
 
 
-def test_an_older_baseline_stays_valid(codes, capsys):
+def test_a_baseline_of_an_older_version_stays_valid(codes, capsys):
     Path("tarl-flows.json").write_text(json.dumps(BASELINE))
     assert codes() == []
     assert codes("--extend-select", "TARL103") == []

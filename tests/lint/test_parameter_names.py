@@ -147,7 +147,7 @@ def test_topic_names_use_declared_ros2_parameters(arm, capsys):
     assert flows(out) == ["/front/scan_filtered → /r1/relay → /end  explicit"]
 
 
-def test_a_condition_on_an_unknown_parameter_may_go_either_way(arm, capsys):
+def test_both_branches_of_a_condition_on_an_unknown_parameter_are_analysed(arm, capsys):
     source = TOP + """
 rospy.init_node("relay")
 name = rospy.get_param("~out_topic", "out")
@@ -172,7 +172,7 @@ rospy.spin()
     assert document["systems"][0]["nodes"][0]["publishes"] == []
 
 
-def test_json_has_the_name_in_the_code(arm, capsys):
+def test_json_states_the_name_as_written_in_the_code(arm, capsys):
     write(
         arm,
         {"arm/scripts/relay.py": TOP + DIRECT, "arm/launch/a.launch": f"<launch>{node('first')}</launch>"},
@@ -304,7 +304,7 @@ def test_a_launch_file_gives_a_list_of_topics(arm, capsys):
     ]
 
 
-def test_iterations_over_known_elements_have_separate_publish_calls(arm, capsys):
+def test_each_iteration_over_known_elements_has_its_own_publish_call(arm, capsys):
     assert system(arm, capsys, TOP + "import message_filters\n" + PAIRS, node("n")) == [
         f"/{one} → /n → /{other}  explicit" for one, other in zip("abc", "xyz", strict=True)
     ]

@@ -55,17 +55,17 @@ def test_programs_that_may_exchange_data_are_analysed_together(change):
     assert grouped({"one": NODE, "two": NODE, "helper": HELPER} | change) == [{"helper", "one", "two"}]
 
 
-def test_a_word_in_a_comment_loads_nothing():
+def test_a_module_name_in_a_comment_is_not_an_import():
     files = {"one": NODE, "two": NODE, "helper": "# no importlib here\n" + HELPER}
     assert len(grouped(files)) == 2
 
 
-def test_a_program_that_another_file_imports_is_part_of_it():
+def test_a_program_that_another_file_imports_is_analysed_with_that_file():
     test = "import one\nif __name__ == '__main__':\n    one.Node()\n"
     assert grouped({"one": NODE, "test_one": test, "helper": HELPER}) == [{"helper", "one", "test_one"}]
 
 
-def test_import_cycles_without_a_beginning_stay_in_one_group():
+def test_an_import_cycle_that_no_program_imports_stays_in_one_group():
     files = {"one": NODE + "import two\n", "two": NODE + "import one\n", "helper": HELPER}
     assert grouped(files) == [{"helper", "one", "two"}]
 

@@ -124,7 +124,7 @@ def test_hazards_can_be_excluded_from_the_baseline(node, capsys):
     assert "2 new hazards: 1 TARL202, 1 TARL204.\n" in out
 
 
-def test_disabled_rules_keep_their_entries(node, capsys):
+def test_baseline_entries_of_disabled_rules_are_kept(node, capsys):
     before = Path("tarl-flows.json").read_text()
     main(["--write-baseline", "--select", "TARL1"])
     assert Path("tarl-flows.json").read_text() == before
@@ -138,7 +138,7 @@ def test_json_contains_fingerprint_and_status_of_hazards(node, capsys):
     assert len({d["fingerprint"] for d in diagnostics}) == 3
 
 
-def test_unreadable_files_keep_their_hazards(node, capsys):
+def test_accepted_hazards_of_unreadable_files_are_kept(node, capsys):
     before = Path("tarl-flows.json").read_text()
     node.write_text("def f(:\n")
     main(["--write-baseline"])

@@ -91,7 +91,7 @@ def test_stores_to_objects_of_one_run_do_not_rerun_the_root(lines):
         ],
     ],
 )  # fmt: skip
-def test_a_run_finds_what_an_earlier_run_stored(lines):
+def test_a_run_reads_the_values_that_an_earlier_run_stored(lines):
     machine = linked(*lines)
     assert machine.runs["on"] > 1
     assert [flow.kind for flow in Tracer(machine).flows()] == ["explicit"]

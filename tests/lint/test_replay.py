@@ -120,7 +120,7 @@ def test_reads_of_a_call_count_as_reads_of_its_caller_unless_the_caller_stored_t
     assert outer.keys == {(obj, "x"), (obj, "y")}
 
 
-def test_a_call_records_its_first_look_at_an_object(store, obj):
+def test_a_call_records_its_first_read_of_an_object(store, obj):
     store.look(obj)
     store.put((obj, "x"), Value(DATA))
     store.look(obj)
@@ -205,7 +205,7 @@ def test_a_merged_field_passes_on_all_of_its_values(number, made, kind):
 
 
 @pytest.mark.parametrize("added", ["msg.data", "msg.data + 1"])
-def test_a_merged_field_adds_no_steps_of_other_sources(added):
+def test_a_merged_field_adds_no_steps_to_flows_of_other_sources(added):
     found = flows(linked(many(MANY + 4).replace("msg.data", added)))
     for flow in found:
         (name,) = flow.source.topics

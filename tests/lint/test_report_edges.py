@@ -29,7 +29,7 @@ LONGEST = 12  # steps that are shown in full
         (MOST_RESULTS + 1, [Cut(MOST_RESULTS, MOST_STEPS), Cut(MOST_RESULTS, 0)]),
     ],
 )
-def test_the_cuts_of_a_report_become_smaller_until_nothing_is_left(results, smaller):
+def test_a_report_that_is_too_large_is_cut_step_by_step_until_it_is_empty(results, smaller):
     assert list(islice(cuts(results), len(smaller))) == smaller
     assert list(cuts(results))[-1] == Cut(0, 0)
 
@@ -70,7 +70,7 @@ def test_a_text_is_shortened_to_a_width_in_columns(text, width, shown):
     assert crop(text, width, "…") == shown
 
 
-def test_text_widths_count_tabs_and_escaped_line_ends():
+def test_tabs_and_escaped_line_ends_count_in_the_width_of_a_text():
     assert [columns(text) for text in ("abc", "漢", "e\u0301", "é")] == [3, 2, 1, 1]
     assert tabs("\tx") == "    x"
     assert location(Span("a\nb.py", 2, 3, 4, 5)) == "a\\nb.py:2:3"
@@ -100,7 +100,7 @@ def test_a_frame_has_the_lines_before_and_carets_below_each_line_of_the_span():
     assert framed(text, Span("n", 7, 1, 9, 2))[-2:] == ["   7 │ b", "     │ ^"]
 
 
-def test_of_a_tall_span_the_frame_shows_the_beginning_and_the_last_line():
+def test_the_frame_of_a_long_statement_shows_its_first_lines_and_its_last_line():
     text = "\n".join("x" for _ in range(20))
     exact, taller = (framed(text, Span("n", 1, 1, end, 2)) for end in (TALL, TALL + 1))
     assert len(exact) == 2 * TALL

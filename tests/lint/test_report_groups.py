@@ -70,7 +70,7 @@ def test_paths_of_tests_and_examples_are_recognised(path, aside):
     assert (groups[-1].name == TESTS_AND_EXAMPLES) is aside
 
 
-def test_the_map_lists_the_data_and_the_conditions_of_each_published_topic():
+def test_the_overview_lists_the_data_and_the_conditions_of_each_published_topic():
     flows = [
         flow("/scan", "/cmd", 1),
         flow("/odom", "/cmd", 2),
@@ -94,7 +94,7 @@ def test_the_map_lists_the_data_and_the_conditions_of_each_published_topic():
     assert [*overview(flows[:-1], View())] == []  # five publish calls fit on a screen
 
 
-def test_names_in_a_map_are_wrapped_at_the_width_and_long_lists_are_abbreviated():
+def test_names_in_the_overview_are_wrapped_and_long_lists_are_abbreviated():
     assert [*_wrapped(["a", "b", "c"], 4)] == ["a,", "b,", "c"]
     assert [*_wrapped(["a", "b", "c"], 5)] == ["a, b,", "c"]
     assert [*_wrapped([], 6)] == []
@@ -110,7 +110,7 @@ def test_a_finding_that_fails_the_run_is_an_error_whatever_its_own_level():
     assert [level(code, result) for code in ("TARL101", "TARL102", "TARL201")] == ["error", "note", "warning"]
 
 
-def test_findings_with_one_fingerprint_are_numbered():
+def test_findings_with_equal_fingerprints_are_numbered():
     some = [
         finding(fingerprint="f"),
         finding(fingerprint="g"),
@@ -267,7 +267,7 @@ def test_new_findings_come_before_accepted_ones_and_severe_before_minor():
     assert keys == [(False, 0), (False, 1), (False, 2), (True, 0), (True, 2)]
 
 
-def test_a_wrapper_in_the_settings_is_written_with_only_its_stated_argument_positions():
+def test_the_shown_settings_of_a_wrapper_contain_only_the_argument_positions_that_were_set():
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer")) == "rospy.Timer"
     assert settings._wrapper(Wrapper("a.b", "rospy.Timer", topic=0, callback="on")) == {
         "like": "rospy.Timer",
@@ -301,7 +301,7 @@ def test_the_legend_follows_the_first_flows_if_chains_are_shown(monkeypatch):
     assert told(View()) == []
 
 
-def test_each_item_of_the_compact_document_has_a_line(monkeypatch):
+def test_each_item_of_the_compact_json_has_its_own_line(monkeypatch):
     monkeypatch.setattr(
         json2, "document", lambda _: {"a": 1, "b": [], "c": [1], "d": [1, 2, 3], "e": {"x": []}}
     )

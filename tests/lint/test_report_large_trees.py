@@ -43,7 +43,7 @@ def lines(result: Result, **view: object) -> list[str]:
     return [plain(line) for line in render("text", result, View(**view))]  # type: ignore[arg-type]
 
 
-def test_the_map_comes_first_then_packages_then_tests(many):
+def test_the_overview_comes_first_then_packages_then_tests(many):
     shown = lines(many)
     wanted = [
         "Published topics, and the topics that reach them:",
@@ -77,7 +77,7 @@ def test_no_finding_is_lost_by_grouping(paths: list[str]) -> None:
 
 
 @pytest.mark.parametrize("most", [1, 4, 5, 6, 9])
-def test_at_most_the_requested_number_of_flows_is_shown_and_the_rest_counted(many, most):
+def test_at_most_the_requested_number_of_flows_is_shown_and_the_rest_is_counted(many, most):
     shown = lines(many, most_flows=most)
     assert sum("TARL10" in line for line in shown) == most
     left = [int(line.split()[1]) for line in shown if line.startswith("    and ")]
@@ -86,7 +86,7 @@ def test_at_most_the_requested_number_of_flows_is_shown_and_the_rest_counted(man
     assert "10 flows in 10 files: 7 explicit, 3 implicit." in shown
 
 
-def test_long_lists_are_reduced_to_their_shortest_chain(example):
+def test_long_lists_of_steps_are_reduced_to_the_shortest_chain(example):
     finding = example.finding()
     steps = (*finding.flow.steps[:-1], *[example.step("delta = goal - pos")] * 10, finding.flow.steps[-1])
     long = replace(finding, flow=replace(finding.flow, steps=steps, chain=(1, 2, len(steps) - 1)))
@@ -147,7 +147,7 @@ def test_too_large_reports_are_reduced_with_a_note(example, monkeypatch):
     assert notes["shortened"].startswith(f"{len(run['results'])} flows reduced")
 
 
-def test_the_most_severe_findings_stay_when_some_are_omitted(example):
+def test_the_least_severe_findings_are_omitted_first(example):
     hazard = Finding("TARL203", example.span("pos = data.pose"), "scan reaches nothing.")
     result = Result(findings=(example.finding(), example.finding("implicit"), hazard))
     (run,) = sarif.document(result, upload_limits.Cut(1, 1_000))["runs"]

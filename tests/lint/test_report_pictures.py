@@ -93,7 +93,7 @@ def test_files_have_their_shortest_unique_name(paths, names):
     assert list(short_names(paths).values()) == names
 
 
-def test_dot_draws_topics_parts_and_edges(example):
+def test_the_format_dot_draws_topics_parts_and_edges(example):
     text = text_of("dot", everything(example))
     assert text.startswith("digraph flows {\n")
     assert re.findall(r't\d \[label="(\w+)"', text) == ["joy", "odom", "progress", "scan"]

@@ -129,7 +129,7 @@ def test_rules_carry_their_help_as_text_and_as_markdown(example):
         assert rules[found["ruleIndex"]]["id"] == found["ruleId"]
 
 
-def test_levels_are_notes_for_flows_and_warnings_for_the_rest(example):
+def test_flows_have_the_level_note_and_other_findings_the_level_warning(example):
     levels = {r["ruleId"]: r["level"] for r in run_of(everything(example))["results"]}
     assert levels == {"TARL001": "warning", "TARL101": "note", "TARL102": "note", "TARL203": "warning"}
 
@@ -169,7 +169,7 @@ def test_file_names_are_encoded_as_uris(example, schema):
     assert list(jsonschema.Draft4Validator(schema).iter_errors(made)) == []
 
 
-def test_the_text_is_ascii_and_parses(example):
+def test_the_text_is_ascii_and_valid_json(example):
     text = text_of("sarif", everything(example))
     assert text.isascii()
     assert json.loads(text) == document(everything(example))

@@ -95,7 +95,7 @@ def test_vanished_flows_are_named(example, result_of):
     assert "  and 5 more\n" in shown(result_of(vanished=many, baseline=Path("tarl-flows.json")))
 
 
-def test_unreadable_files_and_other_gaps_are_listed(example, result_of):
+def test_unreadable_files_and_other_files_that_were_not_analysed_are_listed(example, result_of):
     unknown = replace(
         example.finding(), flow=replace(example.flow(), source=replace(example.source(), topics=()))
     )
@@ -193,7 +193,7 @@ def test_a_long_call_is_shown_by_its_first_and_last_lines(result_of):
     ]
 
 
-def test_a_deleted_file_loses_only_its_code_frame(example, result_of):
+def test_findings_of_a_deleted_file_are_shown_without_a_code_frame(example, result_of):
     text = shown(replace(result_of(example.finding()), texts={}))
     assert text.startswith("node.py:18:9 publishes progress (Float64) in travel\n\n    TARL101")
 

@@ -167,7 +167,7 @@ def test_special_files_are_skipped_and_named_on_request(lint, tmp_path, capsys):
     assert "circle is a broken link to circle" in capsys.readouterr().err
 
 
-def test_unreadable_places_are_named(lint, monkeypatch, capsys):
+def test_unreadable_files_and_directories_are_named(lint, monkeypatch, capsys):
     """Simulated, since the user who runs the tests may be root."""
     Path("closed").mkdir()
     Path("secret.py").write_text("x = 1\n")

@@ -125,7 +125,7 @@ def test_results_of_sanitizers_are_not_tainted(example, in_directory, lint):
     assert "TARL101" not in [f.code for f in lint().findings]
 
 
-def test_a_silenced_flow_is_counted_and_an_idle_comment_is_reported(example, in_directory, lint):
+def test_a_silenced_flow_is_counted_and_a_comment_without_effect_is_reported(example, in_directory, lint):
     text = example.text.replace("pub.publish(vel)", "pub.publish(vel)  # tarl: ignore[TARL101]")
     in_directory({"node.py": text, "clean.py": "x = 1  # tarl: ignore\n"})
     result = lint()
@@ -149,7 +149,7 @@ def test_accepted_flows_stay_accepted_when_lines_move(example, in_directory, lin
     assert result.vanished == ()
 
 
-def test_a_new_flow_with_an_accepted_fingerprint_makes_all_flows_with_that_fingerprint_new(
+def test_if_a_flow_is_added_to_an_accepted_fingerprint_all_its_flows_are_new(
     example, in_directory, lint, accept
 ):
     root = in_directory({"node.py": example.text})
@@ -222,7 +222,7 @@ def test_equal_nodes_of_two_ros_packages_are_distinguished(example, in_directory
         ("implicit", (), False),
     ],
 )
-def test_each_level_of_fail_on_includes_the_ones_before(example, in_directory, level, codes, fails):
+def test_each_level_of_fail_on_includes_the_lower_levels(example, in_directory, level, codes, fails):
     in_directory({})
     result = Result(findings=tuple(replace(example.finding(), code=code) for code in codes))
     assert exceeds(result, resolve(Options(fail_on=level))) is fails

@@ -80,7 +80,7 @@ def test_a_field_that_was_added_on_another_path_is_not_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_that_waits_sees_what_others_store_in_new_fields(store, obj):
+def test_a_call_that_waits_reads_what_other_roots_store_in_new_fields(store, obj):
     reads = noted(store, obj)
     hidden(store, obj, "x", BOTTOM)
     reads.wait(0)
@@ -114,7 +114,7 @@ def test_data_anywhere_in_an_object_is_seen_in_its_parts(store, obj):
     assert not same(store, reads)
 
 
-def test_a_store_into_a_part_or_below_it_prevents_the_replay(store, obj):
+def test_a_store_into_a_part_of_an_object_prevents_the_replay(store, obj):
     reads = noted(store, obj)
     inner = obj.sub("x").sub("y")
     assert same(store, reads)
@@ -128,7 +128,7 @@ def test_a_change_in_the_description_of_an_object_is_always_seen(store, obj):
     assert not same(store, reads)
 
 
-def test_a_call_is_replayed_only_if_no_reachable_object_refers_to_an_object_that_the_call_creates(store):
+def test_a_call_is_not_replayed_if_a_reachable_object_refers_to_an_object_that_the_call_creates(store):
     obj, holder = Obj("lib", "made"), Obj("instance", "holder")
     reads = Reads(objects={obj: NEW})
     hidden(store, obj, BORN, BOTTOM)
@@ -160,7 +160,7 @@ def test_a_wait_ignores_keys_to_which_no_other_root_stores():
     assert store.heard() == {theirs: Value(DATA)}
 
 
-def test_reads_independent_of_the_path_are_merged_once(obj):
+def test_reads_that_do_not_depend_on_the_path_are_merged_once(obj):
     inner, outer = Reads(objects={obj: 3}), Reads()
     outer.add(inner)
     assert outer.objects == {obj: 3}
@@ -187,7 +187,7 @@ def test_an_inner_loop_starts_from_its_last_fixpoint(monkeypatch):
     assert going_on.total < 0.7 * afresh.total
 
 
-def test_a_loop_starts_with_later_stores_too(store):
+def test_a_loop_also_starts_with_stores_that_come_later(store):
     machine = linked(NESTED)
     frame = next(f for f in machine.frames.values() if f.function.name == "on_message")
     machine.store = store
@@ -201,7 +201,7 @@ def test_a_loop_starts_with_later_stores_too(store):
 # --- carriers ---------------------------------------------------------------------------------------------
 
 
-def test_the_cache_of_arrivals_is_valid_until_a_carrier_passes_on_more():
+def test_cached_reachability_is_valid_until_a_carrier_passes_on_more_data():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -216,7 +216,7 @@ def test_the_cache_of_arrivals_is_valid_until_a_carrier_passes_on_more():
     assert graph.through(frozenset([item]), frozenset([carried])) != first
 
 
-def test_a_cached_arrival_records_the_carriers_on_which_it_depends():
+def test_a_cached_reachability_result_records_the_carriers_on_which_it_depends():
     machine = linked(NESTED)
     graph = machine.graph
     place = graph.places[0]
@@ -232,7 +232,7 @@ def test_a_cached_arrival_records_the_carriers_on_which_it_depends():
     assert asked[0] == asked[1] != {}
 
 
-def test_a_call_records_that_it_allocates_an_existing_object(store):
+def test_a_call_records_that_it_allocates_an_object_that_already_exists(store):
     machine = linked(NESTED)
     frame = next(iter(machine.frames.values()))
     machine.store = store

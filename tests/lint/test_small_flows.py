@@ -49,7 +49,7 @@ def test_reversing_a_graph_lists_the_predecessors_of_each_node():
     assert _reversed([{1, 2}, set(), {1}]) == [[], [0, 2], [0]]
 
 
-def test_reachability_follows_data_and_control_edges_within_a_set():
+def test_reachability_follows_data_and_control_edges_within_a_given_set_of_nodes():
     data, control = [[1], [2], [], [4], []], [[3], [], [], [], []]
     assert closure([0], [data]) == {0, 1, 2}
     assert closure([0], [data, control]) == {0, 1, 2, 3, 4}
@@ -87,7 +87,7 @@ def test_the_length_of_a_container_is_data_if_elements_are_added_under_condition
     assert tracer(counted(condition=0)).counts({0}) == {}
 
 
-def test_data_behind_a_length_includes_the_counted_elements():
+def test_the_data_of_a_length_includes_the_counted_elements():
     one = tracer(counted(condition=0))
     reach = Reach({0, 1, 2, 4}, {0, 1, 2, 3, 4}, {2: {1}})
     assert one.made_from({4}, reach) == {0, 1, 2, 4}
@@ -97,7 +97,7 @@ def test_data_behind_a_length_includes_the_counted_elements():
     assert (formers(2), formers(4), formers(1)) == ([1], [2], [0])
 
 
-def test_constants_chosen_by_conditions_are_found_with_the_nodes_that_make_them():
+def test_constants_chosen_by_conditions_are_found_with_their_nodes():
     """Node 5 is chosen by the branch (9, 1); it is made from 4, and 4 from 3, all under that branch."""
     under = frozenset({(9, 1)})
     of = graph(
@@ -123,7 +123,7 @@ def test_a_copy_without_conditions_is_traced_back_to_the_node_that_has_them():
     assert made_alongside(both) == {7: [4, 5]}
 
 
-def test_nodes_without_a_statement_are_skipped_once():
+def test_graph_nodes_without_a_statement_are_skipped():
     of = graph(6, data={0: [1, 4], 1: [2, 3], 2: [1]}, control={0: [5]})
     one = tracer(of)
     assert one.before(0) == [1, 4, 5]
@@ -151,7 +151,7 @@ def test_the_calls_between_two_frames_are_listed_outermost_first():
     assert calls(frame(outer, None), outer) == []
 
 
-def test_conditions_that_choose_a_value_are_listed_with_its_frame():
+def test_conditions_that_choose_a_value_are_listed_with_the_frame_of_the_value():
     frames = [frame() for _ in range(4)]
     places = [SimpleNamespace(frame=one) for one in frames]
     under = frozenset({(3, 1), (9, 0)})
@@ -219,7 +219,7 @@ class Node:
 """
 
 
-def test_the_outline_of_a_module_knows_its_locks_and_names():
+def test_the_outline_of_a_module_lists_its_locks_and_names():
     found = Outline(ast.parse(SOURCE))
     assert found.locks == {
         "LOCK": "LOCK",
@@ -254,7 +254,7 @@ def test_a_call_is_found_by_its_start_and_end_position():
     assert isinstance(found.scope(inner, (ast.Module,)), ast.Module)
 
 
-def test_a_wrapper_has_the_argument_places_of_its_model_by_default():
+def test_by_default_a_wrapper_has_the_argument_positions_of_its_model():
     usual = facts((Wrapper("a.b", "rospy.Subscriber"),))["a.b"]
     other = facts((Wrapper("a.b", "rospy.Subscriber", topic=4, callback="on", type=0),))["a.b"]
     assert usual.api == other.api == "a.b"

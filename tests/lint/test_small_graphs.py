@@ -40,14 +40,14 @@ def test_statements_are_in_the_order_of_their_edges_then_of_the_source(edges, fi
 
 
 @given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)).filter(lambda one: one[0] < one[1])))
-def test_any_order_without_cycles_is_kept(edges):
+def test_an_order_without_cycles_is_kept(edges):
     turned = [(6 - one, 6 - other) for one, other in edges]
     order = in_order(spans(7), turned)
     assert sorted(order) == [*range(7)]
     assert all(order.index(one) < order.index(other) for one, other in turned)
 
 
-def test_statements_of_other_functions_that_a_loop_uses_come_before_it():
+def test_statements_of_other_functions_that_a_loop_uses_come_before_the_loop():
     function = {1: "run", 2: "run", 3: "helper", 4: "helper", 5: "run", 9: "run"}
     edges = [(3, 2), (4, 3), (5, 2), (1, 9)]
     assert sorted(before_loops(edges, [(2, 9)], function)) == [(3, 9), (4, 9)]
@@ -101,7 +101,7 @@ def test_chains_begin_where_data_enters_and_end_where_it_leaves():
     assert walked(hops, "/a", "/x") == []
 
 
-def test_a_chain_passes_each_topic_once():
+def test_a_chain_passes_through_each_topic_at_most_once():
     ring = [hop("/a", "/b"), hop("/b", "/c"), hop("/c", "/a")]
     assert walked(ring, "/a", "/c") == ["/a /b /c"]
     assert walked(ring) == ["/a /b", "/a /b /c", "/b /c", "/b /c /a", "/c /a", "/c /a /b"]
@@ -126,7 +126,7 @@ def test_the_search_for_chains_is_bounded(monkeypatch):
     assert (len(found), more) == (1, False)
 
 
-def test_the_kind_of_a_chain_is_that_of_its_weakest_hop():
+def test_a_chain_is_as_strong_as_its_weakest_hop():
     def kind(*kinds: str) -> str:
         hops = [hop(f"/{n}", f"/{n + 1}", one) for n, one in enumerate(kinds)]
         (chain,), _ = chains(hops)

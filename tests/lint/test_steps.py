@@ -328,7 +328,7 @@ def test_two_runs_give_the_same_result(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["msg.name", "msg.name + 'x'", "str(msg.name)"])
-def test_a_store_under_a_key_from_data_is_a_step(tmp_path, key):
+def test_a_store_under_a_key_that_data_chose_is_a_step(tmp_path, key):
     node = f"""
         import rospy
         def on(msg):

@@ -79,7 +79,7 @@ def test_flows_pass_through_one_program_that_is_launched_twice(workspace, capsys
     assert code == 0
 
 
-def test_names_are_resolved_within_namespaces_and_private_ones_within_the_node(workspace, capsys):
+def test_names_are_resolved_in_the_namespace_and_private_names_in_the_node(workspace, capsys):
     file = launched(
         workspace, f'<group ns="left">{relay("one", "~raw", "/out")}{relay("two", "raw", "done")}</group>'
     )
@@ -266,7 +266,7 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
         (["--launch", "a.launch", "--launch", "b.launch"], "--launch is given twice"),
     ],
 )
-def test_user_mistakes_give_sentences(workspace, capsys, arguments, message):
+def test_user_mistakes_are_reported_in_sentences(workspace, capsys, arguments, message):
     code, _, err = run(capsys, *arguments)
     assert code == 2
     assert message in err
@@ -309,13 +309,13 @@ def test_a_wrong_launch_argument_or_name_is_an_error(capsys, monkeypatch, argume
     assert message in err
 
 
-def test_a_topic_that_no_node_uses_gets_the_names_that_end_like_it(capsys, monkeypatch):
+def test_topic_names_with_the_same_ending_are_suggested_for_an_unknown_topic(capsys, monkeypatch):
     monkeypatch.chdir(EXAMPLE)
     _, out, _ = run(capsys, "--launch", "bringup.launch.py", "--from", "scan")
     assert "No node that was read uses /scan. Did you mean /scout/rear/scan?" in out
 
 
-def test_every_format_is_offered():
+def test_every_format_is_accepted():
     assert set(command.FORMATS) == {"text", "json", "mermaid", "svg"}
 
 

@@ -27,7 +27,7 @@ def picture(*edges: str) -> Drawing:
 LINE = ("t a > n one", "n one > t b", "t b > n two", "n two > t c")
 
 
-def test_a_line_has_one_name_in_each_column():
+def test_a_chain_of_nodes_has_one_name_in_each_column():
     assert drawn(*LINE) == [["t a"], ["n one"], ["t b"], ["n two"], ["t c"]]
     assert drawn() == []
 

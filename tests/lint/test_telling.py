@@ -43,7 +43,7 @@ def flows(statement: str, own: str = "") -> int:
         "rclpy.logging.get_logger('a').error(','.join(str(a) for a in b))",
     ],
 )
-def test_log_messages_made_of_existing_values_are_effect_free(text):
+def test_log_messages_that_only_format_existing_values_are_effect_free(text):
     assert only_tells(ast.parse(text, mode="eval").body, prints=True)
 
 

@@ -201,7 +201,7 @@ def test_a_thread_that_restarts_itself_terminates():
     assert machine.total < 1_000
 
 
-def test_conditions_that_no_source_reaches_are_no_dependencies():
+def test_conditions_that_no_source_reaches_are_not_dependencies():
     text = """
 import rospy, os
 state = {}

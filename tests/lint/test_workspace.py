@@ -359,7 +359,7 @@ def test_a_visible_package_takes_precedence_over_a_hidden_one_of_the_same_name(t
     assert (arm.folder, found.hidden) == (tmp_path / "arm", ())
 
 
-def test_a_hidden_package_names_its_own_marker_before_that_of_its_folder(tmp_path: Path) -> None:
+def test_the_file_that_hides_a_package_is_searched_in_the_package_first(tmp_path: Path) -> None:
     package(tmp_path / "arms/left", "left")
     write(tmp_path / "arms", CATKIN_IGNORE="")
     write(package(tmp_path / "arms/right", "right"), COLCON_IGNORE="")

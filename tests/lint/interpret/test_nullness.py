@@ -58,7 +58,7 @@ def node(body: str, head: str = "") -> str:
         ("value = table.get(last.name)", "value", "control"),
     ],
 )
-def test_a_test_for_none_depends_on_data_only_if_data_decided_the_value(before, value, flows):
+def test_a_comparison_with_none_depends_on_data_only_if_data_decided_the_value(before, value, flows):
     assert differing(node(f"{before}\n{GATED.format(value=value, flows=flows)}".strip())) == {}
 
 

@@ -21,7 +21,7 @@ def node(graph, frame):
     return made
 
 
-def test_asking_for_a_key_twice_gives_the_same_node(graph, node):
+def test_requesting_a_key_twice_gives_the_same_node(graph, node):
     assert node("a") == node("a") != node("b")
     assert graph.made == len(graph.places) == 2
 
@@ -52,7 +52,7 @@ def test_a_program_at_its_edge_limit_gets_only_a_few_further_edges(graph, node, 
     assert graph.data[node("d")] == set(many[: value_flow_graph.FEW])
 
 
-def test_a_value_chosen_by_a_branch_depends_on_its_decision_through_a_gate(graph, node):
+def test_a_value_chosen_by_a_branch_depends_on_the_branch_condition_through_a_gate(graph, node):
     decision = node("if")
     chosen, same, after = node("a", (decision, "then")), node("b", (decision, "then")), node("c")
     graph.flow([chosen], same)
@@ -69,7 +69,7 @@ def test_a_value_chosen_by_a_branch_depends_on_its_decision_through_a_gate(graph
     assert graph.control[same] == set()
 
 
-def test_a_copy_of_a_node_without_its_branches_has_the_data_but_not_the_conditions(graph, node):
+def test_a_copy_of_a_node_without_its_branches_keeps_the_data_and_drops_the_conditions(graph, node):
     decision = node("if")
     chosen, after = node("a", (decision, "then")), node("b")
     copy = graph.unchosen(chosen)
@@ -97,7 +97,7 @@ def test_many_values_of_a_field_are_merged_into_one_node(graph, node, frame):
     assert graph.data[place] == deps | {node("new")}
 
 
-def test_a_node_becomes_live_whenever_it_comes_to_depend_on_a_live_node(graph, node):
+def test_a_node_becomes_live_as_soon_as_it_depends_on_a_live_node(graph, node):
     source, data, decided, late = (node(key) for key in ("source", "data", "decided", "late"))
     graph.flow([source], data)
     graph.depend(decided, [data])

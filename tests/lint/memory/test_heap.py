@@ -70,7 +70,7 @@ def a_function(ctx, name: str, *decorators: str) -> Obj:
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_the_content_of_a_part_is_the_data_of_the_whole(ctx):
+def test_the_content_of_a_part_includes_the_data_of_the_whole_object(ctx):
     whole = made(ctx, "lib", "a")
     part = whole.sub("x")
     assert heap.content(ctx, part) is BOTTOM
@@ -130,7 +130,7 @@ def test_an_unset_field_has_the_default_of_its_kind_of_object(ctx):
     assert heap.default(ctx, recency.intern(ctx, "closure", "f"), "x") is BOTTOM
 
 
-def test_shape_carries_the_data_of_a_library_object_but_is_an_ordinary_field_of_a_message(ctx):
+def test_the_field_shape_has_the_data_of_a_library_object_but_in_a_message_it_is_an_ordinary_field(ctx):
     matrix, message = made(ctx, "lib", "a"), made(ctx, "lib", "b")
     message.info = BY_CLASS
     for obj in (matrix, message):
@@ -171,7 +171,7 @@ def test_an_unset_attribute_of_an_opaque_class_is_a_library_object(ctx):
     assert heap.read_field(ctx, obj, "[0]") is BOTTOM
 
 
-def test_attributes_of_a_replaced_dictionary_are_read_and_stored_there(ctx):
+def test_attributes_are_read_from_and_stored_in_a_replaced_attribute_dictionary(ctx):
     obj, table = an_instance(ctx, a_class(ctx, "A")), made(ctx, "mapping", "table")
     assert heap.replaced_attributes(ctx, obj) == frozenset()
     ctx.store.put((obj, "__dict__"), pointer(table))
@@ -314,7 +314,7 @@ def test_a_negative_index_counts_from_a_known_end(ctx):
     assert heap.read_field(ctx, obj, "[0]").deps == {1, 3}
 
 
-def test_after_a_store_under_a_key_from_data_the_keys_depend_on_that_data(ctx):
+def test_keys_depend_on_the_data_that_chose_the_key_of_a_store(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     key = Value(frozenset([5]))
     updates.write_item(ctx, Value(pts=frozenset([mapping, listed])), key, ONE)
@@ -326,7 +326,7 @@ def test_after_a_store_under_a_key_from_data_the_keys_depend_on_that_data(ctx):
     assert ctx.store.get((other, "['k']")) is ONE
 
 
-def test_a_store_under_one_of_several_possible_keys_changes_only_those(ctx):
+def test_a_store_under_one_of_several_possible_keys_changes_only_these_keys(ctx):
     mapping, listed = made(ctx, "mapping", "a"), made(ctx, "sequence", "b")
     for key in "kmn":
         ctx.store.put((mapping, item_field(key)), BOTTOM)
@@ -350,7 +350,7 @@ def test_joining_a_single_continuation_leaves_it_unchanged(ctx):
     assert ctx.store.get((obj, "x")) is ONE
 
 
-def test_a_variable_set_on_one_path_has_only_that_value_and_a_field_also_its_default(ctx, frame):
+def test_a_field_set_on_one_path_may_have_its_default_but_a_variable_has_only_the_set_value(ctx, frame):
     obj = an_instance(ctx, cls := a_class(ctx, "A"))
     ctx.store.put((cls, "x"), ONE)
     both = joins.joined(ctx, [{(frame, "v"): TWO, (obj, "x"): TWO}, {}])
@@ -478,13 +478,13 @@ def test_temporary_objects_are_kept_only_if_a_kept_object_refers_to_them(ctx, fr
     assert (objects["gone"], "x") in kept  # the returned closure may read the variable
 
 
-def test_if_no_object_was_created_only_variables_are_dropped(ctx, frame):
+def test_only_variables_are_dropped_if_no_object_was_created(ctx, frame):
     delta = {(frame, "x"): ONE, (recency.intern(ctx, "module", "m"), "y"): TWO}
     kept = abstract_gc.lasting(delta, frame, [], frozenset(), ctx.store.reads)
     assert [name for _, name in kept] == ["y"]
 
 
-def test_variables_last_while_a_function_inside_is_reachable_or_called_by_ros(ctx, frame):
+def test_variables_of_a_function_are_kept_while_ros_may_call_a_function_defined_inside_it(ctx, frame):
     """A function that is defined two levels deeper keeps the variables of all frames around it."""
     between = Frame("between", 2, frame.function, frame.program, frame.module)
     between.outer = frame
@@ -552,7 +552,7 @@ def test_states_share_userdata_under_the_names_of_their_remapping(ctx):
     assert heap.read(ctx, userdata.userdata(ctx, state), "mine") is ONE
 
 
-def test_a_name_that_contains_a_parameter_has_a_marked_placeholder_for_it():
+def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
     known: list[ParameterName] = []
     (text,) = symbolic_names.text_of_parameter(known, "~scan", const("scan")) or ()
     assert isinstance(text, Symbolic)

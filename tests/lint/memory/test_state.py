@@ -46,7 +46,7 @@ def test_a_read_sees_the_last_store_in_any_layer(store, obj):
     assert store.get(key) is ONE
 
 
-def test_a_layer_begins_with_the_given_delta_and_closing_it_restores_the_former_values(store, obj):
+def test_a_layer_starts_with_the_given_changes_and_closing_it_restores_the_former_values(store, obj):
     old, new = (obj, "old"), (obj, "new")
     store.put(old, ONE)
     store.push({old: TWO, new: TWO})
@@ -151,7 +151,7 @@ def test_holders_of_library_objects_are_recorded(store, obj):
     assert obj.holders == {}
 
 
-def test_assigning_the_dict_of_an_object_increments_the_edition(store, obj):
+def test_assigning_the_dict_of_an_object_increments_the_edition_of_the_state(store, obj):
     store.put((obj, "x"), ONE)
     assert store.shared.edition == 0
     store.put((obj, "__dict__"), ONE)
@@ -161,7 +161,7 @@ def test_assigning_the_dict_of_an_object_increments_the_edition(store, obj):
 # --- reads --------------------------------------------------------------------------------------------
 
 
-def test_reads_of_values_that_the_call_itself_stored_do_not_count(store, obj):
+def test_reads_of_values_that_the_call_itself_stored_are_not_recorded(store, obj):
     mine, other = (obj, "mine"), (obj, "other")
     store.put(mine, ONE)
     store.get(mine)
@@ -217,7 +217,7 @@ def test_the_first_wait_records_the_keys_stored_before_it_and_later_waits_change
     assert reads.own == {(obj, "x"), (obj, "y")}
 
 
-def test_finished_reads_keep_what_a_caller_needs_but_no_reads_of_earlier_runs(obj):
+def test_recorded_reads_include_what_a_caller_needs_but_no_reads_of_earlier_runs(obj):
     here, mine = (obj, "here"), (obj, "mine")
     outer, inner = Reads(written={mine}), Reads(keys={here, mine}, stored={here})
     outer.add(inner)
@@ -249,7 +249,7 @@ def test_reads_of_a_nested_call_exclude_keys_that_its_caller_stored_before_the_c
     assert (outer.whole, outer.waits, outer.heard, outer.admitted) == (False, True, 6, {other: ONE})
 
 
-def test_the_same_reads_are_merged_again_only_after_a_path_was_left(obj):
+def test_the_same_reads_are_merged_again_only_after_a_path_ended(obj):
     key = (obj, "x")
     outer, inner = Reads(written={key}), Reads(keys={key})
     outer.add(inner)
@@ -261,7 +261,7 @@ def test_the_same_reads_are_merged_again_only_after_a_path_was_left(obj):
     assert outer.keys == {key}
 
 
-def test_complete_adds_missing_entries_and_keeps_existing_ones():
+def test_completing_a_mapping_adds_missing_entries_and_keeps_existing_ones():
     mine = {"a": 1}
     complete(mine, {"a": 2, "b": 3})
     assert mine == {"a": 1, "b": 3}
@@ -276,7 +276,7 @@ def same(store: Store, reads: Reads, graph: Graph | None = None) -> bool:
     return unchanged(reads, *store.found_by(reads), store, graph or Graph())
 
 
-def test_reads_are_unchanged_until_a_value_a_flag_or_an_answer_changes(store, obj):
+def test_recorded_reads_stay_valid_until_a_value_a_flag_or_an_answer_changes(store, obj):
     read, asked = (obj, "read"), (obj, "asked")
     store.put(read, ONE)
     facts: list[int] = []
@@ -298,7 +298,7 @@ def test_reads_are_unchanged_until_a_value_a_flag_or_an_answer_changes(store, ob
     assert not unchanged(reads, found, stored, store, Graph())
 
 
-def test_reads_change_if_a_new_source_reaches_a_node_or_a_carrier_gets_more_data(store):
+def test_recorded_reads_are_outdated_if_a_new_source_reaches_a_node_or_a_carrier_gets_more_data(store):
     graph = Graph()
     assert same(store, Reads(unreached={3}), graph)
     graph.live.add(3)
@@ -309,7 +309,7 @@ def test_reads_change_if_a_new_source_reaches_a_node_or_a_carrier_gets_more_data
     assert same(store, Reads(held={5: 1}), graph)
 
 
-def test_reads_change_when_a_new_object_has_fields_or_holders(store, obj):
+def test_recorded_reads_are_outdated_when_a_new_object_has_fields_or_holders(store, obj):
     library = Obj("lib", "l")
     assert same(store, Reads(objects={library: NEW}))
     store.put((obj, "x"), pointer(library))
@@ -390,7 +390,7 @@ def test_new_data_in_an_object_reruns_the_roots_that_found_no_data_in_it(shared)
     assert shared.doubters == {}
 
 
-def test_generations_count_the_ancestors_with_the_same_function(ctx):
+def test_the_generation_of_a_frame_counts_its_ancestors_with_the_same_function(ctx):
     (program,) = ctx.programs.values()
     first = Root("a", "timer", function=program.function)
     other = Root("b", "timer", maker=first)
@@ -399,7 +399,7 @@ def test_generations_count_the_ancestors_with_the_same_function(ctx):
     assert Root("d", "timer", function=program.function, maker=third).generations() == 2
 
 
-def test_an_object_not_made_on_this_path_has_only_the_stores_of_other_roots(shared, store):
+def test_an_object_created_on_another_path_has_only_the_stores_of_other_roots(shared, store):
     obj, other, mine = Obj("lib", "made"), Root("other", "callback"), store.root
     store.push()
     store.put((obj, BORN), BOTTOM)
@@ -452,19 +452,19 @@ def test_a_root_is_not_rerun_for_a_store_of_another_root_that_adds_nothing_new(s
     assert store.shared.dirty == set()
 
 
-def test_a_read_of_a_local_variable_after_a_wait_does_not_subscribe_to_other_roots(store, frame):
+def test_reading_a_local_variable_after_a_wait_does_not_depend_on_other_roots(store, frame):
     store.put((frame, "x"), ONE)
     store.waited = True
     assert store.get((frame, "x")) is ONE
     assert store.root.heeds == set()
 
 
-def test_a_wait_skips_keys_to_which_no_other_root_stores(store, obj):
+def test_a_wait_skips_keys_that_no_other_root_stores_to(store, obj):
     store.root.heeds.add((obj, "x"))
     assert store.heard() == {}
 
 
-def test_a_root_does_not_publish_the_part_of_a_value_that_came_from_other_roots(store, obj):
+def test_a_root_publishes_no_values_that_came_from_other_roots(store, obj):
     key = (obj, "x")
     assert store.admit(key, BOTH, TWO) is BOTH
     assert key not in store.foreign
@@ -477,7 +477,7 @@ def test_a_root_does_not_publish_the_part_of_a_value_that_came_from_other_roots(
     assert store.mine(key, Value(frozenset([1, 2]), consts=frozenset())) is None
 
 
-def test_a_root_does_not_publish_the_part_of_a_value_that_existed_at_its_start(store, obj):
+def test_a_root_publishes_no_values_that_existed_at_its_start(store, obj):
     key = (obj, "x")
     assert store.mine(key, ONE) is ONE
     store.found[key] = ONE

@@ -56,7 +56,7 @@ def test_a_join_has_the_nodes_objects_and_constants_of_both():
     assert both == Value(frozenset([1, 2]), frozenset([one, two]), frozenset(["a", "b"]))
 
 
-def test_joining_with_bottom_changes_nothing_and_with_unknown_constants_gives_unknown():
+def test_joining_with_bottom_changes_nothing_and_joining_with_unknown_constants_gives_unknown():
     value = constants(1)
     assert join(value, BOTTOM) is value
     assert join(BOTTOM, value) is value
@@ -68,7 +68,7 @@ def test_joining_with_bottom_changes_nothing_and_with_unknown_constants_gives_un
 @pytest.mark.parametrize(
     "change", [{"deps": frozenset([9])}, {"pts": frozenset([Obj("lib", 0)])}, {"consts": None}]
 )
-def test_values_are_equal_only_if_all_three_parts_are(change):
+def test_values_are_equal_only_if_all_three_parts_are_equal(change):
     parts = {"deps": frozenset([1]), "pts": frozenset(), "consts": frozenset([1])}
     assert Value(**parts) == Value(**parts)
     assert Value(**parts) != Value(**{**parts, **change})
@@ -86,7 +86,7 @@ def test_a_value_may_have_more_string_constants_than_other_constants():
     assert join_consts(few, None) is None
 
 
-def test_only_one_constant_without_objects_is_a_constant():
+def test_a_value_is_constant_only_if_it_has_one_constant_and_no_objects():
     assert const(3).constant() == (True, 3)
     assert constants(1, 2).constant() == (False, None)
     assert UNKNOWN.constant() == (False, None)
@@ -97,7 +97,7 @@ def test_only_one_constant_without_objects_is_a_constant():
     assert const([]) is UNKNOWN
 
 
-def test_a_value_has_no_texts_if_one_of_its_constants_depends_on_the_launch():
+def test_a_value_has_no_known_strings_if_one_of_its_constants_depends_on_the_launch_file():
     assert constants("b", "a").texts() == ("a", "b")
     assert constants("a", 1).texts() == ()
     assert UNKNOWN.texts() == ()
@@ -184,7 +184,7 @@ def test_a_released_object_refers_to_no_other():
 # --- classes ------------------------------------------------------------------------------------------
 
 
-def test_the_method_resolution_order_has_a_shared_base_once_and_last():
+def test_the_method_resolution_order_lists_a_shared_base_once_and_last():
     base = made_class("base")
     left, right = made_class("left", base), made_class("right", base)
     assert lineage(made_class("both", left, right))[1:] == [left, right, base]
@@ -205,7 +205,7 @@ def test_the_method_resolution_order_has_a_bounded_length():
     ("external", "opaque"),
     [((), False), (("builtins.Exception",), False), (("abc.ABC",), False), (("rclpy.node.Node",), True)],
 )
-def test_a_class_with_a_base_outside_of_the_files_is_opaque_and_so_are_its_subclasses(external, opaque):
+def test_a_class_with_a_base_class_outside_the_files_is_opaque_and_so_are_its_subclasses(external, opaque):
     cls = made_class("base", external=external)
     inner = made_class("inner", made_class("between", cls))
     assert cls.info.opaque is opaque

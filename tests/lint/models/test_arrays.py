@@ -34,7 +34,7 @@ def test_a_comparison_does_not_make_an_array():
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_an_array_computed_from_data_has_the_data_and_its_operand_stays_without_data():
+def test_an_array_computed_from_data_has_the_data_but_the_empty_operand_gets_none():
     body = """
         zeros = np.zeros(4)
         shifted = zeros + msg.data
@@ -44,7 +44,7 @@ def test_an_array_computed_from_data_has_the_data_and_its_operand_stays_without_
     assert differing(in_callback(body, HEAD)) == {}
 
 
-def test_a_call_fills_an_array_from_its_arguments_or_from_the_object_of_the_method():
+def test_a_library_call_fills_an_array_with_data_of_its_arguments_or_of_its_object():
     body = """
         array, other = np.zeros(4), np.zeros(4)
         lib.evaluate(msg.data, into=array)
@@ -65,7 +65,7 @@ def test_a_call_fills_an_array_from_its_arguments_or_from_the_object_of_the_meth
         "lib.evaluate(array)",
     ],
 )
-def test_an_array_is_not_filled_by_a_call_without_data_or_with_another_purpose(call):
+def test_an_array_is_not_filled_by_a_call_without_data_or_by_a_call_that_only_reads_it(call):
     body = f"""
         array = np.zeros(4)
         {call}

@@ -323,5 +323,5 @@ def test_each_model_has_a_test(table, models):
 
 
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
-def test_only_what_was_stored_is_read_back(name, body):
+def test_a_method_reads_back_only_stored_values(name, body):
     assert differing(in_callback(body.replace("NAME", name), HEAD)) == {}

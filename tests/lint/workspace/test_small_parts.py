@@ -212,7 +212,7 @@ def test_a_node_without_a_name_has_the_parameters_of_the_only_section(sections, 
 @pytest.mark.parametrize(
     ("kind", "found"), [("GLOB", ["b.py"]), ("GLOB_RECURSE", ["a.py", "b.py"]), ("STRINGS", ["${FOUND}"])]
 )
-def test_a_variable_has_the_files_of_its_pattern(kind, found, tmp_path):
+def test_a_cmake_variable_lists_the_files_that_match_its_pattern(kind, found, tmp_path):
     (tmp_path / "deep").mkdir()
     for name in ("b.py", "deep/a.py"):
         (tmp_path / name).touch()

@@ -46,7 +46,7 @@ def test_plain_fields_keep_their_values(kind: Kind) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_header_of_the_other_generation_is_converted(kind: Kind) -> None:
+def test_a_header_of_the_other_ros_version_is_converted(kind: Kind) -> None:
     header = told("std_msgs/msg/Header", stamp=stamp(3, 4), frame_id="map")
     made = converted(header, one("std_msgs/Header", kind))
     assert made.frame_id == "map"
@@ -90,7 +90,7 @@ def ranges(kind: Kind) -> Any:
     return converted(scan, one("sensor_msgs/LaserScan", kind)).ranges
 
 
-def test_sequences_of_numbers_have_the_form_of_each_generation() -> None:
+def test_sequences_of_numbers_are_converted_to_the_form_of_each_ros_version() -> None:
     assert ranges("ros1") == [1.5, 2.5]
     assert type(ranges("ros1")) is list
     assert ranges("ros2") == array("f", [1.5, 2.5])
@@ -112,7 +112,7 @@ def test_fixed_arrays_have_the_form_of_the_field(kind: Kind) -> None:
         assert made.covariance.dtype == template.dtype
 
 
-def test_bytes_have_the_form_of_each_generation() -> None:
+def test_bytes_are_converted_to_the_form_of_each_ros_version() -> None:
     image = {"header": told("h", stamp=stamp(0, 0), frame_id=""), "format": "png"}
     data = np.array([1, 2, 255], np.uint8)
     first, second = (

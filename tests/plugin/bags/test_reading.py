@@ -54,7 +54,7 @@ def test_an_undefined_type_is_a_key_error(tmp_path: Path) -> None:
         bag.decode("/a", b"")
 
 
-def test_messages_before_damage_count_with_a_note(tmp_path: Path) -> None:
+def test_messages_before_the_damage_are_used_with_a_note(tmp_path: Path) -> None:
     def source() -> Iterator[Recorded]:
         yield Recorded(START, "/a", b"")
         yield Recorded(START + 2_500_000_000, "/a", b"")
@@ -94,7 +94,7 @@ def test_without_rosbags_the_command_that_installs_it_is_named(
         opened(path)
 
 
-def test_a_cut_bag_has_the_span_and_the_number_of_its_messages(tmp_path: Path) -> None:
+def test_the_note_on_a_truncated_bag_states_its_duration_and_number_of_messages(tmp_path: Path) -> None:
     folder = write_bag(tmp_path / "run", iter(STEPS))
     (folder / "metadata.yaml").unlink()
     bag = opened(folder)
@@ -103,7 +103,7 @@ def test_a_cut_bag_has_the_span_and_the_number_of_its_messages(tmp_path: Path) -
     assert [one.time - START for one in bag.messages()] == [0, 5 * 10**8, 2 * 10**9]
 
 
-def test_only_channels_with_messages_count_and_messages_are_sorted_by_time(
+def test_channels_without_messages_are_dropped_and_messages_are_sorted_by_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     contents = {
@@ -120,7 +120,7 @@ def test_only_channels_with_messages_count_and_messages_are_sorted_by_time(
     assert bag.start == 1
 
 
-def test_without_a_whole_message_the_reason_is_told(tmp_path: Path) -> None:
+def test_a_bag_without_a_whole_message_is_refused_with_the_reason(tmp_path: Path) -> None:
     path = tmp_path / "a.bag"
     path.write_bytes(b"#ROSBAG V2.0\n")
     with pytest.raises(

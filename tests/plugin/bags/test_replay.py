@@ -98,7 +98,7 @@ def test_a_message_at_the_end_of_a_step_belongs_to_the_next() -> None:
     assert seen == [1.0, 3.0]
 
 
-def test_only_the_last_step_is_over() -> None:
+def test_only_the_last_step_ends_the_mission() -> None:
     over: list[bool] = []
     bag = Mission([(0.0, "/level", 1.0), (1.2, "/level", 2.0)])
     Played(bag, monitor=lambda moment: over.append(moment.over) or 0.0)
@@ -111,12 +111,12 @@ def test_steps_before_the_nodes_are_ready_are_not_rewarded() -> None:
 
 
 @pytest.mark.parametrize("dt", [0.0, -0.1, 1e-10])
-def test_steps_need_a_length(dt: float) -> None:
+def test_a_step_without_a_length_is_refused(dt: float) -> None:
     with pytest.raises(SettingsError, match=r"tarl\.step\(0\)"):
         Played(Mission([(0.0, "/level", 1.0)]), dt=dt)
 
 
-def test_topics_that_nobody_needs_are_not_decoded() -> None:
+def test_topics_without_a_reader_are_not_decoded() -> None:
     bag = Mission([(0.0, "/level", 1.0), (0.0, "/other", 2.0)])
     played = Played(bag)
     assert [topic for _, topic, _ in played.heard] == ["/level"]
@@ -162,7 +162,7 @@ def test_topics_of_the_node_are_not_delivered() -> None:
 
 
 @pytest.mark.parametrize("kind", [Float64, None])
-def test_subscribed_topics_are_delivered_in_the_class_of_the_node(kind: Any) -> None:
+def test_messages_are_delivered_as_the_class_that_the_node_subscribed_with(kind: Any) -> None:
     end = End(kind)
     bag = Mission([(0.0, "/odom", 1.0), (0.1, "/odom", 2.0)])
     played = Played(bag, prepare=subscribed("odom", end))
@@ -216,7 +216,7 @@ def test_subscribed_topics_without_a_message_are_noted_unless_they_need_none() -
 # monitors
 
 
-def test_the_newest_message_is_read_once_under_any_spelling() -> None:
+def test_the_newest_message_is_found_with_and_without_a_leading_slash() -> None:
     bag = Mission([(0.0, "level", 1.0)])
     moment = Moment(bag)
     assert moment.latest("/level") is None
@@ -229,7 +229,7 @@ def test_the_newest_message_is_read_once_under_any_spelling() -> None:
     moment.observe(anything=1)
 
 
-def test_a_class_is_a_new_monitor_for_each_mission() -> None:
+def test_a_monitor_class_is_instantiated_for_each_mission() -> None:
     class Watch:
         def __init__(self) -> None:
             self.count = 0
@@ -249,7 +249,7 @@ def test_a_monitor_can_set_signals() -> None:
 
 
 @pytest.mark.parametrize(("monitor", "calls"), [(True, 1), (False, 0)])
-def test_if_formulas_reward_a_monitor_only_observes(monitor: bool, calls: int) -> None:
+def test_a_monitor_gives_no_reward_if_formulas_give_it(monitor: bool, calls: int) -> None:
     seen: list[float] = []
     requirements: Any = SimpleNamespace(topics=[], rewarding=True)
     watch = (lambda moment: seen.append(moment.now) or 5.0) if monitor else None

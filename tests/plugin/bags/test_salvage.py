@@ -74,7 +74,7 @@ def test_a_bag_of_ros_1_has_channels_and_messages_in_and_outside_of_chunks(tmp_p
 
 
 @pytest.mark.parametrize("latching", [b"0", b""])
-def test_only_a_connection_that_says_so_is_latched(tmp_path: Path, latching: bytes) -> None:
+def test_only_a_connection_with_the_latching_field_is_latched(tmp_path: Path, latching: bytes) -> None:
     (found,) = walk(bag(tmp_path, connection(3, "/a", latching=latching)))
     assert isinstance(found, Channel)
     assert found.latched is False
@@ -119,7 +119,7 @@ def test_files_with_other_names_have_no_contents(tmp_path: Path, name: str) -> N
     assert list(walk(bag(tmp_path, connection(3, "/a"), name=name))) == []
 
 
-def test_files_that_begin_otherwise_have_no_contents(tmp_path: Path) -> None:
+def test_files_with_another_beginning_have_no_contents(tmp_path: Path) -> None:
     path = bag(tmp_path, connection(3, "/a"))
     path.write_bytes(path.read_bytes().replace(b"V2.0", b"V1.2"))
     assert list(walk(path)) == []

@@ -35,7 +35,7 @@ def difference(**changes: Any) -> FixtureDiff:
         (2.0, 0.0, 1.9, True),
     ],
 )
-def test_a_recording_is_worse_if_its_loss_is_significant_and_above_the_allowed_one(
+def test_a_recording_is_worse_if_its_loss_is_significant_and_above_the_tolerated_loss(
     loss: float, p: float, most: float, expected: bool
 ) -> None:
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected

@@ -80,7 +80,7 @@ def test_the_owner_is_kept(files: list[Path], monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.parametrize("links", [True, False])
 @pytest.mark.parametrize("failing", [0, 1, 2, 3])
-def test_after_a_failure_nothing_has_changed(
+def test_a_failure_leaves_all_files_unchanged(
     files: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, links: bool, failing: int
 ) -> None:
     """Fail at one of the two files that are written (0, 1) or of the two that are replaced (2, 3)."""
@@ -114,7 +114,7 @@ def test_after_a_failure_nothing_has_changed(
     assert names(tmp_path) == {"a.py", "in/b.py"}
 
 
-def test_a_file_with_other_content_is_not_replaced(files: list[Path]) -> None:
+def test_a_file_whose_content_has_changed_is_not_replaced(files: list[Path]) -> None:
     with pytest.raises(MovedError) as raised:
         replace_all([change(files[0]), change(files[1], b"other")])
     assert raised.value.path == files[1]
@@ -145,7 +145,7 @@ def folder_linked(path: Path) -> None:
 
 
 @pytest.mark.parametrize("moving", [gone, linked, piped, folder_gone, folder_linked])
-def test_a_file_in_whose_place_there_is_something_else_is_not_replaced(
+def test_a_directory_or_link_in_place_of_a_file_is_not_replaced(
     files: list[Path], moving: Callable[[Path], None]
 ) -> None:
     moving(files[1])

@@ -87,7 +87,7 @@ def test_a_hazard_lists_no_statements(places: Places) -> None:
 
 
 @pytest.mark.parametrize(("site", "page"), [("", None), ("https://a.example/", "https://a.example/rules/")])
-def test_codes_link_to_the_page_of_the_rule_if_there_is_one(
+def test_a_code_links_to_the_page_of_its_rule_if_there_is_a_page(
     places: Places, monkeypatch: pytest.MonkeyPatch, site: str, page: str | None
 ) -> None:
     monkeypatch.setattr("tarl_lint.documentation.site", lambda: site)
@@ -144,7 +144,7 @@ def test_a_lens_stands_above_each_publish_call_in_the_order_of_the_file(places: 
         ([], ""),
     ],
 )
-def test_titles_name_the_topics_by_kind_each_once(flows: Any, title: str) -> None:
+def test_the_title_of_a_lens_names_each_topic_once_by_kind(flows: Any, title: str) -> None:
     assert findings.title(flows) == title
 
 

@@ -142,7 +142,7 @@ def test_a_problem_is_shown_once_until_linting_succeeds_again(session: Session) 
     ]
 
 
-def test_the_run_learns_of_a_further_change(session: Session) -> None:
+def test_a_further_change_makes_the_current_run_obsolete(session: Session) -> None:
     seen: list[bool] = []
     linted: Any = Linted(NOTHING)
 
@@ -175,7 +175,7 @@ def test_final_files_are_published_early_unless_the_text_has_changed(
     assert [name for name, _ in session.published] == names
 
 
-def test_early_results_also_clear_the_diagnostics_of_final_files(session: Session) -> None:
+def test_early_results_clear_old_diagnostics_of_files_whose_findings_are_final(session: Session) -> None:
     session.lint(FOUND)
     session.server._publish_some(NOTHING, frozenset({"map.py"}))
     assert session.published == [("pilot.py", ["TARL101"])]
@@ -221,7 +221,7 @@ def test_the_open_python_files_below_the_root_are_linted_as_typed(session: Sessi
     assert linted.buffers == [{tmp_path / "a.py": "a = 1\n"}]
 
 
-def test_paths_outside_the_root_have_no_name(session: Session, tmp_path: Path) -> None:
+def test_files_outside_the_root_are_ignored(session: Session, tmp_path: Path) -> None:
     assert session.server.path(session.uri("in/a.py")) == tmp_path / "in" / "a.py"
     assert session.server.shown_path(session.uri("in/a.py")) == "in/a.py"
     for uri in ((tmp_path.parent / "b.py").as_uri(), "untitled:Untitled-1"):
@@ -257,7 +257,7 @@ def test_each_change_of_a_file_is_noticed(
     assert noticed == [1]
 
 
-def test_the_root_is_the_first_folder_or_that_of_the_workspace_or_the_current_one(
+def test_the_root_is_the_first_workspace_folder_or_the_root_path_or_the_current_folder(
     session: Session, tmp_path: Path
 ) -> None:
     def root(folders: Sequence[str], path: str | None) -> Path:

@@ -23,7 +23,7 @@ def linear_algebra_threads() -> set[int]:
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_linear_algebra_takes_one_thread_so_that_sums_keep_their_order(workers: int) -> None:
+def test_linear_algebra_uses_one_thread_so_that_sums_keep_their_order(workers: int) -> None:
     with threadpool_limits(2, user_api="blas"):
         before = linear_algebra_threads()
         with engine.local(workers) as some:
@@ -32,14 +32,14 @@ def test_linear_algebra_takes_one_thread_so_that_sums_keep_their_order(workers: 
         assert linear_algebra_threads() == before
 
 
-def test_a_task_of_a_cluster_takes_one_thread_for_linear_algebra(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_task_uses_one_thread_for_linear_algebra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
     with ProcessPoolExecutor(1, get_context("spawn")) as worker:
         assert list(engine.Cluster(worker, 1).each(linear_algebra_threads, [()])) == [{1}]
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: int) -> None:
+def test_a_limited_number_of_tasks_runs_at_a_time_and_results_keep_their_order(workers: int) -> None:
     ran: list[int] = []
 
     def tasks() -> Iterator[tuple[int]]:
@@ -58,7 +58,7 @@ def test_tasks_run_a_window_at_a_time_and_their_results_keep_the_order(workers: 
     assert 1 <= len(ran) <= engine.WINDOW * workers
 
 
-def test_arguments_that_look_like_keys_of_the_task_graph_reach_the_task_unchanged() -> None:
+def test_an_argument_that_equals_a_key_of_the_task_graph_is_passed_on_unchanged() -> None:
     odd = ["tarl-0", ("tarl-1", len), [print, ("tarl-0",)], {"tarl-0": 1}]
     with engine.local(1) as some:
         assert list(some.each(lambda one: one, ((one,) for one in odd))) == odd

@@ -134,7 +134,7 @@ def seen(browser: str, found: Answer, tmp_path_factory: pytest.TempPathFactory) 
     return seen_by(browser, many(found), tmp_path_factory.mktemp("many"), wanted="b>201")
 
 
-def test_the_page_prints_nothing_and_sends_no_request(seen: Seen) -> None:
+def test_the_page_logs_nothing_to_the_console_and_sends_no_request(seen: Seen) -> None:
     assert seen.found["report"] == "drawn"
     assert seen.console == []
     assert seen.found["resources"] == seen.found["violations"] == []

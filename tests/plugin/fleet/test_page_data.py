@@ -119,7 +119,7 @@ def test_the_page_lists_the_violations_of_each_formula_by_group() -> None:
     ]
 
 
-def test_notes_on_the_page_lack_the_leading_mark_of_the_text_report() -> None:
+def test_notes_on_the_page_do_not_begin_with_the_word_note() -> None:
     first, *_ = variables(answer())["notes"]
     assert first.startswith("ranges are one-sided bounds")
 
@@ -215,7 +215,7 @@ def test_the_onset_on_the_page_comes_from_the_test_with_the_most_evidence(
     )
 
 
-def test_an_onset_may_lack_a_time_and_a_robot_may_lack_an_onset() -> None:
+def test_a_robot_may_have_no_onset_and_an_onset_may_have_no_time() -> None:
     assert html._since(robot("r1")) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0)))) is None
     assert html._since(robot("r1", 5.0, 6.0, status(evidence(2.0, 3)))) == (3, 0.0)
@@ -245,7 +245,7 @@ def test_at_most_twelve_cells_are_listed() -> None:
     assert len(data(answer(cells=cells, robots=robots(one, drifted=(one,))))["cells"]) == 12
 
 
-def test_cells_are_counted_over_named_robots_and_groups_that_differ() -> None:
+def test_cells_are_counted_over_the_named_robots_and_the_groups_that_differ() -> None:
     told = status(evidence(2.0), ((0, 0), (2, 0)))
     every = tuple(robot(name, 5.0, status=told) for name in ("r1", "r2"))
     groups = (
@@ -295,7 +295,7 @@ def test_the_page_data_of_a_group_has_its_figures_and_onset() -> None:
     assert named["result"] is None
 
 
-def test_of_too_many_groups_those_that_differ_and_those_with_the_lowest_reward_are_shown(
+def test_if_there_are_too_many_groups_the_page_shows_those_that_differ_and_those_with_the_lowest_reward(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(html, "MOST_GROUPS", 3)

@@ -146,7 +146,7 @@ def test_tarl_fleet_and_the_comparison_of_a_log_give_the_same_verdict(folder: Pa
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_answer_is_bitwise_equal_for_any_files_copies_order_portions_and_threads(
+def test_the_answer_does_not_depend_on_files_copies_order_portions_and_threads(
     folder: Path, found: Answer, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     random = Random(seed)
@@ -192,7 +192,7 @@ def test_the_answer_from_an_object_store_equals_that_from_a_folder(folder: Path,
     assert document.text(again) == document.text(found)
 
 
-def test_large_groups_are_compared_by_a_part_that_does_not_depend_on_files(
+def test_the_missions_that_represent_a_large_group_do_not_depend_on_files(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(groups, "MOST", 60)
@@ -212,7 +212,7 @@ def test_the_flags_since_and_robot_select_missions(folder: Path) -> None:
     assert len(totals) == 10
 
 
-def test_missions_that_do_not_fit_are_counted_and_named(
+def test_missions_that_cannot_be_compared_are_counted_and_named(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     to = tmp_path / "data"
@@ -386,7 +386,7 @@ def test_an_unreachable_cluster_is_reported_in_one_sentence(
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
-def test_the_answer_is_bitwise_equal_for_any_number_of_workers(
+def test_the_answer_does_not_depend_on_the_number_of_workers(
     folder: Path, found: Answer, monkeypatch: pytest.MonkeyPatch, workers: int
 ) -> None:
     for module in (robots, scores, samples):

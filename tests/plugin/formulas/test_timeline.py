@@ -13,7 +13,7 @@ GIVEN = st.lists(st.tuples(st.integers(0, 6), st.sampled_from([0.0, 1.0, 2.5, na
 
 
 @given(given=GIVEN)
-def test_each_instant_has_the_latest_value_given_up_to_it(given: list[tuple[int, float]]) -> None:
+def test_each_instant_has_the_latest_earlier_value(given: list[tuple[int, float]]) -> None:
     given = sorted(given, key=lambda one: one[0])  # in the order of time
     timeline = Timeline(["x"])
     for time, value in given:
@@ -30,7 +30,7 @@ def test_each_instant_has_the_latest_value_given_up_to_it(given: list[tuple[int,
     assert timeline.samples(["x"])["x"][0] == [0, first[-1]]
 
 
-def test_instants_are_the_two_ends_and_each_change_between_them() -> None:
+def test_the_instants_are_the_beginning_the_end_and_each_change() -> None:
     line = Timeline(("a", "b"))
     for name, value, time in (("a", 1.0, 5), ("a", 1.0, 6), ("a", 2.0, 9), ("b", 0.0, 7), ("b", True, 12)):
         line.give(name, value, time)

@@ -97,7 +97,7 @@ def test_a_pickled_function_computes_the_same_and_records_nothing(threads):
 
 
 @pytest.mark.parametrize("kind", [Entries, SharedEntries])
-def test_entries_are_compared_by_identity(kind):
+def test_recording_functions_are_compared_by_identity(kind):
     one, other = kind(list), kind(list)
     assert one == one
     assert one != other
@@ -106,6 +106,6 @@ def test_entries_are_compared_by_identity(kind):
     assert len({one, other}) == 2
 
 
-def test_constants_of_the_program_stay_the_same_objects():
+def test_constants_of_the_program_remain_the_same_objects():
     code = compile("x = (b'a', 'b', 1.5)\ndef f():\n    return 2j, b'c'\n", "<program>", "exec")
     assert bound(code, lambda _number, value: value) is code

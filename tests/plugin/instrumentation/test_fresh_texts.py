@@ -84,7 +84,7 @@ def test_an_edited_module_is_executed_even_if_imported_indirectly(data: st.DataO
     edited(places, forms)
 
 
-def test_a_constant_that_an_installed_function_took_from_an_edited_file_is_computed_anew() -> None:
+def test_a_constant_that_an_installed_function_read_from_an_edited_file_is_computed_again() -> None:
     edited(["workspace", "site", "workspace"], ["number", "inside", "constant"])
 
 

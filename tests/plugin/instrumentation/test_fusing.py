@@ -69,7 +69,7 @@ def written(source: str, call: str) -> tuple[list[str], list[Any]]:
     return spy.calls, list(spy)
 
 
-def test_a_run_of_floats_is_recorded_with_one_call():
+def test_consecutive_float_statements_are_recorded_with_one_call():
     calls, entries = written(RUN, "f(1.0)")
     assert calls == ["append", "append", "extend", "hook"]  # the function header, the fused run, the return
     assert entries[2:10] == [3, 3.0, 4, 1.5, 5, 4.0, 6, -0.5]

@@ -67,7 +67,7 @@ def recorded(recorder: Recorder) -> list[tuple[int, float]]:
     return list(zip(trace.site.tolist(), trace.flow.tolist(), strict=True))
 
 
-def test_a_script_and_what_it_imports_are_recorded(project):
+def test_a_script_and_the_modules_that_it_imports_are_recorded(project):
     recorder = Recorder()
     with imports(project, recorder) as node:
         module = node.run_script(project / "node.py")
@@ -332,7 +332,7 @@ def test_columns_count_characters_in_any_encoding(project):
     assert recorded(recorder) == [(0, 2.0), (1, 4.0)]
 
 
-def test_positions_without_a_statement_are_reported(project):
+def test_site_positions_without_a_statement_are_reported(project):
     plan = {project / "node.py": {(12, 5): 0, (99, 1): 1}}
     for _ in range(2):
         with imports(project, Recorder(), plan=plan) as node:

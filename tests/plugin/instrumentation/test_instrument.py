@@ -442,7 +442,7 @@ def test_positions_without_a_recordable_value_have_no_probe():
     assert placed == {(1, 0)}
 
 
-def test_without_sites_the_tree_is_unchanged():
+def test_a_syntax_tree_without_sites_is_unchanged():
     source = PROGRAMS["finally, else and return"]
     assert ast.dump(instrument(ast.parse(source), {})) == ast.dump(ast.parse(source))
 

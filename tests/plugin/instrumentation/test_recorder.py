@@ -46,7 +46,7 @@ def test_events_are_in_order_with_their_flow_values(threads):
     assert trace.thread is None
 
 
-def test_events_after_the_reward_count_for_the_step_that_it_ended():
+def test_events_after_a_reward_belong_to_the_step_that_the_reward_ended():
     recorder = Recorder()
     for step in range(3):
         recorder.hook(0, float(step))
@@ -62,7 +62,7 @@ def test_events_after_the_reward_count_for_the_step_that_it_ended():
     }
 
 
-def test_a_cell_is_valid_until_the_next_one():
+def test_a_cell_is_valid_until_the_next_cell_begins():
     recorder = Recorder()
     recorder.hook(0, 0.0)
     recorder.latch((4, 1))
@@ -89,7 +89,7 @@ def test_a_recorder_without_events_returns_an_empty_trace():
     assert (trace.steps, trace.parts) == (0, {})
 
 
-def test_events_without_any_reward_are_kept():
+def test_events_of_an_episode_without_rewards_are_kept():
     recorder = Recorder()
     recorder.hook(0, 1.0)
     assert recorder.finish().event_step.tolist() == [0]
@@ -211,7 +211,7 @@ def test_threading_is_restored_after_an_episode():
     assert [getattr(threading, name) for name in names] == before
 
 
-def test_a_thread_started_by_the_thread_module_is_separate_too():
+def test_events_of_a_thread_started_by_the_module_thread_are_separate():
     before = _thread.start_new_thread
     recorder, done = Recorder(), threading.Event()
     space = program(recorder)
@@ -267,7 +267,7 @@ def test_an_incomplete_event_is_dropped_and_the_others_kept():
 
 
 @given(st.lists(st.floats()))
-def test_sizes_of_floats_are_their_magnitudes(values):
+def test_the_flow_value_of_a_float_is_its_magnitude(values):
     assert sizes(np.array(values, np.float64)).tolist() == [magnitude(value) for value in values]
     assert all(0.0 <= size <= LIMIT for size in sizes(np.array(values, np.float64)))
 
@@ -312,7 +312,7 @@ def running(job: threading.Thread) -> threading.Thread:
 @pytest.mark.parametrize(
     ("module", "direct"), [("pytest_tarl.ros.watchdog", True), ("pytest_timeout", True), ("node", False)]
 )
-def test_threads_of_test_tools_are_ignored_and_others_are_separate(module, direct):
+def test_threads_of_test_tools_are_ignored_and_events_of_other_threads_are_separate(module, direct):
     go_on = threading.Event()
 
     def job() -> None:
@@ -328,7 +328,7 @@ def test_threads_of_test_tools_are_ignored_and_others_are_separate(module, direc
         thread.join()
 
 
-def test_a_thread_that_existed_before_is_separate():
+def test_events_of_a_thread_that_existed_before_the_episode_are_separate():
     begin = threading.Event()
     spaces: list[dict[str, Any]] = []
 

@@ -59,7 +59,7 @@ def test_flows_of_the_same_topics_share_one_list_without_duplicates():
     assert codes(result) == ["a", "right", "left", "c", "d"]
 
 
-def test_flows_with_conflicting_orders_contribute_each_step_once():
+def test_flows_that_order_steps_differently_contribute_each_step_once():
     result = planned(flow(step(10, "a"), step(20, "b")), flow(step(20, "b"), step(10, "a")))
     assert codes(result) == ["a", "b"]
 
@@ -88,7 +88,7 @@ def test_lists_share_global_site_numbers():
         assert taint_list.sites == tuple(result.places[n] for n in members)
 
 
-def test_positions_map_to_global_numbers_by_file():
+def test_sites_are_found_by_file_and_position():
     result = planned(flow(step(10, "a", path="helper.py"), step(10, "b"), step(12, "c")))
     assert result.positions == {"helper.py": {(10, 5): 0}, "node.py": {(10, 5): 1, (12, 5): 2}}
 

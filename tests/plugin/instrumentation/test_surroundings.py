@@ -46,7 +46,7 @@ from pytest_tarl.instrumentation.threads import ThreadWatch
         ("yaml", False),
     ],
 )
-def test_data_files_are_known_by_the_end_of_their_name(name: str, data: bool) -> None:
+def test_data_files_are_recognised_by_their_file_name_extension(name: str, data: bool) -> None:
     assert is_data(Path("folder") / name) is data
 
 
@@ -93,7 +93,7 @@ def test_other_files_and_ways_of_opening_are_unchanged(file: Path) -> None:
             assert opened.read() == "old\nmore\n"
 
 
-def test_replacements_are_decoded_as_the_program_asks(file: Path) -> None:
+def test_replaced_texts_are_decoded_with_the_encoding_that_the_program_requests(file: Path) -> None:
     with reading({file: "é\r\nx"}):
         with file.open(encoding="latin-1") as opened:
             assert opened.read() == "Ã©\nx"
@@ -101,7 +101,7 @@ def test_replacements_are_decoded_as_the_program_asks(file: Path) -> None:
             assert opened.read() == "��\r\nx"
 
 
-def test_without_replacements_nothing_is_replaced() -> None:
+def test_the_function_open_is_unchanged_if_there_are_no_replacements() -> None:
     usual = open
     with reading({}):
         assert open is usual
@@ -114,7 +114,7 @@ def test_without_replacements_nothing_is_replaced() -> None:
 # threads
 
 
-def test_each_new_thread_is_noticed_before_it_runs() -> None:
+def test_the_recorder_is_notified_of_each_new_thread_before_the_thread_runs() -> None:
     order: list[str] = []
     watch = ThreadWatch(lambda: order.append("heard"))
     watch.begin()
@@ -133,7 +133,7 @@ def test_each_new_thread_is_noticed_before_it_runs() -> None:
     assert order[-2:] == ["second", "after"]
 
 
-def test_a_starter_that_other_code_replaced_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_thread_starter_that_other_code_replaced_is_left_in_place(monkeypatch: pytest.MonkeyPatch) -> None:
     import _thread
 
     usual: Any = _thread.start_new_thread
@@ -221,7 +221,7 @@ def test_the_project_of_a_node_is_its_repository_workspace_or_package(
 
 
 @pytest.mark.usefixtures("_same_path")
-def test_folders_are_put_in_front_of_the_search_path_once() -> None:
+def test_folders_are_added_once_to_the_front_of_the_search_path() -> None:
     before = list(sys.path)
     on_search_path(Path("/a"), Path("/b"))
     on_search_path(Path("/b"), Path("/c"))
@@ -265,7 +265,7 @@ def test_events_are_equal_only_to_themselves_and_record_nothing_in_another_proce
     assert isinstance(copied, Unheard)
 
 
-def test_shared_events_are_those_of_the_running_thread() -> None:
+def test_shared_events_are_appended_to_those_of_the_running_thread() -> None:
     own: list[Any] = []
     shared = SharedEntries(lambda: own)
     shared.append(1)
@@ -297,7 +297,7 @@ def test_pieces_of_events_are_joined_in_order() -> None:
     assert joined([first]) is first
 
 
-def test_sizes_are_finite_and_limited() -> None:
+def test_flow_values_are_finite_and_limited() -> None:
     found = sizes(np.array([-2.0, 3.0, np.inf, -np.inf, np.nan, 2 * LIMIT, -2 * LIMIT, 0.0]))
     assert found.tolist() == [2.0, 3.0, 0.0, 0.0, 0.0, LIMIT, LIMIT, 0.0]
 
@@ -349,7 +349,7 @@ def test_code_is_compiled_once_for_each_text_plan_and_form(tmp_path: Path) -> No
     assert node_code(cache, plan).compile(path) is not first
 
 
-def test_files_are_those_with_sites_or_replacements(tmp_path: Path) -> None:
+def test_only_files_with_sites_or_replacements_are_handled(tmp_path: Path) -> None:
     first, second, third = (tmp_path / f"{name}.py" for name in "abc")
     node = node_code(Cache(), {first: {(1, 1): 0}, third: {}}, {second: "é = 1\n"})
     assert node.files == {first.resolve(), second.resolve(), third.resolve()}
@@ -380,7 +380,7 @@ def test_sites_follow_their_lines_in_an_edited_text(tmp_path: Path) -> None:
     assert node.unrecorded == {}
 
 
-def test_a_program_without_a_span_is_named_unknown() -> None:
+def test_a_program_without_a_source_position_is_named_unknown() -> None:
     from pytest_tarl.instrumentation.sites import _topics
 
     place = SimpleNamespace(path="a.py", line=3)

@@ -51,7 +51,7 @@ def test_bounds_of_a_rate_are_quantiles_of_beta_distributions(
 
 @given(st.integers(1, 400), st.integers(0, 400), CONFIDENCES)
 @settings(deadline=None)
-def test_scipy_agrees(episodes: int, passed: int, confidence: float) -> None:
+def test_bounds_equal_those_of_scipy(episodes: int, passed: int, confidence: float) -> None:
     beta = pytest.importorskip("scipy.stats").beta
     passed = min(passed, episodes)
     low = float(beta.ppf(1 - confidence, passed, episodes - passed + 1)) if passed else 0.0
@@ -68,7 +68,7 @@ def test_a_binomial_tail_is_the_sum_of_its_terms(n: int, k: int, p: float) -> No
 
 @given(st.integers(1, 30), st.integers(0, 30), st.floats(0.01, 0.99))
 @settings(deadline=None)
-def test_evidence_against_a_rate_is_a_mixture_of_likelihood_ratios_of_higher_rates(
+def test_evidence_against_a_rate_is_a_mixture_of_likelihood_ratios_over_higher_rates(
     n: int, passed: int, least: float
 ) -> None:
     passed = min(passed, n)
@@ -113,7 +113,7 @@ def test_anytime_bounds_are_wider_than_bounds_at_a_fixed_size(
 )
 @example([0.0] * 3 + [1.0] * 3, 0.0, 1.0, 0.8, False)
 @settings(deadline=None)
-def test_bounds_of_a_mean_contain_it_and_scale_with_its_unit(
+def test_bounds_of_a_mean_contain_the_mean_and_scale_with_the_unit_of_the_reward(
     shares: list[float], low: float, width: float, confidence: float, anytime: bool
 ) -> None:
     totals = [low + width * share for share in shares]
@@ -163,7 +163,7 @@ def test_bounds_of_a_shift_have_the_stated_coverage_for_skewed_totals(
     assert (held < 150).all()
 
 
-def test_the_bound_of_a_loss_in_a_range_adds_the_bounds_of_both_worlds() -> None:
+def test_the_bound_of_a_loss_in_a_declared_range_adds_the_bounds_of_both_worlds() -> None:
     found = loss_between([0.9] * 50, [0.1] * 50, 0.95, Range(0, 1))
     assert found.exact
     assert 0.6 < found.low < 0.8 <= found.high
@@ -177,7 +177,7 @@ def test_two_episodes_give_no_bound_and_constant_totals_an_exact_one() -> None:
 
 @given(st.integers(0, 2**20), st.sampled_from([1e-200, 1e-3, 1e3, 1e100]))
 @settings(deadline=None, max_examples=15)
-def test_bounds_of_a_loss_scale_with_its_unit(seed: int, unit: float) -> None:
+def test_bounds_of_a_loss_scale_with_the_unit_of_the_reward(seed: int, unit: float) -> None:
     draws = np.random.default_rng(seed)
     before, after = draws.normal(size=30), draws.normal(size=10)
     one = loss_between(before.tolist(), after.tolist(), 0.9)

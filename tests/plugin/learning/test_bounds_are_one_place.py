@@ -80,7 +80,7 @@ def test_the_check_detects_an_interval_computed_elsewhere(source: str) -> None:
     assert [*computed(source)]
 
 
-def test_intervals_are_computed_in_one_module_only() -> None:
+def test_intervals_are_computed_only_in_the_module_bounds() -> None:
     modules = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
     assert modules.keys() >= HOME
     found = {

@@ -87,7 +87,7 @@ def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
     assert (second.p_loss, second.p_drift, second.result) == (0.3, 0.04, "drifted")
 
 
-def test_the_tolerated_loss_is_five_percent_of_the_reward_unless_a_larger_one_is_stated() -> None:
+def test_the_tolerated_loss_is_five_percent_of_the_reward_or_the_stated_tolerance_if_larger() -> None:
     sample = episodes([(0,)] * 2, [(0,)] * 4, reward=-2.0)  # totals -4 and -8
     assert tolerated(sample, None) == pytest.approx(0.3)
     assert tolerated(sample, 0.2) == pytest.approx(0.3)
@@ -102,7 +102,7 @@ def test_the_region_of_the_paper_has_the_cells_with_at_least_half_of_the_largest
     assert paper_region(np.empty((0, 2)), np.empty((0, 2))).tolist() == []
 
 
-def test_slabs_are_each_bin_of_each_sensor_and_the_set_of_all_cells() -> None:
+def test_there_is_a_slab_for_each_bin_of_each_sensor_and_one_for_all_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0, 5), (0, 6), (1, 5)])] == [
         [0, 1],
         [2],
@@ -113,7 +113,7 @@ def test_slabs_are_each_bin_of_each_sensor_and_the_set_of_all_cells() -> None:
     assert [slab.tolist() for slab in slabs([(0,), (1,)])] == [[0, 1]]
 
 
-def test_sums_over_slabs_below_their_rounding_error_are_zero() -> None:
+def test_sums_over_slabs_that_are_below_the_rounding_error_become_zero() -> None:
     part = np.array([[1.0, -1.0, 3.0], [0.25, 0.0, 0.0]])
     error = np.full((2, 3), 0.25)
     cells = slabs([(0,), (1,), (2,)])
@@ -128,7 +128,7 @@ def test_sums_over_slabs_below_their_rounding_error_are_zero() -> None:
     assert beyond(np.array([-1.0, 1.0, 0.5]), np.array([0.5, 1.0, 0.5])).tolist() == [-1.0, 0.0, 0.0]
 
 
-def test_a_bet_multiplies_its_wealth_by_each_difference() -> None:
+def test_each_difference_multiplies_the_wealth_of_a_bet() -> None:
     one = Bet(1.0, -2.0, (0.5,))
     assert one.wealth([1.0, 0.0]) == pytest.approx(log1p(1.0) + log1p(0.5))
     assert one.wealth([-9.0]) == pytest.approx(log1p(-0.5))  # clipped to -2
@@ -139,7 +139,7 @@ def test_a_bet_multiplies_its_wealth_by_each_difference() -> None:
     assert Bet(1.0, -3.0, (0.5, 0.25)).wealth([-3.0]) == pytest.approx(log(0.1 * 0.5))
 
 
-def test_stakes_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None:
+def test_stakes_of_a_bet_grow_with_the_gap_and_are_bounded_by_the_worst_episode() -> None:
     found = bet(1.0, -3.0, [0.5, -0.5])
     wanted = 1.0 / (1.5 * 0.5 + 1.0)  # a mean of 0: the gap is the margin; the variance is 0.5
     assert found.stakes == pytest.approx((min(wanted, 0.95 / 2.0), min(wanted, 0.5 / 2.0)))
@@ -240,7 +240,7 @@ def test_a_check_is_decisive_only_if_it_finds_a_loss_and_its_region(
     assert certain(Difference(replace(VERDICT, result=result), region, {})) is expected
 
 
-def test_episodes_vary_if_any_of_them_differs_in_anything() -> None:
+def test_episodes_count_as_varying_if_one_of_them_differs_in_any_column() -> None:
     same = episodes([(0,), (1,)], [(0,), (1,)])
     assert not varies(same)
     assert not varies(episodes([(0,), (1,)]))
@@ -314,7 +314,7 @@ NEW = [(0, 7), (1, 7), (2, 7)]
 KNOWN = [(0, 1), (1, 1), (2, 2)]
 
 
-def test_sensors_whose_values_are_all_new_are_left_out() -> None:
+def test_sensors_with_only_new_values_are_left_out() -> None:
     assert left_out(episodes(KNOWN), episodes(NEW)) == (1,)
     assert left_out(episodes(KNOWN), episodes([(0, 7), (8, 7)])) == (1,)  # half of the steps
     assert left_out(episodes(KNOWN), episodes([(0, 7), (8, 7), (8, 7)])) == ()

@@ -59,7 +59,7 @@ def test_a_comparison_of_equal_worlds_rarely_reports_a_difference() -> None:
     assert sum(verdict.result == "degraded" for verdict in found) <= 4
 
 
-def test_a_slower_cell_is_degraded_and_located() -> None:
+def test_a_cell_in_which_the_robot_is_slower_is_degraded_and_named() -> None:
     found = judged(world(0, 60), world(1000, 30, slow_at=4))
     assert found.verdict.result == "degraded"
     assert found.verdict.p_drift < 0.01
@@ -116,14 +116,14 @@ def test_the_region_of_the_paper_has_cells_with_half_the_largest_difference() ->
     assert paper_region(offline, offline).tolist() == []
 
 
-def test_a_large_uncertain_difference_does_not_hide_a_certain_one() -> None:
+def test_a_large_uncertain_difference_does_not_hide_a_certain_difference() -> None:
     difference = np.array([9.0, -0.5, 0.04, 0.2])
     found = outstanding(difference, np.array([False, True, True, True]))
     assert found.tolist() == [False, True, False, True]
     assert not outstanding(difference, np.zeros(4, dtype=bool)).any()
 
 
-def test_sums_that_differ_by_rounding_only_count_as_ties() -> None:
+def test_sums_that_differ_only_by_rounding_count_as_ties() -> None:
     totals = np.array([0.1, 0.2, -0.3] * 8)
     assert permuted_loss(totals, totals[:3], generator(0, "a")) > 0.3
     exact = permuted_loss(np.array([1.0, 2.0, -3.0] * 8), np.array([1.0, 2.0, -3.0]), generator(0, "a"))

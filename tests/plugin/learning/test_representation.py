@@ -133,7 +133,7 @@ def test_the_significance_does_not_depend_on_the_unit(scale: float) -> None:
     )
 
 
-def test_representing_a_sample_twice_changes_nothing() -> None:
+def test_representing_a_sample_a_second_time_changes_nothing() -> None:
     recorded = example().sample
     once = represented(recorded)
     assert same(represented(once), once)

@@ -62,7 +62,7 @@ def test_the_p_values_equal_those_computed_from_a_full_table_of_shuffled_labels(
         assert found[largest] == pytest.approx(corrected)
 
 
-def test_p_values_below_the_level_stay_the_same_if_undecisive_shuffles_are_left_out(
+def test_p_values_below_the_level_do_not_change_if_undecisive_shuffles_are_left_out(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def each(settled: float) -> list[list[float]]:

@@ -30,7 +30,7 @@ def test_the_checks_spend_all_of_alpha_and_every_comparison_can_have_its_first_c
     assert share <= ends[-1] <= MOST * share
 
 
-def test_the_undecided_comparison_nearest_to_a_decision_continues_if_the_rest_suffices() -> None:
+def test_the_undecided_comparison_nearest_to_a_decision_continues_if_enough_episodes_are_left() -> None:
     standings = [Standing(10, 0.3), Standing(20, 0.04, decided=True), Standing(20, 0.06), Standing(40, 0.01)]
     assert chosen(standings, LOOKS, 20) == 2  # the second is decided, the last has no checks left
     assert chosen(standings, LOOKS, 19) == 0
@@ -41,7 +41,7 @@ def test_the_undecided_comparison_nearest_to_a_decision_continues_if_the_rest_su
     assert next_look(standings[3], LOOKS) is None
 
 
-def test_no_comparison_is_wrong_more_often_than_alpha_however_episodes_are_shared() -> None:
+def test_each_comparison_errs_at_most_as_often_as_alpha_however_episodes_are_shared() -> None:
     """Four comparisons without a drift: each is found drifted in at most α of the runs."""
     alpha, runs, total = 0.05, 1500, 160
     looks = schedule(total, 4, 3)

@@ -106,7 +106,7 @@ def test_expected_sarsa_averages_over_the_successors_seen_so_far() -> None:
     assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
 
 
-def test_td_lambda_uses_the_whole_return_if_lambda_is_one_and_one_step_if_it_is_zero() -> None:
+def test_td_lambda_uses_the_whole_return_for_lambda_1_and_one_step_for_lambda_0() -> None:
     whole, next_only = (TDLambda(2, gamma=0.5, alpha=0.5, trace=trace) for trace in (1.0, 0.0))
     for learner in (whole, next_only):
         learner.learn(sequence_of([START, 1, 2], [0.0, 1.0, 4.0]), [(0,)])
@@ -158,7 +158,7 @@ def test_the_iteration_continues_if_conjugate_gradients_break_down(monkeypatch: 
     assert values == pytest.approx(10 * (1 - 0.9 ** np.arange(300, 0, -1)))
 
 
-def test_a_hundred_thousand_states_need_no_dense_matrix() -> None:
+def test_solving_for_a_hundred_thousand_states_needs_no_dense_matrix() -> None:
     state = np.arange(100_000)
     following = np.append(state[1:], END)
     values = fixed_point(state, following, np.ones_like(state), np.ones(state.size), gamma=0.5)

@@ -76,7 +76,7 @@ def test_scores_of_a_mission_do_not_depend_on_other_missions(
     np.testing.assert_array_equal(whole, np.concatenate(found))
 
 
-def test_logged_recorded_episodes_fall_into_the_bins_of_the_recording(tmp_path: Path) -> None:
+def test_logs_of_recorded_episodes_have_the_bins_of_the_recording(tmp_path: Path) -> None:
     some = walks(60, 1)
     constant = [replace(one, reward=(-0.1,) * len(one.cells)) for one in some]
     for number, world in enumerate((some, constant)):
@@ -87,7 +87,7 @@ def test_logged_recorded_episodes_fall_into_the_bins_of_the_recording(tmp_path: 
         np.testing.assert_array_equal(held_out, bins[[n for seed, n in seeds if not in_fit(seed)]])
 
 
-def test_missing_steps_or_rewards_leave_the_other_scores(
+def test_missing_steps_or_rewards_do_not_affect_the_other_scores(
     fitted: Scale,
 ) -> None:
     known = walks(1, 5)[0]

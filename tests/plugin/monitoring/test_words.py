@@ -165,7 +165,7 @@ def test_the_json_of_a_watch_has_evidence_onset_alarm_and_cells() -> None:
 
 
 @given(st.lists(st.integers(1, 7), max_size=30), st.integers(2, 9))
-def test_the_times_of_every_nth_mission_are_kept_for_any_portions_of_missions(
+def test_the_time_of_every_nth_mission_is_kept_in_whatever_portions_missions_arrive(
     portions: list[int], most: int
 ) -> None:
     most *= 2
@@ -183,7 +183,7 @@ def test_the_times_of_every_nth_mission_are_kept_for_any_portions_of_missions(
             assert found.at(asked) == (kept[-1] if kept else None)
 
 
-def test_missions_before_the_first_kept_mission_have_no_known_time() -> None:
+def test_the_time_of_missions_before_the_first_kept_mission_is_unknown() -> None:
     assert Moments().at(5) is None
     assert Moments(times=[3.5]).at(0) == 3.5
 
@@ -213,7 +213,7 @@ def test_a_recording_gives_a_bound_on_the_mean_only_with_a_declared_range() -> N
     assert 0.5 < older.least < 0.9  # Clopper and Pearson of 9 of 10
 
 
-def test_a_bet_gains_by_failures_and_loses_its_share_by_a_success() -> None:
+def test_a_bet_gains_with_each_failure_and_loses_its_stake_with_each_success() -> None:
     found = e_process.factors(0.75, np.array([1.0, 0.0, 0.75]))
     assert found.shape == (3, restarts.BETS)
     shares_ = np.array(e_process.SHARES)
@@ -288,7 +288,7 @@ def test_the_status_names_the_score_with_the_most_evidence(monitor: Monitor) -> 
     assert module.status(one).lead == Score("total", None, "spread")
 
 
-def test_a_monitor_without_missions_has_no_lead_and_no_onset(monitor: Monitor) -> None:
+def test_a_monitor_without_missions_has_no_leading_score_and_no_onset(monitor: Monitor) -> None:
     found = module.status(changed(monitor))
     assert (found.lead, found.world.since, found.world.alarm, found.cells) == (None, None, None, ())
     assert found.world.now == pytest.approx(found.world.highest)

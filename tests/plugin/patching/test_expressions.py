@@ -231,7 +231,7 @@ def test_indices_lengths_and_codes_are_integers(text: str, counts: bool) -> None
         ("x = [1, 2]", False),
     ],
 )
-def test_a_literal_vector_of_integers_stays_one(text: str, counts: bool) -> None:
+def test_a_literal_vector_of_integers_stays_a_vector_of_integers(text: str, counts: bool) -> None:
     source = document("a.py", f"{text}\n")
     one = next(
         node for node in ast.walk(source.tree) if isinstance(node, ast.Constant) and node.value in (1, 255)

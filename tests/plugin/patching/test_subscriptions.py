@@ -294,7 +294,7 @@ def test_the_patched_node_runs_and_follows_the_guard(kind: str) -> None:
     assert ros.published == [5.0, 12.0, 5.0]
 
 
-def test_windows_line_endings_stay() -> None:
+def test_windows_line_endings_are_kept() -> None:
     sources = {"node.py": SCRIPT.replace("\n", "\r\n")}
     flows = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
     assert repaired(sources, flows)["node.py"] == PATCHED_SCRIPT.replace("\n", "\r\n")
@@ -412,7 +412,7 @@ def test_the_subscription_is_made_once_and_before_anything_blocks(body: str, exp
         ),
     ],
 )  # fmt: skip
-def test_the_message_type_is_imported_where_imports_are(
+def test_the_import_of_the_message_type_is_added_beside_other_imports(
     imports: str, written: str, subscriber: str, kind: str
 ) -> None:
     sources = {
@@ -424,7 +424,7 @@ def test_the_message_type_is_imported_where_imports_are(
     assert f"    {subscriber}('/terrain', {kind}, on_terrain)\n" in changed
 
 
-def test_used_names_are_avoided() -> None:
+def test_names_that_the_file_uses_are_not_reused() -> None:
     text = SCRIPT.replace("GAIN", "terrain").replace("def step(pub)", "def step(pub, on_terrain_reading=0)")
     sources = {"node.py": text}
     changed = repaired(
@@ -436,7 +436,7 @@ def test_used_names_are_avoided() -> None:
 
 
 @pytest.mark.parametrize("name", ["list", "class", "message"])
-def test_builtins_keywords_and_the_parameter_are_avoided(name: str) -> None:
+def test_names_of_builtins_keywords_and_the_parameter_are_not_reused(name: str) -> None:
     sensor = Sensor(name, topic="/terrain", field="data")
     sources = {"node.py": SCRIPT}
     flows = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
@@ -451,7 +451,7 @@ def test_builtins_keywords_and_the_parameter_are_avoided(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["context", "executor", "on_odom", "pub"])
-def test_attributes_of_the_node_are_avoided(name: str) -> None:
+def test_names_of_attributes_of_the_node_are_not_reused(name: str) -> None:
     sensor = Sensor(name, topic="/terrain", field="data")
     text, _, call, api = NODES["rclpy class"]
     sources = {"node.py": text}
@@ -479,7 +479,7 @@ def test_two_sensors_of_a_topic_share_a_subscription() -> None:
     assert ros.published == [5.0, 12.0, 5.0]
 
 
-def test_a_sensor_the_site_already_holds_needs_no_subscription() -> None:
+def test_a_sensor_whose_value_is_available_at_the_site_needs_no_subscription() -> None:
     sources = {"node.py": SCRIPT}
     held = {("/odom", "pose.pose.position.x"): ("pos",)}
     changed = repaired(sources, guard=Guard((Conjunct(POSITION, 4.0, 7.0),)), held=held)["node.py"]
@@ -552,7 +552,7 @@ def test_a_topic_of_unknown_type_is_refused(topics: dict[str, str]) -> None:
         repaired({"node.py": SCRIPT}, topics=topics)
 
 
-def test_the_same_sensor_in_a_method_and_in_a_function_is_stored_for_both() -> None:
+def test_a_sensor_used_in_a_method_and_in_a_function_is_stored_for_both() -> None:
     text = ROSPY_CLASS.replace("driver = Driver()", "def step(d):\n    return 7 * d\n\n\ndriver = Driver()")
     sources = {"node.py": text}
     analysis = HandMade(sources, subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber"))
@@ -637,7 +637,7 @@ helper = Helper(rclpy.create_node("helper"))
 """
 
 
-def test_beside_a_wrapper_the_node_of_its_class_subscribes_once() -> None:
+def test_a_node_that_uses_a_wrapper_subscribes_once() -> None:
     sources = {"node.py": WRAPPED}
     call = 'self.listen("/odom", self.on_odom)'
     changed = repaired(sources, subscribing(sources, "node.py", call, "rclpy"))

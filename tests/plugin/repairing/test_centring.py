@@ -39,7 +39,7 @@ def world(best: float, width: float) -> Trials:
 
 @settings(max_examples=40)
 @given(st.floats(0.3, 3.0), st.floats(0.85, 1.18), st.sampled_from([LITERAL, NAMED]))
-def test_a_value_moves_towards_the_middle_until_it_loses_little_of_the_margin(
+def test_a_value_moves_towards_the_middle_of_its_window_until_it_loses_little_of_the_margin(
     best: float, off: float, constant: object
 ) -> None:
     trials = world(best, 0.3)
@@ -58,7 +58,7 @@ def test_a_value_moves_towards_the_middle_until_it_loses_little_of_the_margin(
         assert trials.spent <= SEEDS
 
 
-def test_a_value_does_not_move_to_one_with_which_missions_earn_more_but_fail() -> None:
+def test_a_value_does_not_move_to_a_value_that_earns_more_but_fails_missions() -> None:
     def run(candidate: Candidate, seed: int) -> Outcome:
         found = factor(candidate.mutations[0]) or 0.0
         return Outcome(8.0 + found / 2.0, passed=found < 2.9)
@@ -71,7 +71,7 @@ def test_a_value_does_not_move_to_one_with_which_missions_earn_more_but_fail() -
     assert 2.2 < reached < 2.9
 
 
-def test_a_value_does_not_move_to_one_that_loses_missions_which_a_rejected_value_lost() -> None:
+def test_a_value_does_not_move_to_a_value_that_loses_missions_of_a_rejected_value() -> None:
     trials = world(4.0, 0.5)
     found = Candidate((Mutation(LITERAL, 5.0),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) != found
@@ -87,7 +87,7 @@ def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
 
 
 @pytest.mark.parametrize("value", [-2.0, True])
-def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
+def test_a_change_of_a_sign_or_a_boolean_has_no_neighbouring_values(value: float) -> None:
     constant = operand(5, "False", False) if value is True else LITERAL
     found = Candidate((Mutation(constant, value),), ALWAYS)
     trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)
@@ -107,7 +107,7 @@ def powered(power: float, usual: float) -> Candidate:
     )
 
 
-def test_an_exponent_stays_on_its_grid_while_the_typical_value_is_moved() -> None:
+def test_the_exponent_of_a_template_stays_on_its_grid_while_its_typical_value_is_moved() -> None:
     moved_to = moved(powered(-1.0, 0.9), 1.3, mutations)
     assert moved_to is not None
     assert [one.value for one in moved_to.mutations] == [-1.0, pytest.approx(1.17)]

@@ -88,7 +88,7 @@ def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: f
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 
 
-def test_a_hard_mission_is_compared_with_its_own_designed_reward() -> None:
+def test_a_failing_mission_is_compared_with_its_own_designed_reward() -> None:
     road: Any = Road(0.12)
     goal = enriched(road, Trials(never, 300))
     seed, easy = goal.pairs[0].seed, goal.controls[0].seed
@@ -127,7 +127,7 @@ def test_a_repair_must_restore_half_of_what_a_mission_lost() -> None:
     assert not goal.reached(Outcome(HARD - 1.01, passed=True), seed)
 
 
-def test_no_extra_episode_runs_if_most_missions_lose_reward_or_none_does() -> None:
+def test_no_extra_episodes_run_if_most_missions_or_no_missions_lose_reward() -> None:
     for share in (0.0, 0.9):
         road: Any = Road(share)
         assert enriched(road, Trials(never, 300)) == road.order.goal

@@ -46,7 +46,7 @@ def inward(low: float, high: float, lost: bool = True, known: float = 0.0) -> tu
 
 
 @pytest.mark.parametrize(("low", "high"), [(2.4, 3.4), (2.0, 2.3), (1.3, 4.9)])
-def test_a_value_is_moved_back_to_one_with_which_all_missions_succeed(low: float, high: float) -> None:
+def test_a_value_is_moved_back_until_all_missions_succeed(low: float, high: float) -> None:
     (by,), spent = inward(low, high)
     assert low <= by <= high
     assert spent <= 8

@@ -110,14 +110,14 @@ def test_a_mission_that_now_fails_is_a_loss_whatever_it_earns() -> None:
     assert "1 of them now fail" in found.lost[0]
 
 
-def test_after_a_loss_no_further_test_is_run() -> None:
+def test_no_further_test_is_run_after_a_loss() -> None:
     mutants = Mutants([neighbour(0), neighbour(1)], -9.0)
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert {rollout for rollout, _ in mutants.ran} == {"rollout 0"}
     assert found.episodes == EPISODES
 
 
-def test_a_limited_number_of_tests_runs_and_the_rest_is_counted() -> None:
+def test_a_limited_number_of_other_tests_runs_and_the_rest_is_counted() -> None:
     mutants = Mutants([neighbour(n) for n in range(MOST + 3)])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len({rollout for rollout, _ in mutants.ran}) == MOST

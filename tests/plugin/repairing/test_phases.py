@@ -221,7 +221,7 @@ def test_a_search_that_runs_out_of_time_names_the_budget_with_which_it_can_be_re
     assert told[-1].endswith("use --tarl-budget 33")
 
 
-def test_candidates_that_fit_a_part_of_the_range_are_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_candidates_that_work_in_a_part_of_the_range_are_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(repair, "fits_a_part", lambda _, runs: f"{len(runs)} runs")
     of = order()
     watch = Watch(of)

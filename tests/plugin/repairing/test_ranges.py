@@ -88,7 +88,7 @@ def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: 
 
 @slow
 @pytest.mark.usefixtures("quick_acceptance")
-def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
+def test_the_result_of_a_repair_does_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:
     ranged.runpytest(*RECORD)
     ranged.runpytest(*REPAIR)
     first = result(ranged)
@@ -97,7 +97,7 @@ def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
-def test_the_first_pairs_span_the_sizes(sizes: list[float]) -> None:
+def test_the_first_pairs_of_episodes_span_the_sizes_of_the_drift(sizes: list[float]) -> None:
     order = list(spread([(size, at) for at, size in enumerate(sizes)]))
     assert sorted(order) == list(range(len(sizes)))
     if len(sizes) >= 7:  # positions of the first pairs: the median, the quarters, the eighths

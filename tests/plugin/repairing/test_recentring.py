@@ -52,9 +52,9 @@ def test_the_value_moves_towards_the_best_one(best: float) -> None:
     assert abs(by / best - 1.0) < abs(2.0 / best - 1.0)
 
 
-def test_a_value_that_loses_nothing_stays() -> None:
+def test_a_value_that_loses_nothing_is_not_moved() -> None:
     assert recentred(2.0) == []
 
 
-def test_missions_that_fail_say_nothing_about_the_value() -> None:
+def test_failed_missions_do_not_move_the_value() -> None:
     assert recentred(1.94, failing=True) == []

@@ -53,7 +53,7 @@ def watch(*seen: tuple[Candidate, int, float]) -> Watch:
     return found
 
 
-def test_the_best_candidate_so_far_counts_little_with_few_runs() -> None:
+def test_a_candidate_with_few_runs_rarely_becomes_the_best_so_far() -> None:
     one, two = scaled(2.0), scaled(3.0)
     found = watch((one, 0, 4.0), (two, 0, 3.0))
     assert found.best == one
@@ -77,7 +77,7 @@ def test_the_best_candidate_is_reported_unless_one_was_refused_on_fresh_seeds() 
     assert found.progress("sweep") == "sweep (best so far +4.5 of 8)"
 
 
-def test_a_candidate_with_one_good_mission_of_more_than_two_counts_as_unconfirmed() -> None:
+def test_a_candidate_with_only_one_good_mission_of_three_or_more_counts_as_unconfirmed() -> None:
     one, two, far, examined = (scaled(by) for by in (2.0, 3.0, 4.0, 5.0))
     runs = [(two, 0, 8.0), (two, 1, 1.0)]  # twice only
     for candidate, first in ((one, 8.0), (far, 7.9), (examined, 9.0)):
@@ -104,7 +104,7 @@ def test_candidates_whose_values_differ_by_at_most_five_percent_count_as_equal(
     assert alike(other, one) is expected
 
 
-def test_the_ledger_finds_alike_candidates_and_counts_tests_of_the_same_operands() -> None:
+def test_the_ledger_finds_similar_candidates_and_counts_tests_of_the_same_operands() -> None:
     ledger = Ledger()
     first = ledger.enter(Tried(scaled(2.0), "not shown", (1.0,), fresh=True, tested=True))
     ledger.enter(Tried(scaled(4.0), "gain too small", (), fresh=True))
@@ -130,7 +130,7 @@ def test_the_ledger_finds_alike_candidates_and_counts_tests_of_the_same_operands
         (scaled(3.0), scaled(2.0, of=OTHER), False),
     ],
 )
-def test_a_candidate_is_further_if_it_changes_the_same_constants_more_in_the_same_direction(
+def test_a_candidate_is_stronger_if_it_changes_the_same_constants_more_in_the_same_direction(
     one: Candidate, other: Candidate, expected: bool
 ) -> None:
     assert further(one, other) is expected
@@ -208,7 +208,7 @@ def test_a_value_is_moved_if_it_belongs_to_one_site() -> None:
     assert found == pytest.approx([2.5, 1.6, 2.24, 1.78])
 
 
-def test_two_candidates_that_differ_in_one_value_have_a_ratio() -> None:
+def test_two_candidates_that_differ_in_one_value_are_compared_by_the_ratio_of_the_values() -> None:
     assert ratio_of(scaled(3.0), scaled(2.0)) == pytest.approx(1.5)
     for other in (scaled(2.0, WET), scaled(2.0, of=OTHER), scaled(-2.0)):
         assert ratio_of(scaled(3.0), other) is None
@@ -256,7 +256,7 @@ def acceptance(losses: dict[int, float], failed: Sequence[int] = (), **changes: 
     return replace(one, **changes)
 
 
-def test_missions_of_a_test_are_lost_beyond_the_slack_of_the_search() -> None:
+def test_a_mission_counts_as_lost_if_its_loss_exceeds_the_slack_of_the_search() -> None:
     missed, one = Missed(), scaled(2.0)
     goal = replace(GOAL, passing=True)
     losses = dict.fromkeys(range(20, 40), 0.0) | {21: 2.0, 22: 2.1, 23: 9.0}
@@ -476,7 +476,7 @@ def test_a_sensor_distinguishes_two_worlds_if_their_values_hardly_overlap(
     assert telling_sensors._overlap(order, sensor) == 1.0
 
 
-def test_a_step_on_a_scale_is_reported_as_a_factor() -> None:
+def test_a_step_on_a_logarithmic_scale_is_reported_as_a_factor() -> None:
     share = operand(3, "0.95", 0.95)
     step = stepped(share, 2.0, SHARE, mutations)
     assert step is not None

@@ -48,7 +48,7 @@ rospy.spin()
 """
 
 
-def test_values_near_one_and_small_offsets_have_a_second_scale_and_gains_do_not(
+def test_values_near_one_and_small_offsets_have_a_second_scale_but_gains_do_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "balance.py").write_text(NODE)

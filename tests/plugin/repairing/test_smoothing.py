@@ -51,7 +51,7 @@ def test_a_sensor_is_added_where_it_is_about_as_large_as_the_change() -> None:
 
 
 @pytest.mark.parametrize("factor", [1.1, 0.5, 5.0])
-def test_a_change_of_another_size_or_direction_is_only_scaled(factor: float) -> None:
+def test_a_change_whose_size_or_direction_does_not_match_a_sensor_is_only_scaled(factor: float) -> None:
     found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, factor),), LONG)))
     assert names(found) == ["scale"]
 

@@ -45,21 +45,21 @@ def _sizes(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("size", "stratum"), [(1.0, 0), (1.99, 0), (2.0, 1), (3.0, 2), (3.99, 2), (4.0, 3), (5.0, 3)]
 )
-def test_a_single_range_has_four_quarters(size: float, stratum: int) -> None:
+def test_a_single_range_is_divided_into_four_quarters(size: float, stratum: int) -> None:
     assert _stratum(order("", drawn={0: {"": size}}), 0) == stratum
 
 
 @pytest.mark.parametrize(
     ("one", "two", "stratum"), [(1.0, 1.0, 0), (2.9, 3.0, 1), (3.0, 2.9, 2), (5.0, 5.0, 3), (2.0, 4.0, 1)]
 )
-def test_the_first_two_ranges_have_two_halves_each(one: float, two: float, stratum: int) -> None:
+def test_with_two_ranges_each_is_divided_into_two_halves(one: float, two: float, stratum: int) -> None:
     given = order("a", "b", "c", drawn={0: {"a": one, "b": two, "c": 1.0}})
     assert _stratum(given, 0) == stratum
 
 
 @pytest.mark.parametrize("parts", [("",), ("a", "b")])
 @pytest.mark.parametrize("most", [4, 10, 12])
-def test_each_block_of_seeds_has_one_of_each_stratum(parts: tuple[str, ...], most: int) -> None:
+def test_each_block_of_seeds_contains_every_stratum_once(parts: tuple[str, ...], most: int) -> None:
     given = order(*parts)
     found = spread_seeds(given, "accept", most)
     assert len(found) == len(set(found)) == most
@@ -138,13 +138,13 @@ def test_a_repair_for_one_end_of_the_range_is_described(runs: Any, said: str) ->
     assert fits_a_part(order("", drawn=DRAWN), runs) == said
 
 
-def test_the_part_is_named_if_it_has_a_name() -> None:
+def test_the_description_names_the_part_of_the_drift_if_it_has_a_name() -> None:
     drawn = {seed: {"mud": one[""]} for seed, one in DRAWN.items()}
     said = fits_a_part(order("mud", drawn=drawn), {1: True, 2: True, 3: False})  # type: ignore[dict-item]
     assert said == "it works for sizes of mud from 1 to 2, but not for 4 to 4"
 
 
-def test_bands_are_described() -> None:
+def test_intervals_of_drift_sizes_are_described_in_words() -> None:
     assert bands_in_words(Ranged((), (LOW,), (HIGH,))) == f"it holds for {LOW}, but not for {HIGH}"
     assert (
         bands_in_words(Ranged((), (), (LOW, HIGH))) == f"it holds for no part of the range ({LOW} and {HIGH})"

@@ -177,7 +177,7 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     assert "mirrored.toml: not a template" in " ".join(done.stdout.str().split())
 
 
-def test_a_template_repairs_exchanged_axes_by_swapping_them(pytester: pytest.Pytester) -> None:
+def test_a_template_repairs_exchanged_axes_by_swapping_the_axes(pytester: pytest.Pytester) -> None:
     pytester.makefile(".py", follower=FOLLOWER, test_follow=FOLLOWS)
     pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
     pytester.runpytest(*RECORD).assert_outcomes(passed=1)

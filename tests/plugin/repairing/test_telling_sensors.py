@@ -51,14 +51,14 @@ def test_a_sensor_without_numbers_is_not_offered_to_templates() -> None:
 
 
 @pytest.mark.parametrize(("low", "high", "mean"), [(0, 1, 0.55), (-1, 0, 0.45), (-0.55, 0.45, 1.0)])
-def test_the_typical_size_of_a_sensor_is_that_in_the_drifted_world(
+def test_the_typical_size_of_a_sensor_is_measured_in_the_drifted_world(
     low: float, high: float, mean: float
 ) -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=low, high=high, bins=10)
     assert usual(order(0, 5, sensor), sensor) == pytest.approx(mean)
 
 
-def test_the_typical_size_of_a_sensor_in_the_designed_world_is_known_too() -> None:
+def test_the_typical_size_of_a_sensor_is_also_known_for_the_designed_world() -> None:
     sensor = Sensor("tool", topic="/tool", field="data", low=0, high=1, bins=10)
     asked = order(0, 5, sensor)
     assert usual(asked, sensor, asked.fixture.sample) == pytest.approx(0.05)
@@ -133,7 +133,7 @@ def test_statements_that_respond_come_first(tmp_path: Path, monkeypatch: pytest.
         assert first.source.source(first.node) == code
 
 
-def test_a_statement_responds_if_one_of_its_constants_gained_a_fifth_of_what_is_wanted() -> None:
+def test_a_statement_responds_if_one_of_its_constants_gained_a_fifth_of_the_wanted_gain() -> None:
     effects = {"a": (effect(1.0), effect(2.1)), "b": (effect(6.0),), "c": (effect(1.9),), "d": ()}
     assert structural._responding(effects, 10.0) == ("b", "a")
     assert structural._responding({"a": (effect(0.0),)}, 0.0) == ()

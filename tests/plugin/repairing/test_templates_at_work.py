@@ -202,7 +202,7 @@ class World:
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in SHIPPED.glob("*.toml")))
-def test_a_template_is_found_with_fitted_parameters_and_runs(
+def test_the_found_template_has_fitted_parameters_and_its_patch_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check_found(name, World(name, tmp_path), monkeypatch)
@@ -210,7 +210,7 @@ def test_a_template_is_found_with_fitted_parameters_and_runs(
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
 @pytest.mark.parametrize("body", BODIES)
-def test_a_template_is_found_for_any_origin_of_the_value(
+def test_a_template_is_found_wherever_the_value_comes_from(
     name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World(name, tmp_path, BODIES[body])

@@ -31,7 +31,7 @@ def test_a_degraded_test_has_its_verdict_loss_region_culprit_and_patch_as_junit_
     )
 
 
-def test_a_property_that_is_not_known_is_left_out(varied: Varied) -> None:
+def test_an_unknown_junit_property_is_left_out(varied: Varied) -> None:
     found = dict(ci.properties(varied(culprits=(), repair=None, region=Region())))
     assert [*found] == ["tarl_verdict", "tarl_p_drift", "tarl_p_loss", "tarl_loss", "tarl_loss_interval"]
 
@@ -41,7 +41,7 @@ def test_without_a_difference_neither_region_nor_culprit_is_named(varied: Varied
     assert [*found] == ["tarl_verdict", "tarl_p_drift", "tarl_p_loss", "tarl_loss"]
 
 
-def test_the_annotation_marks_the_line_with_the_whole_conclusion(
+def test_the_annotation_at_the_line_contains_the_whole_conclusion(
     varied: Varied, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("GITHUB_WORKSPACE", "/checkout")
@@ -56,7 +56,7 @@ def test_the_annotation_marks_the_line_with_the_whole_conclusion(
     )
 
 
-def test_a_drift_is_a_warning_and_slices_are_named_as_the_evidence(varied: Varied) -> None:
+def test_a_drift_without_loss_is_a_warning_and_slices_are_named_as_the_evidence(varied: Varied) -> None:
     drifted = Verdict("drifted", 0.001, 0.5, 0.0, 0.4, 0.5)
     one = varied(
         verdict=drifted, drift=None, culprits=(Culprit(SITE, 0.0, "slices"),), repair=None, region=Region()

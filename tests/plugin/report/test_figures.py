@@ -33,7 +33,7 @@ def test_terrain_splits_the_figure_of_the_shuttle_into_two_rows(shuttle):
     assert found["sites"][5] == [30, "vel = 5 * delta", "traveller.py"]
 
 
-def test_values_are_at_their_site_and_position_and_gaps_are_null(shuttle):
+def test_each_value_is_at_its_site_and_position_and_gaps_are_null(shuttle):
     true = figure(shuttle)["rows"][1]
     cell = shuttle.cells.index((12, 1))
     assert true["online"][5][12] == pytest.approx(shuttle.lists[0].online[cell, 5], rel=1e-4)
@@ -155,7 +155,7 @@ def test_scales_include_zero_and_all_values_and_have_few_ticks_at_round_numbers(
         (0.44, 0.2),
     ],
 )
-def test_ticks_are_the_next_larger_round_number_apart(width: float, step: float) -> None:
+def test_the_distance_of_ticks_is_the_next_larger_round_number(width: float, step: float) -> None:
     ticks = Scale(-width / 2, width / 2).ticks
     assert [round(later - earlier, 9) for earlier, later in pairwise(ticks)] == [step] * (len(ticks) - 1)
     assert ticks[0] - step < -width / 2 <= ticks[0] < 0.0 < ticks[-1] <= width / 2 < ticks[-1] + step

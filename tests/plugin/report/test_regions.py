@@ -42,7 +42,7 @@ RING = st.sets(st.tuples(st.integers(0, 2), st.integers(0, 7), st.integers(0, 1)
 
 
 @given(RING)
-def test_boxes_that_meet_at_the_ends_of_an_angle_are_joined_to_one_box(cells):
+def test_boxes_that_meet_at_the_ends_of_the_range_of_an_angle_are_joined(cells):
     cover = boxes(cells)
     joined = closed(cover, 1, 8)
     assert {(x, angle % 8, z) for x, angle, z in inside(joined)} == cells
@@ -51,7 +51,7 @@ def test_boxes_that_meet_at_the_ends_of_an_angle_are_joined_to_one_box(cells):
     assert not [box for box in joined if box[1][0] == 0 and (box[0], box[2]) in ends]
 
 
-def test_the_joined_box_of_an_angle_extends_beyond_the_range_by_its_part_behind_the_end():
+def test_the_joined_box_of_an_angle_extends_beyond_the_end_of_the_range():
     assert closed((((4, 4), (0, 1)), ((4, 4), (6, 7))), 1, 8) == (((4, 4), (6, 9)),)
 
 
@@ -96,13 +96,13 @@ def test_the_description_keeps_gaps_of_visited_cells():
     assert words([(3, 1), (6, 1)], seen=seen) == "x 3-4 or 6-7 m, terrain true"
 
 
-def test_a_long_list_of_boxes_is_cut():
+def test_a_long_list_of_boxes_is_shortened():
     cells = [(2 * i, i % 2, i) for i in range(5)]
     seen = [(x, t, lane) for x in range(10) for t in (0, 1) for lane in range(5)]
     assert words(cells, (X, TERRAIN, LANE), seen).endswith("; and 2 more")
 
 
-def test_a_long_list_of_intervals_is_cut_after_the_unit():
+def test_a_long_list_of_intervals_is_shortened_after_the_unit():
     everything = [(x, 1) for x in range(10)]
     assert words([(x, 1) for x in (0, 2, 4, 6, 8)], seen=everything) == (
         "x 0-1 or 2-3 or 4-5 m or 2 more, terrain true"

@@ -95,7 +95,7 @@ def test_without_a_repair_the_next_step_is_to_search_for_one(unrepaired):
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 
 
-def test_without_a_difference_the_detectable_loss_is_stated_and_no_line_blamed(unchanged):
+def test_without_a_difference_the_detectable_loss_is_stated_and_no_line_is_blamed(unchanged):
     text = told(unchanged, 200)
     assert "No difference was found" in text
     assert "a loss of 0.71 per episode would have been" in text

@@ -12,7 +12,7 @@ from pytest_tarl.report import amounts, repair_words, words
     (0.0, "0.00"), (9.78123, "9.78"), (-0.5, "-0.50"), (0.012345, "0.0123"), (2614.4, "2614"), (-123456.7, "-123457"),
     (1.5e7, "1.5e+07"), (math.nan, "n/a"), (None, "n/a"),
 ])  # fmt: skip
-def test_amounts_have_about_three_digits(value, text):
+def test_rewards_are_printed_with_about_three_digits(value, text):
     assert amounts.amount(value) == text
 
 

@@ -105,14 +105,14 @@ def test_kept_episodes_are_reused_after_the_first_was_repeated(path: Path) -> No
     assert again.workers == 3
 
 
-def test_a_checked_run_repeats_no_episode(path: Path) -> None:
+def test_a_run_that_was_already_checked_repeats_no_episode(path: Path) -> None:
     first_run(path, 1)
     inner = Inner()
     resumed(path, inner, checked=True)(EpisodePlan(1))
     assert inner.ran == []
 
 
-def test_the_repetition_is_kept_as_the_second_run_of_its_plan(path: Path) -> None:
+def test_the_repeated_episode_is_kept_as_the_second_run_of_its_plan(path: Path) -> None:
     first_run(path, 1)
     inner = Inner()
     again = resumed(path, inner)
@@ -122,7 +122,7 @@ def test_the_repetition_is_kept_as_the_second_run_of_its_plan(path: Path) -> Non
 
 
 @pytest.mark.parametrize(("reward", "changes"), [(2.0, {}), (1.0, {"passed": False})])
-def test_another_result_of_the_repetition_is_refused(path: Path, reward: float, changes: Any) -> None:
+def test_a_repeated_episode_with_another_result_is_refused(path: Path, reward: float, changes: Any) -> None:
     first_run(path, 7)
     with pytest.raises(RecordingError, match=r"episode with seed 7 now has another result.*delete shown to"):
         resumed(path, Inner(reward, changes))(EpisodePlan(7))
@@ -148,7 +148,7 @@ def test_episodes_of_another_scope_or_plan_are_run(path: Path) -> None:
     "changes",
     [{"broken": "NameError"}, {"stuck": True}, {"older": (Path("node.py"),)}],
 )
-def test_episodes_that_are_no_evidence_are_not_kept(path: Path, changes: Any) -> None:
+def test_episodes_that_are_not_evidence_are_not_kept(path: Path, changes: Any) -> None:
     journal = opened(path)
     KeptRollout(Inner(changes=changes), journal, SCOPE, "shown")(EpisodePlan(1))
     assert journal.episodes == 0
@@ -179,7 +179,7 @@ def _episode() -> bytes:
     return run_message(EpisodeRun(EpisodePlan(1), trace(1.0), passed=True))
 
 
-def test_a_kept_episode_counts_as_cancelled_and_is_passed_on_at_once(path: Path) -> None:
+def test_a_kept_episode_is_passed_on_at_once_and_its_request_counts_as_cancelled(path: Path) -> None:
     first_run(path, 1)
     pending = resumed(path, Inner(), checked=True).begin(EpisodePlan(1))
     heard: list[EpisodeRun] = []

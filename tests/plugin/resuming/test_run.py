@@ -105,7 +105,7 @@ def test_one_test_has_one_journal_for_all_its_rollouts(root: Path) -> None:
 @pytest.mark.parametrize(
     ("before", "finished", "checked"), [(False, True, False), (True, False, False), (True, True, True)]
 )
-def test_only_a_finished_test_has_been_checked(
+def test_only_a_finished_test_counts_as_checked(
     root: Path, before: bool, finished: bool, checked: bool
 ) -> None:
     test = Session(root).test()
@@ -178,7 +178,7 @@ def test_episodes_under_other_conditions_are_mentioned_only_on_request(root: Pat
         Session(root, seed=1, resume=True).test().keeping(ROLLOUT, NOTHING, ())
 
 
-def test_without_kept_episodes_only_the_request_is_answered(root: Path) -> None:
+def test_without_kept_episodes_a_message_appears_only_if_resuming_was_requested(root: Path) -> None:
     for resume, count in ((True, 1), (False, 0)):
         session = Session(root, resume=resume)
         session.test().keeping(ROLLOUT, NOTHING, ())
@@ -233,7 +233,7 @@ def test_only_a_complete_run_removes_the_episodes_of_finished_tests(
     assert test.journal._file is None
 
 
-def test_tests_that_share_a_total_are_known_again(root: Path) -> None:
+def test_tests_that_share_a_total_number_of_episodes_are_recognised(root: Path) -> None:
     shared, alone = Session(root, total=100), Session(root)
     assert shared.test() is shared.test()
     assert shared.test() is not shared.test(item(root, name="test_other"))

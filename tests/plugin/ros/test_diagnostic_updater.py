@@ -109,7 +109,7 @@ def test_a_topic_is_checked_for_its_frequency_and_the_age_of_its_stamps(head: st
     assert float(values["Latest timestamp delay:"]) == pytest.approx(-2.0, abs=1e-6)
 
 
-def test_a_name_that_is_not_there_is_told(start: Start) -> None:
+def test_a_missing_name_is_reported(start: Start) -> None:
     with pytest.raises(
         UnsupportedApiError, match=r"diagnostic_updater\.Nothing is not in the in-process ROS"
     ):

@@ -127,7 +127,7 @@ def test_python_does_not_wait_for_the_pools_of_an_episode_when_it_ends() -> None
     assert not [thread for thread in pools._threads_queues if "_tarl_task" in vars(thread)]
 
 
-def test_a_server_in_a_thread_does_not_hold_up_the_clock(start: Start) -> None:
+def test_a_server_in_a_thread_does_not_stop_the_virtual_clock(start: Start) -> None:
     ros = start("")
     out = heard(ros, "/out")
     start(HEAD.format(name="server") + """

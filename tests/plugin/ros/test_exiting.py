@@ -42,7 +42,7 @@ def test_an_exit_with_a_status_fails_the_test_with_a_sentence(tank: pytest.Pytes
 
 
 @pytest.mark.parametrize("place", ["loop", "callback"])
-def test_after_an_exit_without_error_the_node_is_gone_and_the_test_judges(
+def test_after_an_exit_without_error_the_test_continues_without_the_node(
     tank: pytest.Pytester, place: str
 ) -> None:
     ending(tank, place, 0)

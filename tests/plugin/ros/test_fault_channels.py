@@ -49,34 +49,34 @@ def arrivals(
 SENT = [(0.0, "a"), (1.0, "b"), (2.0, "c"), (3.0, "d")]
 
 
-def test_a_message_is_lost_below_the_probability() -> None:
+def test_a_message_is_lost_if_the_random_number_is_below_the_probability() -> None:
     found = arrivals(faults.dropout("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.51, 0.0)
     assert found == [[], [(0.0, "b")], [(0.0, "c")], []]
 
 
-def test_a_message_arrives_twice_below_the_probability() -> None:
+def test_a_message_arrives_twice_if_the_random_number_is_below_the_probability() -> None:
     found = arrivals(faults.duplicates("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.51, 0.0)
     assert [len(one) for one in found] == [2, 1, 1, 2]
     assert found[0] == [(0.0, "a"), (0.0, "a")]
 
 
-def test_an_exchanged_message_waits_for_its_successor_which_draws_no_number() -> None:
+def test_a_reordered_message_waits_for_its_successor_which_draws_no_random_number() -> None:
     found = arrivals(faults.reordering("/t", 1.0), 0.5, SENT, 0.49, 0.5, 0.3)
     assert found == [[], [(0.0, "b"), (0.0, "a")], [(0.0, "c")], []]
 
 
-def test_a_frozen_value_is_that_before_the_moment_until_the_size_has_passed() -> None:
+def test_a_frozen_topic_repeats_its_last_value_for_the_duration_of_the_fault() -> None:
     found = arrivals(faults.freeze("/t", 9.0, at=1.0), 2.0, SENT)
     assert found == [[(0.0, "a")], [(0.0, "a")], [(0.0, "a")], [(0.0, "d")]]
     assert arrivals(faults.freeze("/t", 9.0, at=0.5), 1.0, SENT)[1:3] == [[(0.0, "a")], [(0.0, "c")]]
     assert arrivals(faults.freeze("/t", 9.0), 2.5, SENT[1:]) == [[(0.0, "b")], [(0.0, "b")], [(0.0, "d")]]
 
 
-def test_every_message_is_late_by_the_size() -> None:
+def test_every_message_is_delayed_by_the_size_of_the_fault() -> None:
     assert arrivals(faults.latency("/t", 9.0), 0.25, SENT[:2]) == [[(0.25, "a")], [(0.25, "b")]]
 
 
-def test_varying_delays_are_shares_of_the_size_and_keep_the_order() -> None:
+def test_varying_delays_are_random_shares_of_the_size_and_keep_the_order_of_messages() -> None:
     found = arrivals(faults.jitter("/t", 9.0), 4.0, SENT, 0.75, 0.25, 0.5, 0.0)
     # a arrives at 0 + 3; b would at 1 + 1 but waits for a; c at 2 + 2; d would at 3 + 0 but waits for c
     assert found == [[(3.0, "a")], [(2.0, "b")], [(2.0, "c")], [(1.0, "d")]]
@@ -110,7 +110,7 @@ def test_a_fault_of_a_field_changes_only_that_field_of_a_copy(
     assert (delay, message.x, message.y, sent.x) == (0.0, expected, value, value)
 
 
-def test_not_a_number_is_not_rounded() -> None:
+def test_nan_is_not_rounded() -> None:
     ((_, message),) = faults.quantisation("/t", "x", 1).begin(0.5, Draws())(Vector3(x=math.nan), 0.0)  # type: ignore[arg-type]
     assert math.isnan(message.x)
 
@@ -163,7 +163,7 @@ def test_arrays_keep_their_type() -> None:
 
 
 @pytest.mark.parametrize("value", [True, None, "1", b"1", ["a"], [True]])
-def test_what_is_no_number_is_refused(value: Any) -> None:
+def test_a_value_that_is_not_a_number_is_refused(value: Any) -> None:
     with pytest.raises(TypeError, match="not a number"):
         altered(SimpleNamespace(x=value), "x", lambda x: x)
 
@@ -191,7 +191,7 @@ class Both:
         self.items[at] = value
 
 
-def test_a_message_with_items_also_has_attributes() -> None:
+def test_values_of_a_message_are_stored_as_items_or_as_attributes() -> None:
     message = Both()
     store(message, "x", 3.0)
     store(message, "1", 4.0)
@@ -201,7 +201,7 @@ def test_a_message_with_items_also_has_attributes() -> None:
     assert vars(other) == {"0": 1.0}
 
 
-def test_sizes_begin_at_none_and_the_nominal_size_is_no_fault() -> None:
+def test_the_nominal_size_of_a_fault_means_no_fault() -> None:
     assert faults.bias("/t", "x", -1, 2).extent == Span(-1.0, 2.0, 0.0)
     assert faults.scale("/t", "x", 1, 2).extent == Span(1.0, 2.0, 1.0)
     assert faults.noise("/t", "x", 3).extent == Span(0.0, 3.0, 0.0)
@@ -233,7 +233,7 @@ def test_sizes_begin_at_none_and_the_nominal_size_is_no_fault() -> None:
         lambda: faults.restart(3, 1.0, at=1.0),  # type: ignore[arg-type]
     ],
 )
-def test_sizes_and_names_that_make_no_sense_are_refused(make: Any) -> None:
+def test_invalid_sizes_and_names_are_refused(make: Any) -> None:
     with pytest.raises(SettingsError, match=r"^faults\."):
         make()
 
@@ -245,7 +245,7 @@ def test_a_moment_is_a_time_that_the_clock_can_represent(value: Any, found: floa
     assert moment(value) == found
 
 
-def test_a_restart_ends_the_node_at_its_moment_for_its_size() -> None:
+def test_a_restart_ends_the_node_at_the_given_moment_for_the_given_duration() -> None:
     asked: list[tuple[str, float, float]] = []
     ros = SimpleNamespace(
         interrupt=lambda *given: asked.append(given),

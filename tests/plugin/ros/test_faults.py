@@ -86,7 +86,7 @@ def test_the_share_of_lost_and_repeated_messages_is_the_size() -> None:
     assert 480 < len(twice) < 560
 
 
-def test_all_reordered_messages_arrive_and_some_after_their_successor() -> None:
+def test_all_messages_arrive_and_reordered_ones_arrive_after_their_successor() -> None:
     sent = [float(i) for i in range(100)]
     found = values(faults.reordering("/in", 1.0), 0.4, sent)
     assert sorted(found) in (sent, sent[:-1])  # the last message may still wait for a successor
@@ -95,7 +95,7 @@ def test_all_reordered_messages_arrive_and_some_after_their_successor() -> None:
     assert values(faults.reordering("/in", 1.0), 1.0, [1, 2, 3, 4]) == [2, 1, 4, 3]
 
 
-def test_a_frozen_topic_repeats_its_last_message_for_a_while() -> None:
+def test_a_frozen_topic_repeats_its_last_message_for_the_given_time() -> None:
     sent = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
     assert values(faults.freeze("/in", 9.0, at=0.15), 0.2, sent) == [1.0, 2.0, 2.0, 2.0, 5.0, 6.0]
     assert values(faults.freeze("/in", 9.0), 9.0, sent) == [1.0] * 6

@@ -80,7 +80,7 @@ def test_a_node_in_raw_mode_gets_each_key(way: str, start: Start) -> None:
     assert not ros.shutdown_errors
 
 
-def test_a_read_is_interrupted_at_the_end_as_by_ctrl_c(start: Start) -> None:
+def test_a_node_that_still_reads_at_the_end_is_interrupted_as_by_ctrl_c(start: Start) -> None:
     body = "ended = []\ntry:\n    input()\nexcept KeyboardInterrupt:\n    ended.append(rospy.is_shutdown())"
     ros = start(NODE.format(body=body))
     ros.step(0.1)
@@ -104,7 +104,7 @@ def test_each_node_has_its_own_keyboard(start: Start) -> None:
         ros.type("c", node="/third")
 
 
-def test_a_node_that_waits_in_vain_is_named(start: Start) -> None:
+def test_a_node_that_waits_for_a_key_that_never_comes_is_named(start: Start) -> None:
     ros = start(NODE.format(body=WAITING["input"]))
     ros.step(0.1)
     assert ros.notes == (

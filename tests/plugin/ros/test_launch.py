@@ -171,7 +171,7 @@ def test_ros1_nodes_get_names_parameters_and_modules_of_their_own(tarl: Tarl) ->
     )
 
 
-def test_a_note_names_nodes_that_have_one_name(tarl: Tarl, tmp_path: Path) -> None:
+def test_a_note_names_nodes_that_have_the_same_name(tarl: Tarl, tmp_path: Path) -> None:
     node = '<node pkg="one" type="relay.py" name="same"/>'
     write(tmp_path, {"one/launch/twice.launch": f"<launch>{node}{node}</launch>"})
     tarl.launch("twice.launch")

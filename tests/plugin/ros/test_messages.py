@@ -80,7 +80,7 @@ def test_parts_of_services_of_ros_1_can_be_copied(part: str) -> None:
     assert pickle.loads(pickle.dumps(made)) == made == copy.deepcopy(made)
 
 
-def test_ros1_constructor_takes_all_by_position_or_any_by_keyword() -> None:
+def test_ros1_constructor_takes_all_fields_by_position_or_some_by_keyword() -> None:
     vector = message_type("geometry_msgs/Vector3")
     assert vector(1.0, 2.0, 3.0) == vector(x=1.0, y=2.0, z=3.0)
     assert vector(y=2.0).x == 0.0
@@ -108,7 +108,7 @@ def test_ros1_messages_have_the_checksums_of_the_real_ones(name: str, checksum: 
     assert find_class("ros1", *name.split("/"))._md5sum == checksum  # type: ignore[union-attr]
 
 
-def test_ros1_message_shows_as_rostopic_does() -> None:
+def test_ros1_message_is_printed_as_by_rostopic() -> None:
     header = message_type("std_msgs/Header")(frame_id="map")
     assert str(header) == 'seq: 0\nstamp: \n  secs: 0\n  nsecs:         0\nframe_id: "map"'
 

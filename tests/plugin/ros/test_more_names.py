@@ -201,7 +201,7 @@ def test_modules_that_the_test_puts_into_sys_modules_are_imported(
         start("from roslib import names\n", ros=ros)
 
 
-def test_a_package_of_the_test_takes_precedence_over_the_stand_in_of_its_part(
+def test_a_package_of_the_test_takes_precedence_over_the_stand_in_of_the_same_name(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package, part = ModuleType("sound_play"), ModuleType("sound_play.libsoundplay")

@@ -72,7 +72,7 @@ def test_an_error_says_what_is_missing_and_what_to_do(line: str, start: Start) -
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_a_node_that_ends_without_arguments_is_told_to_get_them(block: str, start: Start) -> None:
+def test_the_error_of_a_node_without_its_arguments_advises_passing_them(block: str, start: Start) -> None:
     with pytest.raises(NodeError) as error:
         start(block)
     assert re.search(BLOCKS[block], str(error.value))
@@ -85,7 +85,7 @@ def test_other_errors_get_no_advice(line: str, start: Start) -> None:
     assert str(error.value).endswith("line 4).")
 
 
-def test_a_node_may_do_without_a_module_that_is_not_implemented(start: Start) -> None:
+def test_a_node_may_continue_without_a_module_that_is_not_implemented(start: Start) -> None:
     ros = start("""
         import rospy
         found = []

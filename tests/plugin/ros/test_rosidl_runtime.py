@@ -54,7 +54,7 @@ def test_a_node_subscribes_to_a_type_that_it_knows_by_name_only(start: Start) ->
     assert (message.linear.x, message.angular.z) == (-0.5, 0.25)
 
 
-def test_names_lead_to_messages_services_and_actions() -> None:
+def test_classes_of_messages_services_and_actions_are_found_by_name() -> None:
     assert get_message("std_msgs/msg/String") is String
     assert get_interface("std_msgs/String") is String
     assert get_service("std_srvs/srv/SetBool") is message_type("std_srvs/srv/SetBool")
@@ -64,7 +64,7 @@ def test_names_lead_to_messages_services_and_actions() -> None:
 @pytest.mark.parametrize(
     "name", ["String", "/msg/String", "std_msgs/msg/", "std_msgs/text/String", "a/msg/b/C"]
 )
-def test_a_name_of_another_form_is_a_value_error(name: str) -> None:
+def test_a_type_name_of_another_form_is_a_value_error(name: str) -> None:
     with pytest.raises(ValueError, match="Invalid name"):
         get_message(name)
 
@@ -103,7 +103,7 @@ def test_long_arrays_and_strings_are_cut_or_described() -> None:
     assert message_to_ordereddict(text, no_str=True)["data"] == "<string length: <7>>"
 
 
-def test_csv_has_the_values_of_the_messages_inside() -> None:
+def test_csv_contains_the_values_of_nested_messages() -> None:
     odometry = Odometry(child_frame_id="base")
     odometry.header.stamp.sec = 7
     assert message_to_csv(odometry).startswith("7,0,,base,0.0,0.0,0.0,0.0,0.0,0.0,1.0,")
@@ -140,7 +140,7 @@ def test_a_message_is_filled_from_dictionaries_lists_and_messages() -> None:
     assert list(floats.data) == [1.0, 2.0]
 
 
-def test_filling_goes_back_and_forth() -> None:
+def test_a_message_converted_to_a_dictionary_and_back_is_unchanged() -> None:
     polygon = Polygon()
     set_message_fields(polygon, {"points": [{"x": 1.0, "y": 2.0, "z": 0.5}, {"z": -1.0}]})
     twin = Polygon()
@@ -149,7 +149,7 @@ def test_filling_goes_back_and_forth() -> None:
     assert len(twin.points) == 2
 
 
-def test_headers_and_times_are_stamped_later_if_they_are_expanded() -> None:
+def test_time_fields_to_stamp_later_are_returned_if_requested() -> None:
     odometry = Odometry()
     stamps = set_message_fields(odometry, {"header": "auto"}, expand_header_auto=True)
     now = message_type("builtin_interfaces/msg/Time")(sec=5)

@@ -127,7 +127,7 @@ ended, left = rospy.get_time(), sm.preempt_requested()
         ('Step("a").execute(smach.Remapper(smach.UserData())["x"])', "key 'x' but the only keys"),
     ],
 )  # fmt: skip
-def test_mistakes_are_told(code: str, error: str, start: Start) -> None:
+def test_mistakes_in_a_state_machine_are_reported(code: str, error: str, start: Start) -> None:
     with pytest.raises(Exception, match=error):
         run(start, f'sm = smach.StateMachine(outcomes=["end"])\nwith sm:\n'
                    f'    smach.StateMachine.add("STEP", Step("step"))\n{code}')  # fmt: skip

@@ -78,7 +78,7 @@ def test_chains_have_links_and_joints_from_the_root_to_the_tip(arm: Any) -> None
         arm.get_chain("finger", "base")
 
 
-def test_a_joint_has_its_limits_and_what_the_description_lacks_is_none(arm: Any) -> None:
+def test_a_joint_has_its_limits_and_missing_elements_are_none(arm: Any) -> None:
     shoulder, wrist, grip = arm.joints
     assert (shoulder.type, shoulder.joint_type, shoulder.parent, shoulder.child) == (
         "revolute",
