@@ -73,7 +73,7 @@ RATES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class World:
-    """A distribution of total rewards, with checks whether bounds computed from a sample hold."""
+    """A distribution of total rewards, with checks of whether bounds computed from a sample hold."""
 
     name: str
 

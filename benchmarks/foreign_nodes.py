@@ -178,7 +178,8 @@ def report(outcomes: Sequence[Outcome]) -> None:
     ran = [one for one in outcomes if not one.apart]
     started = [one for one in ran if one.starts]
     print(
-        f"\n{len(started)} of {len(ran)} node scripts start without help; {len(outcomes) - len(ran)} are apart.\n"
+        f"\n{len(started)} of {len(ran)} node scripts start without help; {len(outcomes) - len(ran)} others are "
+        "not counted.\n"
     )
     print("| what they do | scripts |\n|---|---|")
     for verdict, count in Counter(one.verdict for one in ran).most_common():

@@ -117,7 +117,7 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
 
 
 def makes_node(path: Path, seen: set[Path]) -> bool:
-    """Return whether a module, or one of its package that it imports, makes a node."""
+    """Return whether a module, or a module of the same package that it imports, makes a node."""
     if path in seen or not path.is_file():
         return False
     seen.add(path)

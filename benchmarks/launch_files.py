@@ -1,4 +1,4 @@
-"""Compare launch files as TARL reads them, without executing anything, with what roslaunch and launch make of them.
+"""Compare what TARL reads from launch files, executing nothing, with the results of roslaunch and launch.
 
     python benchmarks/launch_files.py FOLDER... --ros1 PYTHON[:PATH] --ros2 PYTHON[:PATH...] [--show N]
 

@@ -1,9 +1,9 @@
 """Measure time and memory at very large sizes: whether they grow in proportion, and where the limit is.
 
-`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. It prints CPU seconds and
-the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100
-MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if time or
-memory per unit more than triples from the second size to the last.
+`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process. The script prints
+CPU seconds and the peak of resident memory, in total and per unit. `--share 1` runs up to 10⁶ messages per
+episode, messages of 100 MB, 10,000 sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The
+exit status is 1 if time or memory per unit more than triples from the second size to the last.
 """
 
 from __future__ import annotations

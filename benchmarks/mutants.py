@@ -261,7 +261,8 @@ def tried(
 ) -> Outcome:
     """Insert a fault, run the tests that reach it, and remove it.
 
-    It is caught if the failed test, or after a timeout all tests, pass within the same time without the fault.
+    The fault is caught if the failed test (after a timeout, all tests) passes within the same time without
+    the fault.
     """
     if not tests:
         return Outcome(fault, "unreached", 0)

@@ -1,10 +1,11 @@
 """Run a simulated day of `observe` at 100 Hz as fast as possible, to see whether memory grows or steps are lost.
 
 `python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one
-mission per hour, and rotates the log by size. It prints the resident memory of the node's process and of the writer
-every hour. Then it reads the log back: each step must occur once, in order, and each second must have all of its
-steps. The exit status is 1 if a step is missing, if the median memory of the last quarter exceeds that of the second
-quarter by more than --growth MB, or if the node's process holds more objects.
+mission per hour, and rotates the log by size. The script prints the resident memory of the node's process and
+of the writer every hour. Then it reads the log back: each step must occur once, in order, and each second
+must have all of its steps. The exit status is 1 if a step is missing, if the median memory of the last
+quarter exceeds that of the second quarter by more than --growth MB, or if the node's process holds more
+objects.
 
 The simulated clock stands still while more than a second of steps waits for the observer's thread, since a robot's
 clock never runs ahead of that thread. Otherwise the resident memory would show how far the clock ran ahead: the heap

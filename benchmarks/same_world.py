@@ -4,9 +4,10 @@
 
 Thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
 benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a `pytest --tarl-record` and a
-`pytest --tarl-online` with their own seeds. Its result is read from the JSON that the second command writes. With
-`--committed` a world is recorded once and compared repeatedly, as in CI. Results are appended to a file (--found).
-Comparisons in the file are not repeated, so a run can be interrupted and resumed.
+`pytest --tarl-online` with their own seeds. The result of a comparison is read from the JSON that the second
+command writes. With `--committed` a world is recorded once and compared repeatedly, as in CI. Results are
+appended to a file (--found). Comparisons in the file are not repeated, so a run can be interrupted and
+resumed.
 """
 
 from __future__ import annotations

@@ -3,11 +3,11 @@
     python benchmarks/stress.py [TASK ...] [--harmless 25] [--grids FILE]
 
 The tasks are those of benchmarks/drift, and the examples whose drift is a single number. Each has one direction, from
-its nominal value to its drift. The grid has 41 values, each with 40 episodes on its own seeds. Its boundary is where
-the interpolated margin first crosses zero. A line for each task gives both boundaries as shares of the range, the
-distance between them, and the numbers of episodes. With `--harmless N`, each task also gets N runs on the part of the
-range up to half of the grid's boundary. With `--grids`, the grid's boundary of each task is added to a JSON Lines file;
-boundaries that the file contains are not measured again.
+its nominal value to its drift. The grid has 41 values, each with 40 episodes on its own seeds. The boundary
+of the grid is where the interpolated margin first crosses zero. A line for each task gives both boundaries as
+shares of the range, the distance between them, and the numbers of episodes. With `--harmless N`, each task
+also gets N runs on the part of the range up to half of the grid's boundary. With `--grids`, the grid's
+boundary of each task is added to a JSON Lines file; boundaries that the file contains are not measured again.
 """
 
 from __future__ import annotations

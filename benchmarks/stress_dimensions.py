@@ -15,7 +15,7 @@ cost is the distance from nominal; otherwise it is the margin above the largest 
 seeds confirm it; these episodes are not charged. Each method may offer its nearest OFFERS failing drifts, of which
 the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it confirmed, for which it spent episodes,
 and those that it expects to fail. The method `confirmed` offers only the confirmed ones of the same run. A cell
-counts for how many seeds `ours` and `confirmed` are at least as near.
+of the table gives the number of seeds for which `ours` and `confirmed` are at least as near as the peer.
 """
 
 from __future__ import annotations
@@ -181,8 +181,8 @@ class Uniform:
 class Process:
     """A peer in its own process and environment.
 
-    It writes a point and reads the point's cost, each as a line of JSON. If it ends with an error, the points that it
-    asked for before that count.
+    The peer writes a point and reads the point's cost, each as a line of JSON. If the peer ends with an
+    error, the points that it asked for before the error still count.
     """
 
     def __init__(self, home: Path, script: str, size: int, seed: int, seconds: float) -> None:

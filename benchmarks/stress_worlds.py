@@ -1,9 +1,9 @@
 """Worlds of four directions, defined by formulas, in which the nearest failing drift is known up to noise.
 
 The reward has noise that depends only on the seed, as in a simulation, and a quarter as much noise that also depends on
-the drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. It returns whether the
-episode passes, and its reward. The guarantee is that 95 % of the episodes pass and that at most TOLERANCE of the reward
-is lost.
+the drift. Each world takes a drift x in units of the ranges (0 is nominal) and random numbers. A world
+returns whether the episode passes, and the reward of the episode. The guarantee is that 95 % of the episodes
+pass and that at most TOLERANCE of the reward is lost.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Further worlds of four directions, written after the search and not run while it was developed.
 
-They follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
-directions go from -0.5 to 0.5, the last two from 0 to 1.
+The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
+The first two directions go from -0.5 to 0.5, the last two from 0 to 1.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Six more worlds of four directions, written without knowledge of the search and never run with it before.
 
-They follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
-directions go from -0.5 to 0.5, the last two from 0 to 1. Each is a small simulation; its docstring names the shape of
-its failures.
+The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
+The first two directions go from -0.5 to 0.5, the last two from 0 to 1. Each is a small simulation; its
+docstring names the shape of its failures.
 
     python benchmarks/stress_worlds_3.py     # sample each world: nominal episodes and the share of drifts that fail
 """
@@ -35,7 +35,10 @@ def touchdown(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def rotor(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Run between two resonances of a shaft; drifts of its speed or stiffness approach either. Two separate regions."""
+    """Run between two resonances of a shaft; drifts of the shaft's speed or stiffness approach one of them.
+
+    Two separate regions.
+    """
     speed, stiffness = 1.0 + 0.7 * x[0], 1.0 + 0.35 * x[1]
     unbalance, damping = 0.02 * (1.0 + x[2]), 0.06 * (1.0 - 0.6 * x[3])
     swing = 0.0
@@ -60,7 +63,7 @@ def supplies(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 
 
 def aliased(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
-    """Reject a vibration by sampling at 50 Hz; close to 50 Hz it looks like a constant. A thin band."""
+    """Reject a vibration by sampling at 50 Hz; a vibration close to 50 Hz looks constant. A thin band."""
     speed, gear, strong, noise = 1.0 + 0.5 * x[0], 1.0 + 0.25 * x[1], 0.6 + 0.5 * x[2], 0.02 + 0.05 * x[3]
     frequency = 41.0 * speed * gear
     times = np.arange(150) / 50.0

@@ -1,9 +1,10 @@
 """Six closed loops of a robot or a plant, each in four directions, written without knowledge of the search.
 
-They follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal. The first two
-directions go from -0.5 to 0.5, the last two from 0 to 1. Each world steps a model under a controller that was tuned at
-nominal. Its docstring gives the model, the controller, what passes, and the four directions in physical units; it does
-not say where the failures are. `QUIET_WORLDS` are two of the six on a fraction of their ranges, where nothing fails.
+The worlds follow the conventions of stress_worlds.py: a drift x is in units of the ranges, and 0 is nominal.
+The first two directions go from -0.5 to 0.5, the last two from 0 to 1. Each world steps a model under a
+controller that was tuned at nominal. The docstring of a world gives the model, the controller, what passes,
+and the four directions in physical units; it does not say where the failures are. `QUIET_WORLDS` are two of
+the six on a fraction of their ranges, where nothing fails.
 
     python benchmarks/stress_worlds_4.py     # sample each world: nominal episodes and the share of drifts that fail
 """
@@ -224,10 +225,10 @@ def tank(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
 def berth(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
     """Bring a boat into a berth beside a pier, in a current and gusts.
 
-    Integral line-of-sight guidance steers the boat. Its two propellers set speed and turn rate, and the speed falls
-    with the distance. The manoeuvre passes if the boat arrives within 60 s, less than 0.9 m from the middle of the
-    berth, at less than 0.7 m/s, with a heading error below 0.5 rad, and never touched the pier 1.5 m to its right. The
-    reward falls with the mean distance from the line.
+    Integral line-of-sight guidance steers the boat. The two propellers of the boat set speed and turn rate,
+    and the speed falls with the distance. The manoeuvre passes if the boat arrives within 60 s, less than 0.9
+    m from the middle of the berth, at less than 0.7 m/s, with a heading error below 0.5 rad, and never
+    touched the pier 1.5 m to its right. The reward falls with the mean distance from the line.
 
     Directions: the current across (-0.16 to 0.16 m/s, positive away from the pier) and along (-0.2 to 0.2 m/s,
     positive towards the berth), age of the position (0 to 2.5 s), and thrust that the left propeller lost (0 to 70 %).
@@ -281,8 +282,8 @@ QUIET_WORLDS: Mapping[str, World] = {one.__name__: one for one in (quiet_quadrot
 def sampled(name: str, world: World, drifts: int, episodes: int) -> str:
     """Return the table row of a world: the results of its nominal episodes and of episodes under random drifts.
 
-    A drift breaks the guarantee here if one of its episodes fails or their mean reward is too low. Over few episodes
-    this overestimates the share for a world whose failures are rare.
+    A drift breaks the guarantee here if one of its episodes fails or their mean reward is too low. With few
+    episodes, this criterion overestimates the share of failing drifts in a world whose failures are rare.
     """
     draws, started = np.random.default_rng(0), process_time()
     usual = [world(np.zeros(4), np.random.default_rng([1, seed])) for seed in range(2000)]

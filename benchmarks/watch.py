@@ -55,7 +55,7 @@ class Alarms:
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return the missions from the start of a drift to the alarm, or None if there is none or an earlier one."""
+        """Return the missions from the start of a drift to the first alarm; None if it comes earlier or never."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 

@@ -105,7 +105,7 @@ def total_range(world: str) -> Range | None:
 def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixture:
     """Return a recording of missions drawn with replacement, with the cells that they visit.
 
-    It contains the bounds of `--tarl-record`: on success and, with a declared range, on the mean.
+    The recording contains the bounds of `--tarl-record`: on success and, with a declared range, on the mean.
     """
     chosen = gathered(pool, rng.integers(pool.episodes, size=OFFLINE))
     seen = np.unique(chosen.chain.cell)

@@ -102,7 +102,7 @@ def fetch(package: Package) -> None:
 
 
 def unpack(package: Package, tarball: bytes) -> None:
-    """Write the files to store from a tarball. Raise AssetsError if its digest is not the pinned one."""
+    """Write the files to store from a tarball. Raise AssetsError if the digest of the tarball is not the pinned one."""
     digest = base64.b64encode(hashlib.sha512(tarball).digest()).decode()
     if digest != package.sha512:
         raise AssetsError(

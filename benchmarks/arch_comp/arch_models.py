@@ -134,8 +134,9 @@ CHASING, KEEPING, BRAKING = range(3)
 def chasing_cars(inputs: Signal) -> Mapping[str, Signal]:
     """Return the positions `y1` to `y5` of five cars, from throttle and brake of the first (0 to 1).
 
-    The first car drives towards lower values. Each other one chases the next until it is 10 behind, keeps its speed
-    until it is 15 behind (chase) or 5 (brake), and brakes until it is 20 behind.
+    The first car drives towards lower values. Every other car chases the car in front of it until it is 10
+    behind, keeps its speed until it is 15 behind (then it chases) or 5 behind (then it brakes), and brakes
+    until it is 20 behind.
     """
     places, speeds, modes = [0.0, 10.0, 20.0, 30.0, 40.0], [0.0] * 5, [CHASING] * 5
     found = np.empty((5, len(inputs)))

@@ -2,10 +2,10 @@
 
     python benchmarks/arch_comp/falsify.py [FORMULA ...] [--seeds 10] [--limit 300] [--methods explored random stress]
 
-Inputs are piecewise constant (instance 2 of the category). AT has 6 values each of throttle and brake over 30 s; CC
-has 20 each over 100 s. WT has a value of the wind every 5 s over 630 s, with linear interpolation. Each value is a
-direction of the space. A drift counts as one simulation; repeated episodes of it are not counted, since nothing is
-random.
+Inputs are piecewise constant (instance 2 of the category). AT has 6 values of the throttle and 6 of the brake
+over 30 s; CC has 20 of each over 100 s. WT has a value of the wind every 5 s over 630 s, with linear
+interpolation. Each value is a direction of the space. A drift counts as one simulation; repeated episodes of
+it are not counted, since nothing is random.
 """
 
 from __future__ import annotations

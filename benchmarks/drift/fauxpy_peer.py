@@ -1,7 +1,7 @@
 """FauxPy as a localiser: rankings by spectra (SBFL) and by mutants (MBFL) from four designed and four drifted episodes.
 
 A site gets the score of the best of its lines. Sites with equal scores all get the mean of their ranks, as is usual.
-FauxPy proposes no repair. It needs an environment of its own, since it pins plugins of pytest.
+FauxPy proposes no repair. FauxPy needs an environment of its own, since it pins plugins of pytest.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Other searches with the same 200 episodes: random search, CMA-ES and Optuna, over all constants at once.
 
-Each proposes a factor for every operand (on a log scale, between a tenth and ten; signs and booleans flip at random),
-and then receives the reward of one drifted episode with these factors. A proposal that comes near the designed reward
-is tested on five more seeds; the first one that passes counts. With "our guard", a mutation applies only where our
-method's first guard is true. The nominal world is not tested, since these tools do not test it.
+Each search proposes a factor for every operand (on a log scale, between a tenth and ten; signs and booleans
+flip at random), and then receives the reward of one drifted episode with these factors. A proposal that comes
+near the designed reward is tested on five more seeds; the first one that passes counts. With "our guard", a
+mutation applies only where our method's first guard is true. The nominal world is not tested, since these
+tools do not test it.
 """
 
 from __future__ import annotations

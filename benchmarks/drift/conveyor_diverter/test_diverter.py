@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 DT = 0.05
 PUSHER = 1.0  # from the gate, m
 REACH = 0.14
-NEEDED = 0.035  # share of full force times seconds, needed per kg
+NEEDED = 0.035  # impulse needed per kg: share of full force times seconds
 
 
 class Belt:

@@ -1,4 +1,7 @@
-"""The crop survives two hours around noon. It is judged at the end; a scorched or chilled crop is lost."""
+"""The crop survives two hours around noon.
+
+The crop is judged at the end; a scorched or chilled crop is lost.
+"""
 
 import pytest
 

@@ -1,7 +1,7 @@
 """Throttle and hitch: pull and depth of the implement."""
 
-FORWARD = 0.4  # throttle per m/s wanted
-CATCH_UP = 0.2  # throttle per m/s missing
+FORWARD = 0.4  # throttle per m/s of wanted speed
+CATCH_UP = 0.2  # throttle per m/s of missing speed
 DEPTH = 0.2  # m
 LIFT_GAIN = 2.0
 

@@ -40,7 +40,7 @@ class Belt:
         beside = self.middles[self.cuts] + 0.05 * self.speed - WAY
         self.cuts += 1
         if abs(beside) > OFF:
-            self.failure = f"cut {abs(beside) * 100:.0f} cm beside the middle"
+            self.failure = f"cut {abs(beside) * 100:.0f} cm away from the middle"
 
     def publish(self, bus):
         """Publish the states of light barrier and belt."""

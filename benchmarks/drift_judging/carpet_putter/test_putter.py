@@ -54,7 +54,7 @@ class Floor:
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.still and beside > 0.35:
-            self.failure = f"{beside:.2f} m beside the mark"
+            self.failure = f"{beside:.2f} m away from the mark"
         if self.failure:
             return -10.0
         return 10.0 - 2.0 * beside if self.still else 0.0

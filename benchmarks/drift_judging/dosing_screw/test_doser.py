@@ -49,7 +49,7 @@ class Hopper:
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.released and wrong > MARGIN:
-            self.failure = f"{self.weight:.2f} kg in place of {self.order:.2f} kg"
+            self.failure = f"{self.weight:.2f} kg instead of {self.order:.2f} kg"
         if self.failure:
             return -5.0
         return 10.0 - 2.0 * wrong if self.released else -0.005

@@ -58,7 +58,7 @@ class Tray:
         if self.time > TIME_BOUND:
             self.failure = "late"
         elif self.closed and self.away > GRASP:
-            self.failure = f"closed {self.away * 1000:.0f} mm beside the part"
+            self.failure = f"closed {self.away * 1000:.0f} mm away from the part"
         if self.failure:
             return -6.0
         grasp = 9.0 - 40.0 * self.away if self.closed else 0.0

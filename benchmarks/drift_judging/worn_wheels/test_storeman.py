@@ -1,4 +1,7 @@
-"""The robot stops at its shelf. Its tyres wear down permanently, and no sensor measures the wear."""
+"""The robot stops at its shelf.
+
+The tyres of the robot wear down permanently, and no sensor measures the wear.
+"""
 
 import math
 
@@ -55,7 +58,7 @@ class Aisle:
             self.failure = "late"
         miss = math.hypot(self.x - self.shelf, self.y)
         if self.arrived and miss > REACH:
-            self.failure = f"stopped {miss:.2f} m beside the shelf"
+            self.failure = f"stopped {miss:.2f} m away from the shelf"
         if self.failure:
             return -5.0
         return 10.0 - 4.0 * miss if self.arrived else -0.005

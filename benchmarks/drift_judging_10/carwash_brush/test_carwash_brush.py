@@ -41,7 +41,7 @@ class Bay:
 
     @property
     def done(self):
-        """Return whether the portal has passed the car."""
+        """Return whether the portal has passed the car, or the episode has failed."""
         return self.portal >= LENGTH or bool(self.failure)
 
     def publish(self, bus):

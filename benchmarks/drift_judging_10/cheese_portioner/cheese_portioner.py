@@ -14,7 +14,7 @@ class CheesePortioner(Node):
             [
                 ("portion", 250.0),  # g
                 ("density", 1.09),  # g/cm³
-                ("kerf", 0.10),  # cm that the blade takes
+                ("kerf", 0.10),  # cm, thickness that the blade cuts away
                 ("spacing", 1.0),  # cm between heights
                 ("push", 2.0),  # cm/s
                 ("creep", 0.5),  # cm/s near the cut

@@ -36,7 +36,7 @@ class Block:
 
     @property
     def done(self):
-        """Return whether all portions are cut."""
+        """Return whether all portions are cut, or the episode has failed."""
         return self.cut >= PORTIONS or bool(self.failure)
 
     @property

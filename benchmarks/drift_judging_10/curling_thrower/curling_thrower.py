@@ -41,7 +41,7 @@ class Thrower(object):
         self.place = msg.data
 
     def on_distance(self, msg):
-        """Laser from the end of the ramp to the middle of the house, m."""
+        """Store the distance from the end of the ramp to the middle of the house, measured by laser, m."""
         self.to_house = msg.data
 
     def on_call(self, msg):

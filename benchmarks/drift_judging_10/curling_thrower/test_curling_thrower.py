@@ -1,4 +1,7 @@
-"""A machine throws one curling stone. On humid days, frost on the ice slows it; only its resting place is judged."""
+"""A machine throws one curling stone.
+
+On humid days, frost on the ice slows the stone; only the place where it stops is judged.
+"""
 
 import pytest
 

@@ -38,7 +38,7 @@ class Box:
 
     @property
     def done(self):
-        """Return whether the eggs hatched."""
+        """Return whether the eggs hatched, or the episode has failed."""
         return self.minutes >= MINUTES or bool(self.failure)
 
     def publish(self, bus):
@@ -61,7 +61,7 @@ class Box:
             self.turns += 1
 
     def judge(self):
-        """Return the reward of the step: minutes count, more so near the best temperature."""
+        """Return the reward of the step: minutes are rewarded, more near the best temperature."""
         best = [celsius for begin, celsius in BEST if self.minutes >= begin][-1]
         off = (self.eggs - best) / MAY_MISS
         if abs(off) > 1.0:

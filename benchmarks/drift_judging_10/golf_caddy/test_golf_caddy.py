@@ -1,4 +1,7 @@
-"""A caddy follows the path to the next tee. With a heavy bag it answers to its steering late, and starts to weave."""
+"""A caddy follows the path to the next tee.
+
+With a heavy bag the caddy answers late to its steering, and starts to weave.
+"""
 
 import math
 
@@ -37,7 +40,7 @@ class Course:
 
     @property
     def done(self):
-        """Return whether the next tee is reached."""
+        """Return whether the next tee is reached, or the episode has failed."""
         return self.x >= self.length - 1.0 or bool(self.failure)
 
     def publish(self, bus):
@@ -74,7 +77,7 @@ class Course:
         self.moved = self.x - before
 
     def judge(self):
-        """Return the reward of the step: metres count, more so near the middle of the path."""
+        """Return the reward of the step: metres are rewarded, more near the middle of the path."""
         aside = (self.y - self.middle(self.x)) / WIDE
         if abs(aside) > 1.0:
             self.failure = "the caddy is in the bunker"

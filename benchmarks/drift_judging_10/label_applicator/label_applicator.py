@@ -8,7 +8,7 @@ from std_msgs.msg import Bool, Float32, Int32
 
 
 class LabelApplicator(Node):
-    """Both axes have the same encoder wheel; the belt's turns with the motor, in front of the pulleys."""
+    """Both axes have the same encoder wheel; the wheel of the belt turns with the motor, before the pulleys."""
 
     def __init__(self):
         super().__init__("label_applicator")

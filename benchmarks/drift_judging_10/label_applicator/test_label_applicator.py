@@ -1,4 +1,7 @@
-"""A machine sticks labels on bottles. Since the belt has another pulley, it moves further per count, for good."""
+"""A machine sticks labels on bottles.
+
+Since its pulley was replaced, the belt permanently moves further per count.
+"""
 
 import pytest
 
@@ -40,7 +43,7 @@ class Line:
 
     @property
     def done(self):
-        """Return whether all bottles have passed."""
+        """Return whether all bottles have passed, or the episode has failed."""
         return bool(self.failure) or self.right + self.wrong >= BOTTLES
 
     def publish(self, bus):

@@ -18,7 +18,7 @@ TIME_BOUND = 45.0
 
 
 class Race:
-    """A narrow race that lets one sheep at a time walk to the gate."""
+    """A narrow lane that lets one sheep at a time walk to the gate."""
 
     def __init__(self, rng, lame):
         self.rng = rng
@@ -42,7 +42,7 @@ class Race:
 
     @property
     def done(self):
-        """Return whether all sheep are sorted."""
+        """Return whether all sheep are sorted, or the episode has failed."""
         return bool(self.failure) or (self.next >= SHEEP and self.place is None)
 
     def publish(self, bus):

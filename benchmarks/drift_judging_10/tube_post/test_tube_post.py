@@ -1,4 +1,7 @@
-"""A carrier travels through a tube. With bottles of blood it is heavy, and the air brakes it less."""
+"""A carrier travels through a tube.
+
+With bottles of blood the carrier is heavy, and the air brakes it less.
+"""
 
 import pytest
 
@@ -29,7 +32,7 @@ class Tube:
 
     @property
     def done(self):
-        """Return whether the carrier has arrived."""
+        """Return whether the carrier has arrived, or the episode has failed."""
         return self.place >= LENGTH or bool(self.failure)
 
     def publish(self, bus):
@@ -51,7 +54,7 @@ class Tube:
         self.place += self.moved
 
     def judge(self):
-        """Return the reward of the step: metres count, time costs a little."""
+        """Return the reward of the step: metres are rewarded, and time costs a little."""
         if self.place >= LENGTH and self.speed > GENTLE:
             self.failure = f"the carrier hit the buffer at {self.speed:.1f} m/s"
         elif self.time > TIME_BOUND and not self.done:

@@ -34,7 +34,7 @@ class Board:
 
     @property
     def done(self):
-        """Return whether the board is engraved."""
+        """Return whether the board is engraved, or the episode has failed."""
         return self.finished >= ROWS or bool(self.failure)
 
     def publish(self, bus):

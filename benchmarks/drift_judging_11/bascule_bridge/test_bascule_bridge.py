@@ -1,4 +1,7 @@
-"""A leaf of a bridge opens for ships. After rain its timber deck is heavy, and it does not open far enough."""
+"""A leaf of a bridge opens for ships.
+
+After rain the timber deck is heavy, and the bridge does not open far enough.
+"""
 
 import math
 
@@ -31,7 +34,7 @@ class Leaf:
 
     @property
     def done(self):
-        """Return whether the ship may pass."""
+        """Return whether the ship may pass, or the episode has failed."""
         return bool(self.failure) or self.held >= 10
 
     def publish(self, bus):

@@ -1,4 +1,4 @@
-"""Fins damp the roll of a ferry. On one engine it sails slowly, fins lift less, and the ferry rolls."""
+"""Fins damp the roll of a ferry. On one engine the ferry sails slowly, the fins lift less, and it rolls."""
 
 import math
 

@@ -1,4 +1,7 @@
-"""An auger fills a wagon with feed. In one load in ten a damp lump brakes it briefly, and it stops as if jammed."""
+"""An auger fills a wagon with feed.
+
+In one load in ten a damp lump brakes the auger briefly, and the node stops it as if it were jammed.
+"""
 
 import pytest
 

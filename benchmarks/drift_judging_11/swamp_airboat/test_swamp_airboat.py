@@ -1,4 +1,7 @@
-"""An airboat follows a channel. A new pair of larger rudders turns it harder, and it weaves into the reeds."""
+"""An airboat follows a channel.
+
+A new pair of larger rudders turns the boat harder, and it weaves into the reeds.
+"""
 
 import math
 from itertools import pairwise
@@ -26,7 +29,7 @@ def middle(x):
 
 
 class Swamp:
-    """An airboat, which slides, with rudders of a given strength."""
+    """An airboat, which slides sideways, with rudders of a given strength."""
 
     def __init__(self, rng, rudders):
         self.rng = rng

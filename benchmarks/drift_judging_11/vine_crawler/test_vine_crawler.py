@@ -1,4 +1,7 @@
-"""A crawler turns from one row of vines into the next. New rubber tracks scrub more, and it turns too little."""
+"""A crawler turns from one row of vines into the next.
+
+New rubber tracks scrub more, and the crawler turns too little.
+"""
 
 import math
 
@@ -13,7 +16,7 @@ DT = 0.2
 GAUGE = 0.52
 ROW = 2.2
 LENGTH = 2.5
-FREE = 0.55  # m beside the middle of a row without vines
+FREE = 0.55  # m from the middle of a row, where no vines stand
 TIME_BOUND = 36.0
 
 

@@ -13,7 +13,7 @@ GANTRY = {
     "slowest": 0.08,  # m/s
     "fastest": 0.60,
     "return": 0.50,
-    "lead_in": 0.10,  # m, gun opens that far before the board
+    "lead_in": 0.10,  # distance before the board at which the gun opens, m
 }
 
 

@@ -60,7 +60,7 @@ class Fence:
         seen = sum(look >= 0.8 for look in self.looks)
         reward, self.seen = 2.0 * (seen - self.seen), seen
         if self.charge <= self.dead:
-            self.failure = f"dead {self.x:.0f} m from the dock"
+            self.failure = f"battery empty {self.x:.0f} m from the dock"
         elif self.time > TIME_BOUND:
             self.failure = "late"
         self.home = self.seen > 0 and self.x < 0.15 and self.speed <= 0.0

@@ -67,7 +67,7 @@ class Hall:
         elif self.lowered and self.sway > STILL:
             self.failure = f"the load swings by {self.sway:.2f} m"
         elif self.lowered and abs(self.x - self.goal) > PLACE:
-            self.failure = f"{abs(self.x - self.goal):.2f} m beside the goal"
+            self.failure = f"{abs(self.x - self.goal):.2f} m away from the goal"
         if self.failure:
             return -6.0
         return 0.4 * self.gained + (8.0 - 3.0 * self.sway if self.lowered else 0.0)

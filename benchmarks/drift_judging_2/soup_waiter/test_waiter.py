@@ -60,7 +60,7 @@ class Restaurant:
         elif self.time > 4.0 + self.table / PACE:
             self.failure = "late"
         elif self.arrived and abs(self.x - self.table) > 0.15:
-            self.failure = "stopped beside the table"
+            self.failure = "stopped away from the table"
         if self.failure:
             return -5.0
         return 10.0 * self.gained / self.table - 0.005

@@ -76,7 +76,7 @@ class House:
     def judge(self):
         """Return the reward of the step: progress minus a cost of time."""
         if self.detour and not self.locked:
-            self.failure = "took the way round a door that opens"
+            self.failure = "took the detour although the door opens"
         elif self.time > 40.0:
             self.failure = "late"
         if self.failure:

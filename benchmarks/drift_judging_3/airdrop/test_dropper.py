@@ -40,7 +40,7 @@ class Sky:
 
     @property
     def done(self):
-        """Return whether the parcel lies on the ground."""
+        """Return whether the parcel lies on the ground, or the episode has failed."""
         return self.miss is not None or bool(self.failure)
 
     def publish(self, bus):

@@ -29,7 +29,7 @@ class Counter:
 
     @property
     def done(self):
-        """Return whether all tubs have been taken."""
+        """Return whether all tubs have been taken, or the episode has failed."""
         return self.at == TUBS or bool(self.failure)
 
     def publish(self, bus):

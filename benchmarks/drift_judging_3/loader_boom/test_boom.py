@@ -64,7 +64,7 @@ class Loader:
         if late:
             self.missed += off > NEAR
             if self.missed > 6:
-                self.failure = f"the boom is {off:.2f} rad beside its angle"
+                self.failure = f"the boom is {off:.2f} rad away from its angle"
                 return -5.0
             return 10.0 / (2 * HOLD) * max(0.0, 1.0 - off / NEAR * 0.5) if off <= NEAR else 0.0
         return 0.0

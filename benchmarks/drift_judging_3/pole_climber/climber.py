@@ -23,7 +23,7 @@ class ClampConfig:
     rest: float = 90.0  # N
     most: float = 320.0  # N, of the spring
     raise_by: float = 40.0  # N per cycle of slip
-    relax_by: float = 1.5  # N per cycle without
+    relax_by: float = 1.5  # N per cycle without slip
     slip_ratio: float = 0.12
 
 

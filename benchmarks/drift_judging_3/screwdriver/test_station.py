@@ -38,7 +38,7 @@ class Flange:
 
     @property
     def done(self):
-        """Return whether the part has been taken away."""
+        """Return whether the part has been taken away, or the episode has failed."""
         return self.finished or bool(self.failure)
 
     def torque(self):

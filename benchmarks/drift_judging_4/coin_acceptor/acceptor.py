@@ -2,7 +2,8 @@
 """Coin acceptor of a ticket machine.
 
 A coin rolls past a light barrier (diameter), a coil (conductivity, counted as damping) and a piezo (how hard it
-lands, which goes with its weight). The nearest entry of the table wins; what is near to none is given back.
+lands, which goes with its weight). The nearest entry of the table wins; a coin that is near to no entry is
+given back.
 """
 
 from functools import partial

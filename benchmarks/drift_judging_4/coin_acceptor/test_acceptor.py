@@ -25,7 +25,8 @@ class Slot:
         self.foreign = EUROS[200] if alike else FOREIGN
         self.coins = [int(rng.choice([50, 100, 200, 200])) for _ in range(COINS)]
         self.coins = [0 if cents == 200 and rng.random() < 0.5 else cents for cents in self.coins]
-        self.coins[:8] = [int(cents) for cents in rng.permutation([200] * 4 + [0] * 4)]  # four of both kinds
+        # four coins of each kind
+        self.coins[:8] = [int(cents) for cents in rng.permutation([200] * 4 + [0] * 4)]
         self.credit, self.rolled = 0, 0
         self.wrong = 0
 

@@ -8,8 +8,8 @@ from pytest_tarl.ros import message_type
 Bool = message_type("std_msgs/msg/Bool")
 Float64 = message_type("std_msgs/msg/Float64")
 
-BRAKING = 0.1  # s, step in the retarder
-ROLLING = 1.0  # s, step behind it
+BRAKING = 0.1  # s, length of a step while the wagon is in the retarder
+ROLLING = 1.0  # s, length of a step after the wagon has left the retarder
 COUPLES = (0.35, 2.0)  # m/s
 G = 9.81
 FALL = 0.0006
@@ -55,7 +55,7 @@ class Yard:
             self.speed = max(0.0, self.speed - 0.25 * bar * dt)
             self.rolls = bool(released and released.data)
             if self.speed <= 0.3 and not self.rolls:
-                self.failure = "stands in the retarder"
+                self.failure = "stopped in the retarder"
             return
         before = self.speed
         self.speed -= G * (self.resistance - FALL) * dt
@@ -64,9 +64,9 @@ class Yard:
             self.arrived = True
             slow, fast = COUPLES
             if not slow < self.speed < fast:
-                self.failure = f"meets the others with {self.speed:.1f} m/s"
+                self.failure = f"hits the other wagons at {self.speed:.1f} m/s"
         elif self.speed <= 0.0:
-            self.failure = f"stands {self.left - way:.0f} m before the others"
+            self.failure = f"stopped {self.left - way:.0f} m before the other wagons"
         self.left -= way
 
     def judge(self):

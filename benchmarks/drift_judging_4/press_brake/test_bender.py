@@ -32,7 +32,7 @@ class Press:
 
     @property
     def done(self):
-        """Return whether all sheets are bent."""
+        """Return whether all sheets are bent, or the episode has failed."""
         return self.at == SHEETS or bool(self.failure)
 
     def publish(self, bus):
@@ -70,7 +70,7 @@ class Press:
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         elif self.at == SHEETS and self.wrong:
-            self.failure = f"{self.wrong} sheets have another angle"
+            self.failure = f"{self.wrong} sheets have a wrong angle"
         reward = -0.003
         if self.finished:
             reward += 2.5 - 0.8 * self.error / RIGHT if self.error <= RIGHT else -1.0

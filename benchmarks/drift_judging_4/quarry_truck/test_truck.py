@@ -35,7 +35,7 @@ class Road:
 
     @property
     def done(self):
-        """Return whether the load is tipped or the truck has stopped for the supervisor."""
+        """Return whether the load is tipped or the truck has stopped for the supervisor, or the episode has failed."""
         return self.tipped or self.stopped or bool(self.failure)
 
     def publish(self, bus):
@@ -71,7 +71,7 @@ class Road:
         elif self.released_at is not None and self.place - self.released_at > STOP_WAY:
             self.failure = "does not stop"
         elif self.released_at is None and self.speed < 0.01 and 2.0 < self.place < self.length - 8.0:
-            self.failure = "stands on the road"
+            self.failure = "stopped on the road"
         elif self.steps * DT > TIME_BOUND:
             self.failure = "late"
         if self.failure:

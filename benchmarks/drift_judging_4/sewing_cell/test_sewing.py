@@ -40,7 +40,7 @@ class Table:
 
     @property
     def done(self):
-        """Return whether the seam is judged."""
+        """Return whether the seam is judged, or the episode has failed."""
         return self.finished or bool(self.failure)
 
     def publish(self, bus):

@@ -62,7 +62,7 @@ class Rope:
         if self.time > TIME_BOUND and not self.stopped:
             self.failure = "late"
         elif miss > 4.0 or (self.stopped and abs(miss) > NEAR):
-            self.failure = f"{miss:.1f} m beside the mark"
+            self.failure = f"{miss:.1f} m away from the mark"
         if self.failure:
             return -5.0
         return 10.0 - 2.0 * abs(miss) if self.stopped else -0.005

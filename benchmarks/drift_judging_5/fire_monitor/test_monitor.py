@@ -64,7 +64,7 @@ class Yard:
             self.water += DT
             return 10.0 * DT / NEEDED - 0.004
         if self.time > TIME_BOUND:
-            self.failure = f"{self.water:.1f} s of water, it spreads"
+            self.failure = f"{self.water:.1f} s of water, so the fire spreads"
             return -3.0
         return -0.004
 

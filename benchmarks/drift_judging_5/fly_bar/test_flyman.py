@@ -36,7 +36,7 @@ class Tower:
 
     @property
     def done(self):
-        """Return whether both scenes have been played."""
+        """Return whether both scenes have been played, or the episode has failed."""
         return self.played == 2 or bool(self.failure)
 
     def publish(self, bus):

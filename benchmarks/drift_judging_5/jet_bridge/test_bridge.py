@@ -30,7 +30,7 @@ class Stand:
 
     @property
     def done(self):
-        """Return whether all are out."""
+        """Return whether all passengers are out, or the episode has failed."""
         return self.left >= PASSENGERS or bool(self.failure)
 
     def publish(self, bus):

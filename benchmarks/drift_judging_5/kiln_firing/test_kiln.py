@@ -1,4 +1,7 @@
-"""A kiln soaks tiles at the temperature of their cone. Its heating elements age, and no sensor measures this."""
+"""A kiln soaks tiles at the temperature of their cone.
+
+The heating elements of the kiln age, and no sensor measures this.
+"""
 
 import pytest
 

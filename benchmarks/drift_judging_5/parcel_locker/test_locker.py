@@ -33,7 +33,7 @@ class Cabinet:
 
     @property
     def done(self):
-        """Return whether the customer has left."""
+        """Return whether the customer has left, or the episode has failed."""
         return self.taken or bool(self.failure)
 
     @property

@@ -13,7 +13,8 @@ Int32MultiArray = message_type("std_msgs/Int32MultiArray")
 
 DT = 0.1
 WHEEL, TICKS = 0.105, 1024
-TURF = {False: (1.0, 0.52), True: (0.87, 0.66)}  # wet: effective share of the roll, and track in m
+# whether the turf is wet → share of the wheels' roll that moves the robot, effective track in m
+TURF = {False: (1.0, 0.52), True: (0.87, 0.66)}
 NEAR = 0.35  # m
 TIME_BOUND = 40.0
 
@@ -36,7 +37,7 @@ class Turf:
 
     @property
     def done(self):
-        """Return whether the court is painted."""
+        """Return whether the court is painted, or the episode has failed."""
         return self.finished or bool(self.failure)
 
     def publish(self, bus):

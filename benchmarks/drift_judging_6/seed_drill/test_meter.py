@@ -33,7 +33,7 @@ class Row:
 
     @property
     def done(self):
-        """Return whether the row is sown."""
+        """Return whether the row is sown, or the episode has failed."""
         return self.x >= FIELD or bool(self.failure)
 
     def publish(self, bus):

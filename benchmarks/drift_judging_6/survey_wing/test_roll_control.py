@@ -1,4 +1,7 @@
-"""A camera aircraft banks smoothly. Designed for 14 m/s, it now also flies slowly over fields and fast between them."""
+"""A camera aircraft banks smoothly.
+
+The aircraft was designed for 14 m/s; now it also flies slowly over fields and fast between them.
+"""
 
 import pytest
 

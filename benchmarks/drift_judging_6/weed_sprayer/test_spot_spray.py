@@ -71,7 +71,7 @@ class Rover:
             if missed > 1:
                 self.failure = f"{missed} of {len(self.weeds)} weeds stay dry"
             elif self.spilt > 0.4 * self.used:
-                self.failure = f"{100 * self.spilt / self.used:.0f} % wet the soil"
+                self.failure = f"{100 * self.spilt / self.used:.0f} % of the liquid wet the soil"
             reward -= 4.0 * bool(self.failure)
         return reward
 

@@ -31,7 +31,7 @@ class Tree:
 
     @property
     def done(self):
-        """Return whether all apples are done."""
+        """Return whether all apples are done, or the time is over."""
         return self.number >= APPLES or self.time > TIME_BOUND
 
     def publish(self, bus):

@@ -1,4 +1,4 @@
-"""A bed reaches its bay in time. With a patient in it, its speed must not exceed 0.75 m/s."""
+"""A bed reaches its bay in time. With a patient in the bed, the speed must not exceed 0.75 m/s."""
 
 import pytest
 

@@ -27,7 +27,7 @@ class Wall:
 
     @property
     def done(self):
-        """Return whether the layer is printed."""
+        """Return whether the layer is printed, or the time is over."""
         return self.x >= LENGTH or self.time > TIME_BOUND
 
     def publish(self, bus):

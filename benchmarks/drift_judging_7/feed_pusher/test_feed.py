@@ -30,7 +30,7 @@ class Barn:
 
     @property
     def done(self):
-        """Return whether the robot has reached the end of the alley or touched the fence."""
+        """Return whether the robot has reached the end of the alley or touched the fence, or the episode has failed."""
         return self.x >= LENGTH or self.time > 30.0 or bool(self.failure)
 
     def publish(self, bus):

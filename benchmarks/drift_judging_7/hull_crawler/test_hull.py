@@ -1,4 +1,7 @@
-"""A crawler cleans a strip of a hull. In a tidal harbour the current pushes it to one side or the other."""
+"""A crawler cleans a strip of a hull.
+
+In a tidal harbour the current pushes the crawler to one side or the other.
+"""
 
 import pytest
 
@@ -9,7 +12,7 @@ Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.25
 LENGTH = 6.5
-OVERLAP = 1.8  # m that are already clean from the last strip
+OVERLAP = 1.8  # width in m that the previous strip has already cleaned
 LAG = 5  # steps until an echo is evaluated
 BAND = 0.09  # m
 
@@ -29,7 +32,7 @@ class Hull:
 
     @property
     def done(self):
-        """Return whether the end of the strip is reached."""
+        """Return whether the end of the strip is reached, or the time is over."""
         return self.x >= LENGTH or self.time > 60.0
 
     def publish(self, bus):

@@ -1,4 +1,7 @@
-"""A cart follows a tape to a cross mark. In the glazed corridor the sun raises the readings of all its eyes."""
+"""A cart follows a tape to a cross mark.
+
+In the glazed corridor the sun raises the readings of all eyes of the cart.
+"""
 
 import math
 

@@ -73,7 +73,7 @@ class Corridor:
         if self.x < LENGTH:
             return "late"
         bad = sum(not LEAST <= dose <= MOST for dose in self.dose)
-        return f"{bad} cells of the rail have another dose" if bad > 2 else ""
+        return f"{bad} cells of the rail got a wrong dose" if bad > 2 else ""
 
 
 @pytest.mark.tarl(

@@ -1,4 +1,7 @@
-"""A ceiling drill makes its hole in time. In the new building the concrete contains basalt, too hard for its hammer."""
+"""A ceiling drill makes its hole in time.
+
+In the new building the concrete contains basalt, which is too hard for the hammer.
+"""
 
 import pytest
 

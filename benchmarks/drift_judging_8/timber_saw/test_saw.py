@@ -71,5 +71,5 @@ def test_saws(tarl, tarl_drift):
         mill.publish(tarl.bus)
         tarl.step(DT)
         tarl.reward(mill.advance(tarl.bus.latest("carriage/setting")))
-    assert mill.bad <= 1, f"{mill.bad} boards of another thickness"
+    assert mill.bad <= 1, f"{mill.bad} boards have a wrong thickness"
     assert mill.good >= 7, f"{mill.good} good boards"

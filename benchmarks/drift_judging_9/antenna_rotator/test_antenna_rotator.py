@@ -1,4 +1,7 @@
-"""A dish follows satellites. Its rotator has been replaced by one with another gear, for good."""
+"""A dish follows satellites.
+
+The rotator of the dish has been replaced permanently by one with another gear.
+"""
 
 import math
 
@@ -44,7 +47,7 @@ class Dish:
 
     @property
     def satellite(self):
-        """Return the satellite's azimuth in degrees: quick when it is high."""
+        """Return the satellite's azimuth in degrees, which changes quickly when the satellite is high."""
         return self.rise + self.sweep * (0.5 + math.atan(4.0 * (self.elapsed - 0.5)) / (2.0 * math.atan(2.0)))
 
     def publish(self, bus):
@@ -63,7 +66,7 @@ class Dish:
         self.azimuth += (self.rate + 0.02 * self.wind * self.rng.normal(0.0, 1.0)) * DT
 
     def judge(self):
-        """Return the reward of the step: what is received, which is less at the beam's edge."""
+        """Return the reward of the step: the received signal, which is weaker at the beam's edge."""
         if self.time <= SLEW:
             return 0.0
         off = abs(self.azimuth - self.satellite)

@@ -24,7 +24,7 @@ def holding_force(config, mass):
 
 
 def squeeze(config, now, wanted):
-    """Return the next force on the way to the one that is wanted: slow to build up, quick to let go."""
+    """Return the next force on the way to the wanted one; the force rises slowly and falls quickly."""
     if wanted < now:
         return wanted
     return min(wanted, now + config.build_up)

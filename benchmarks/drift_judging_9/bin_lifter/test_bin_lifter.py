@@ -13,7 +13,7 @@ GRAVITY = 9.81
 BINS = 3
 TIPS_AFTER = 10  # steps
 GAP = 4  # steps
-CRACKS_AT = 2.1  # of the force that holds the bin on dry pads
+CRACKS_AT = 2.1  # multiple of the force that just holds the bin on dry pads
 DRY = 0.62
 TIME_BOUND = 70.0
 
@@ -34,7 +34,7 @@ class Kerb:
 
     @property
     def done(self):
-        """Return whether all bins are emptied."""
+        """Return whether all bins are emptied, or the episode has failed."""
         return self.at == BINS or bool(self.failure)
 
     def publish(self, bus):
@@ -69,7 +69,7 @@ class Kerb:
             self.at, self.tipping, self.tipped, self.gap = self.at + 1, 0, False, GAP
 
     def judge(self):
-        """Return the reward of the step: each bin counts, a lost one costs, and time does."""
+        """Return the reward of the step: each bin is rewarded; a lost bin and time cost."""
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         reward = -0.001 + (3.0 if self.emptied else 0.0)

@@ -11,11 +11,11 @@ from pid import PID
 from std_msgs.msg import Bool, Float32, String
 
 RESTS = [("maltose", 63.0, 100.0), ("sugar", 72.0, 100.0)]
-CLOSE = 0.9  # K, from here the rest's time runs
+CLOSE = 0.9  # K, distance from the temperature of a rest at which its time starts
 LOSS = 0.0062  # duty per kelvin over the room, lid on
 ROOM = 20.0  # degC
 STIR_FAST, STIR_SLOW = 0.9, 0.4
-DRY = 5.0  # litres, less and the element burns
+DRY = 5.0  # litres; with less, the element burns
 DUTY_MAX = 0.95
 
 

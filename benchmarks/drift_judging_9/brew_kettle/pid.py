@@ -16,7 +16,7 @@ class PID:
         self.last = None
 
     def update(self, error, measured, base, dt):
-        """Return the output: `base` is what holds the target, the rest corrects."""
+        """Return the output: `base` holds the target, and the other terms correct the error."""
         self.sum = max(-200.0, min(200.0, self.sum + error * dt))
         slope = 0.0 if self.last is None else (measured - self.last) / dt
         self.last = measured

@@ -1,4 +1,7 @@
-"""A kettle holds its rests. In a yard it loses more heat, how much depends on the wind, which nothing measures."""
+"""A kettle holds its rests.
+
+In a yard the kettle loses more heat; how much depends on the wind, which no sensor measures.
+"""
 
 import pytest
 
@@ -18,7 +21,7 @@ TIME_BOUND = 600.0
 
 
 class Kettle:
-    """A kettle that an element heats, and that loses heat to a room at 20 degrees."""
+    """A kettle that is heated by an element and loses heat to a room at 20 degrees."""
 
     def __init__(self, rng, loss):
         self.rng = rng
@@ -33,7 +36,7 @@ class Kettle:
 
     @property
     def done(self):
-        """Return whether the mash is done."""
+        """Return whether the mash is done, or the episode has failed."""
         return self.mashed or bool(self.failure)
 
     def publish(self, bus):
@@ -50,7 +53,7 @@ class Kettle:
         self.mashed = bool(finished and finished.data)
 
     def judge(self):
-        """Return the reward of the step: seconds at the rest's temperature count, time costs."""
+        """Return the reward of the step: seconds at the temperature of the rest are rewarded, and time costs."""
         reward = -0.002
         if self.rest in RESTS and abs(self.temperature - RESTS[self.rest]) < RIGHT:
             self.held[self.rest] += DT

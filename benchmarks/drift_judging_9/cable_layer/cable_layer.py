@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 """Pay out cable from a drum on a crawler as fast as the crawler drives, so that it lies slack but without loops.
 
-A dancer roller between drum and nozzle holds the difference; its spring corrects a little.
+A dancer roller between drum and nozzle takes up the difference; its spring corrects the speed a little.
 """
 
 import math
@@ -61,7 +61,7 @@ class CableLayer(object):
         return CRUISE / (1.0 + CURVE_SLOWS * abs(self.curvature))
 
     def drum_speed(self):
-        """Return the angular speed at which the drum pays out what the crawler lays."""
+        """Return the angular speed at which the drum pays out as much cable as the crawler lays."""
         trim = DANCER_GAIN * (DANCER_MIDDLE - self.dancer)
         trim = max(-TRIM_MAX, min(TRIM_MAX, trim))
         return max(0.0, min(OMEGA_MAX, (SLACK * self.speed + trim) / DRUM_RADIUS))

@@ -31,7 +31,7 @@ class Trench:
 
     @property
     def done(self):
-        """Return whether the trench is laid."""
+        """Return whether the trench is laid, or the episode has failed."""
         return self.place >= LENGTH or bool(self.failure)
 
     @property
@@ -59,7 +59,7 @@ class Trench:
         self.dancer += ((omega.data if omega else 0.0) * self.radius - 1.01 * self.speed) * DT
 
     def judge(self):
-        """Return the reward of the step: metres count, more so near the dancer's middle."""
+        """Return the reward of the step: metres are rewarded, more near the dancer's middle."""
         if self.dancer > LOOPS_AT:
             self.failure = "the cable lies in loops"
         elif self.dancer < 0.0:

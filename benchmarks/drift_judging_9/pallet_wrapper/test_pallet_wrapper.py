@@ -17,7 +17,7 @@ TIME_BOUND = 120.0
 
 
 class Turntable:
-    """A load that layers of film hold, and a film that tears with a force."""
+    """A load that is held by layers of film, and a film that tears at a certain force."""
 
     def __init__(self, rng, tears_at):
         self.rng = rng
@@ -57,7 +57,7 @@ class Turntable:
         self.wrapped = bool(cut and cut.data)
 
     def judge(self):
-        """Return the reward of the step: what holds the load counts up to what is needed, and time costs."""
+        """Return the reward of the step: the holding force is rewarded up to the needed force, and time costs."""
         useful = min(self.gained, max(0.0, HOLDS - self.holding + self.gained))
         reward = 7.0 * useful / HOLDS - 0.0005
         if self.pull > self.tears_at:

@@ -10,13 +10,13 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 GRAVITY = 9.81
-RIGHT = 0.35  # m, doors against doors
+RIGHT = 0.35  # m, allowed offset between train doors and platform doors
 BOARDING = 25  # steps
 TIME_BOUND = 150.0
 
 
 class Line:
-    """A train of which the wheels transmit no more than the adhesion, on a line with three platforms."""
+    """A train whose wheels transmit no more force than the adhesion allows, on a line with three platforms."""
 
     def __init__(self, rng, adhesion):
         self.rng = rng
@@ -31,7 +31,7 @@ class Line:
 
     @property
     def done(self):
-        """Return whether all platforms are served."""
+        """Return whether all platforms are served, or the episode has failed."""
         return self.served == 3 or bool(self.failure)
 
     def publish(self, bus):
@@ -60,7 +60,7 @@ class Line:
         self.distance -= self.speed * DT
 
     def judge(self):
-        """Return the reward of the step: each platform counts by its accuracy, and time costs."""
+        """Return the reward of the step: each stop at a platform is rewarded by its accuracy, and time costs."""
         if self.distance < -RIGHT:
             self.failure = "ran past the platform"
         elif self.time > TIME_BOUND and not self.done:

@@ -7,7 +7,7 @@ from std_msgs.msg import Bool, Float32, Int32
 DEFAULTS = {
     "fast": 0.9,  # drive of the vibrating bowl, 0 to 1
     "slow": 0.1,
-    "dribble_at": 7,  # pills short of the order at which the bowl slows down
+    "dribble_at": 7,  # the bowl slows down when this number of pills is missing
     "soft_start": 0.4,  # s
     "jam_after": 3.0,  # s without a pill
     "jam_drive": 1.0,

@@ -34,7 +34,7 @@ class Dispenser:
 
     @property
     def done(self):
-        """Return whether all vials are filled."""
+        """Return whether all vials are filled, or the episode has failed."""
         return self.vial == VIALS or bool(self.failure)
 
     def publish(self, bus):
@@ -67,7 +67,7 @@ class Dispenser:
             self.change, self.closing = CHANGE, 0
 
     def judge(self):
-        """Return the reward of the step: a vial with at most one pill too many counts, and time costs."""
+        """Return the reward of the step: a vial with at most one pill too many is rewarded, and time costs."""
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         elif self.vial == VIALS and self.wrong:

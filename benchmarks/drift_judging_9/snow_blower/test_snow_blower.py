@@ -16,7 +16,7 @@ TIME_BOUND = 160.0
 
 
 class Pavement:
-    """A pavement with snow of varying depth, and a chute in which waits what the blower does not throw."""
+    """A pavement with snow of varying depth, and a chute that holds the snow that the blower has not thrown yet."""
 
     def __init__(self, rng, density):
         self.rng = rng
@@ -30,7 +30,7 @@ class Pavement:
 
     @property
     def done(self):
-        """Return whether the pavement is cleared."""
+        """Return whether the pavement is cleared, or the episode has failed."""
         return self.place >= LENGTH or bool(self.failure)
 
     @property
@@ -39,7 +39,7 @@ class Pavement:
         return min(5, int(6 * max(0.0, self.place) / LENGTH))
 
     def publish(self, bus):
-        """Publish depth, range of the house, and the density that a weighed sample of this morning had."""
+        """Publish the depth, the distance of the house, and the density of a sample that was weighed this morning."""
         bus.publish("mission/enable", Bool(data=True))
         bus.publish("snow/density", Float32(data=self.density))
         bus.publish("snow/depth", Float32(data=self.depths[self.part] + self.rng.normal(0.0, 0.01)))
@@ -57,7 +57,7 @@ class Pavement:
         self.hit = DT if left and self.houses[self.part] < 3.5 else 0.0
 
     def judge(self):
-        """Return the reward of the step: metres count, time and snow on houses cost."""
+        """Return the reward of the step: metres are rewarded; time and snow on houses cost."""
         if self.load > CHOKES_AT:
             self.failure = "the chute is choked"
         elif self.time > TIME_BOUND and not self.done:

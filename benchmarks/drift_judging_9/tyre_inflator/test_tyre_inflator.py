@@ -17,7 +17,7 @@ TIME_BOUND = 120.0
 
 
 class Station:
-    """A car, and a hose whose flow fills a tyre of a volume."""
+    """A car, and a hose whose flow fills a tyre of a given volume."""
 
     def __init__(self, rng, volume):
         self.rng = rng
@@ -35,7 +35,7 @@ class Station:
 
     @property
     def done(self):
-        """Return whether all tyres are released."""
+        """Return whether all tyres are released, or the episode has failed."""
         return self.tyre == TYRES or bool(self.failure)
 
     def publish(self, bus):
@@ -66,11 +66,11 @@ class Station:
                 self.pressure = self.before[self.tyre]
 
     def judge(self):
-        """Return the reward of the step: each tyre counts by its pressure, and time costs."""
+        """Return the reward of the step: each tyre is rewarded by its pressure, and time costs."""
         if self.time > TIME_BOUND and not self.done:
             self.failure = "late"
         elif self.tyre == TYRES and self.wrong:
-            self.failure = f"{self.wrong} tyres have another pressure"
+            self.failure = f"{self.wrong} tyres have a wrong pressure"
         reward = -0.0002
         if self.finished:
             reward += 2.5 - 3.0 * self.off if self.off <= RIGHT else -1.0

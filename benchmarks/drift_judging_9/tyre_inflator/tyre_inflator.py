@@ -1,7 +1,7 @@
 """Inflate the four tyres of a car: couple the hose, read the pressure, open the valve for a computed time, uncouple.
 
-The gauge sees the hose's pressure while air flows, so that a tyre is read before and after, not meanwhile. A tyre
-cannot be deflated through the coupling.
+The gauge sees the hose's pressure while air flows, so the pressure of a tyre is read before and after
+filling, not during it. A tyre cannot be deflated through the coupling.
 """
 
 import rclpy

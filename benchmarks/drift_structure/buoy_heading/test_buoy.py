@@ -1,4 +1,7 @@
-"""A buoy turns to a heading and keeps it. In waves its compass oscillates, and each reversal wears the thruster."""
+"""A buoy turns to a heading and keeps it.
+
+In waves the compass of the buoy oscillates, and each reversal wears the thruster.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""An ROV reaches a depth and holds it. A vertical current pushes it away, and its thrusters respond with a delay."""
+"""An ROV reaches a depth and holds it.
+
+A vertical current pushes the robot away, and its thrusters respond with a delay.
+"""
 
 from collections import deque
 

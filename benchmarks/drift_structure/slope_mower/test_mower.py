@@ -1,4 +1,7 @@
-"""A mower keeps the speed that its blade needs. On a hill it loses speed with the slope, which a sensor measures."""
+"""A mower keeps the speed that its blade needs.
+
+On a hill the mower loses speed with the slope, which a sensor measures.
+"""
 
 import pytest
 

@@ -64,7 +64,7 @@ class Floor:
     def judge(self):
         """Return the reward of the step."""
         if self.time > TIME_BOUND:
-            self.failure = "does not come to its pose"
+            self.failure = "does not reach its pose"
             return -5.0
         return 4.0 * self.gained - 0.002 + (8.0 if self.there else 0.0)
 

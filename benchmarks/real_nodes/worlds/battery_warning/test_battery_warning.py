@@ -53,9 +53,9 @@ class Shift:
         if self.home:
             return
         if shutdown is not None:
-            self.failure = "shut down on its way"
+            self.failure = "shut down on the way to the dock"
         elif self.charge <= 0.1:
-            self.failure = "empty on its way"
+            self.failure = "battery empty on the way to the dock"
         elif self.minutes > TIME_BOUND:
             self.failure = "late"
 

@@ -26,7 +26,7 @@ class Yard:
         self.rolls = rng.uniform(-0.1, 0.1)
         self.speed, self.turn = 0.0, 0.0
         self.time, self.hidden = 0.0, 0.0
-        self.pictures = [0.0] * 3  # images on their way: the camera takes three periods
+        self.pictures = [0.0] * 3  # images in transit: the camera has a latency of three periods
         self.failure = ""
 
     @property

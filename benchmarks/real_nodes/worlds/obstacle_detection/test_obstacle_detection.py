@@ -54,7 +54,7 @@ class Hall:
         """Return the reward of the step: progress up to the allowed distance from the wall."""
         front = self.gap - self.tool
         if front < NEAR:
-            self.failure = "too near to the wall"
+            self.failure = "too close to the wall"
             return -10.0
         if self.time >= TIME and front > FAR:
             self.failure = "stopped too early"

@@ -47,7 +47,7 @@ class Yard:
         if self.driving and turn:
             self.cornered = max(0.0, 1.0 - abs(self.side - SIDE) / WIDE)
             if not self.cornered:
-                self.failure = "turns beside the corner"
+                self.failure = "turns away from the corner"
             self.corners += 1
             self.side = 0.0
         self.driving = turn == 0.0

@@ -71,9 +71,9 @@ class Floor:
     def judge(self):
         """Return the reward of the step."""
         if self.time > TIME_BOUND:
-            self.failure = "does not come to its pose"
+            self.failure = "does not reach its pose"
         elif self.there and self.off > WIDE:
-            self.failure = "stops at another pose"
+            self.failure = "stops at a wrong pose"
         elif math.hypot(self.x, self.y) > FAR:
             self.failure = "drives past its pose"
         if self.failure:
