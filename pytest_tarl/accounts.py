@@ -30,7 +30,7 @@ class Account:
 
 @dataclass(frozen=True)
 class Compared:
-    """A finished comparison. It can be reported as it is, or after correction for multiple testing."""
+    """A finished comparison. The comparison can be reported as it is, or after correction for multiple testing."""
 
     name: str  # base name of the files to write
     root: Path

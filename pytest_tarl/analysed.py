@@ -31,7 +31,7 @@ def analysed(designation: Designation, folder: Path, root: Path) -> Analysis:
     if not analysis.flows:
         raise AnalysisError(
             f"No flow from a subscription to a publish call was found in {', '.join(designation.nodes)}"
-            ", so there is nothing to instrument: run tarl-lint on it and name all files of the node."
+            ", so there is nothing to instrument: run tarl-lint on these files, and name all files of the node."
         )
     return analysis
 

@@ -42,7 +42,7 @@ class BaggedMissions:
 def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
     """Return a rollout of all bags that can be compared.
 
-    Raise LogError if there is none, SettingsError if the test cannot judge bags.
+    Raise LogError if no bag can be compared, SettingsError if the test cannot judge bags.
     """
     check(designation)
     taking_part: list[Path] = []
@@ -93,7 +93,8 @@ def check(designation: Designation) -> None:
     mute = next((sensor.name for sensor in designation.sensors if sensor.topic is None), None)
     if mute is not None:
         raise SettingsError(
-            f"Sensor {mute!r} has no topic, so its values are in no bag: give it a topic and a field in the marker and "
+            f"Sensor {mute!r} has no topic, so no bag contains its values: give it a topic and a field in the "
+            "marker and "
             "record again."
         )
 

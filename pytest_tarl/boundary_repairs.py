@@ -3,8 +3,8 @@
 A confirmed failure is a point of the drift space. In the episodes of the search and of the acceptance test, each
 direction of the failure takes values from this point to the end of its range, and the other directions stay nominal. If
 no repair is accepted there, the search tries a smaller region next to the boundary. An accepted repair is then run on
-fresh draws from the whole declared space. It is withheld if it loses reward or successes there, or if any boundary
-comes nearer to the nominal point.
+fresh draws from the whole declared space. The repair is withheld if it loses reward or successes on these
+draws, or if any boundary comes nearer to the nominal point.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from pytest_tarl.stressing.search import Request, along, stress
 from pytest_tarl.stressing.words import repair_lines
 from tarl_lint.api import Analysis
 
-DIRECTIONS = 2  # maximum number of failures to repair that vary one direction; the nearest are chosen
-COMBINATIONS = 1  # maximum number of failures in several directions at once that are repaired
+DIRECTIONS = 2  # maximum number of repaired failures along one direction; the nearest are chosen
+COMBINATIONS = 1  # maximum number of repaired failures in which several directions differ from nominal
 DRAWS = 60  # number of fresh draws from the whole space
 CONFIDENCE = 0.95  # confidence of the one-sided bounds that decide whether a repair loses reward or successes
 
@@ -106,7 +106,10 @@ class Fixed:
             return f"it loses {sum(lost) / len(lost):.3g} per episode over the declared space"
         failed = [float(one.passed) - float(other.passed) for one, other in pairs]
         if mean_of(failed, CONFIDENCE, Range(-1.0, 1.0)).low > 0.0:
-            return f"of {len(failed)} draws from the declared space, {sum(failed):.0f} more fail than before the repair"
+            return (
+                f"of {len(failed)} draws from the declared space, {sum(failed):.0f} more fail with the repair than "
+                "without it"
+            )
         return ""
 
     @property
@@ -167,7 +170,7 @@ def _told(
     overlay: Mapping[Path, str],
     attempts: list[Attempt],
 ) -> Told:
-    """Test an accepted repair over the space. Delete its patch if the repair loses there; keep it on Ctrl-C."""
+    """Test an accepted repair over the space. If the repair loses reward there, delete its patch."""
     patch = job.root / accepted.patch
     attempt = Attempt(region.words, repair_words(accepted), accepted=True, patch=accepted.patch)
     try:

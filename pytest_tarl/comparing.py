@@ -49,8 +49,10 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    looks: tuple[tuple[int, float], ...] = ()  # for each look: episodes, uncorrected p-value of the loss
-    decided: bool = False  # whether the verdict is final at the last look
+    looks: tuple[
+        tuple[int, float], ...
+    ] = ()  # for each check of the verdict: number of episodes, uncorrected p-value of the loss
+    decided: bool = False  # whether the verdict is final at the last check
 
 
 def run_online(
@@ -177,15 +179,15 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the recording's learning rule. Raise FixtureError if it is unknown or not that of the options."""
+    """Return the recording's learning rule. Raise FixtureError if it is unknown or not the chosen rule."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
-            f"The recording of {fixture.test} holds a table learned by {fixture.learner!r}, which this version of "
+            f"The recording of {fixture.test} holds a utility learned by {fixture.learner!r}, which this version of "
             "tarl does not support: record it again with `pytest --tarl-record`."
         )
     if options.learner not in ("", fixture.learner):
         raise FixtureError(
-            f"The recording of {fixture.test} holds a table learned by {fixture.learner}, not by "
+            f"The recording of {fixture.test} holds a utility learned by {fixture.learner}, not by "
             f"{options.learner}: record it again with `--tarl-record --tarl-utility={options.learner}`."
         )
     return fixture.learner

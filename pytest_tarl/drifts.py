@@ -95,7 +95,10 @@ class Drift:
 
 
 def drift(where: str, name: str, value: Any) -> Drift:
-    """Return a scenario of a marker as a Drift. Raise SettingsError if its parts contradict each other."""
+    """Return a scenario of a marker as a Drift.
+
+    Raise SettingsError if the parts of the scenario contradict each other.
+    """
     whole = value if isinstance(value, Drift) else Drift(value)
     if isinstance(whole.value, Drift):
         raise SettingsError(f"{where}: the drift {name!r} is a Drift inside a Drift: remove one of them.")

@@ -27,7 +27,8 @@ def advice_on(problem: OSError) -> str:
     if problem.errno in DIFFERENT:
         return "make the folder writable, or work in a copy."
     return (
-        "another kind of file is in its place, or the disk fails: check the path and run the command again."
+        "something other than a regular file is at this path, or the disk fails: check the path and run the command "
+        "again."
     )
 
 

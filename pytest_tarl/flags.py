@@ -71,7 +71,7 @@ FLAGS = (
     ),
     Flag(
         "--tarl-resume",
-        "continue an interrupted run: take its finished episodes, and run the others",
+        "continue an interrupted run: reuse its finished episodes, and run the others",
         asks=True,
     ),
     Flag("--tarl-seed", "seed of all random numbers (default 0)", metavar="N", type=int, default=0),
@@ -83,21 +83,29 @@ FLAGS = (
     ),
     Flag(
         "--tarl-total",
-        "with --tarl-online: number of episodes that all comparisons of the run share; undecided ones get more",
+        (
+            "with --tarl-online: total number of episodes of all comparisons in the run; undecided comparisons get "
+            "more of them"
+        ),
         metavar="N",
         type=int,
     ),
     Flag("--tarl-alpha", "rate of false alarms (default 0.05)", metavar="P", type=float, default=0.05),
     Flag(
         "--tarl-looks",
-        "with --tarl-online: number of times the verdict is checked, to end early (default 3; 1 with --tarl-repair)",
+        (
+            "with --tarl-online: how many times a comparison may check its verdict, to end early (default 3; 1 with "
+            "--tarl-repair)"
+        ),
         metavar="N",
         type=int,
     ),
     Flag(
         "--tarl-search",
-        "sweep (default), halving, epsilon-greedy, or module:factory of an optimiser of your own; given twice, both "
-        "run and the first accepted repair counts",
+        (
+            "sweep (default), halving, epsilon-greedy, or module:factory of an optimiser of your own; given twice, "
+            "both searches run and the first accepted repair counts"
+        ),
         asks=True,
         metavar="METHOD",
         many=True,

@@ -188,7 +188,7 @@ class Mission:
         if not design:
             return
         named = " and ".join(repr(name) for name in design)
-        yield f"  the design now has the drift {named}: runs without flags get it as tarl_drift, too"
+        yield f"  the design now includes the drift {named}: runs without flags get it as tarl_drift, too"
         nodes = {place.path for place in sites.places}
         run = {other.test for other in self.others if {*design} <= other.designation.drifts.keys()}
         for path in sorted((self.tarl / "utility").glob("*.npz")):
@@ -289,8 +289,8 @@ class Mission:
         lost = replaced(self.designation.drifts, fixture.design, self.drift)
         if lost:
             yield (
-                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: if both "
-                "are dictionaries, the scenario is merged into the design"
+                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: write both as "
+                "dictionaries, so that TARL merges them"
             )
 
     def _neighbours(self) -> list[Neighbour]:

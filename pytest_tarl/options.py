@@ -68,8 +68,9 @@ class Options:
     def most_looks(self) -> int:
         """Return the maximum number of looks at the verdict.
 
-        It is 1 if a repair follows, because finding the region needs all episodes. It is also 1 with --tarl-holm,
-        because the correction needs smaller p-values than those at which a run may stop early.
+        There is one look if a repair follows, because finding the region needs all episodes. There is also
+        one look with --tarl-holm, because the correction needs smaller p-values than those at which a run may
+        stop early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 

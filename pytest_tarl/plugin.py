@@ -99,7 +99,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Keep the error of an episode, and show errors for users without a traceback."""
+    """Keep the error of an episode, and show user-facing errors without their traceback."""
     report = yield
     if (
         call.excinfo is not None
@@ -124,7 +124,7 @@ def pytest_runtest_makereport(
 def pytest_make_collect_report(
     collector: pytest.Collector,
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Show errors for users without a traceback; add advice if a test module imports a ROS that is not installed."""
+    """Show user-facing errors without traceback; add advice if the ROS that a test module imports is missing."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
     if call is not None and call.excinfo is not None and _ours(call.excinfo.value):

@@ -164,7 +164,10 @@ def detectable(totals: Floats) -> list[str]:
     loss = detectable_loss(totals, totals, SIGNIFICANT)
     if not isfinite(loss):
         return [
-            f"{totals.size} episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
+            (
+                f"{totals.size} episodes are too few: a comparison with so few episodes cannot show any loss. "
+                "Record at least 4."
+            )
         ]
     if not np.ptp(totals):  # any loss is shown
         return []

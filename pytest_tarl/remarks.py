@@ -125,7 +125,12 @@ def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
     late = [repr(one) for one in judgements.never_judged(online.judgements)]
     return (
         *(
-            (f"not required when the test was recorded: {', '.join(added)}. Record again to compare.",)
+            (
+                (
+                    f"these formulas were not required when the test was recorded: {', '.join(added)}. Record again "
+                    "to compare."
+                ),
+            )
             if added
             else ()
         ),

@@ -196,7 +196,7 @@ def drift_value(item: pytest.Item) -> Any:
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:
-    """Keep the error that ended a phase; show errors for users in the report without a traceback."""
+    """Keep the error that ended a phase; show user-facing errors in the report without their traceback."""
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:

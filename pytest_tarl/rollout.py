@@ -135,8 +135,8 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
 class Ahead:
     """Start the episodes that a search will probably request, so that workers stay busy while it evaluates a result.
 
-    This only prefetches: a requested episode has the same result whether or not it was started early, and an episode
-    that is never requested only costs time. Keys identify episodes.
+    Starting early only prefetches: a requested episode has the same result whether or not it was started
+    early, and an episode that is never requested only costs time. Keys identify episodes.
     """
 
     def __init__(self, rollout: Rollout) -> None:

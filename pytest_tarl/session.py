@@ -125,7 +125,10 @@ class TarlSession:
         return SharedEpisodes(total, len(recorded), self.options.most_looks)
 
     def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
-        """Return the items with a drift space. Raise UsageError if there is none, or if a needed package is missing."""
+        """Return the items with a drift space.
+
+        Raise UsageError if no item has one, or if a needed package is missing.
+        """
         sentence = missing_stress("--tarl-stress")
         if sentence is not None:
             raise pytest.UsageError(sentence)
@@ -342,7 +345,7 @@ class TarlSession:
         return self.config.pluginmanager.has_plugin("terminalreporter")
 
     def _say(self, sentence: str) -> None:
-        """Print a sentence before the episodes run. A worker of xdist has no terminal and reports it at the end."""
+        """Print a sentence before the episodes run; in a worker of xdist, which has no terminal, at the end."""
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter.ensure_newline()

@@ -35,7 +35,7 @@ class Settling:
     def __call__(self, samples: Sequence[Sample]) -> bool:
         """Add the newest sample and return whether to stop.
 
-        Raise RecordingError if its total reward is out of range.
+        Raise RecordingError if the total reward of the sample is out of range.
         """
         within(samples[-1], self.designation.total_range)
         self.episodes, self.passed = len(samples), self.passed + int(samples[-1].passed.all())

@@ -46,12 +46,12 @@ class Analysis:
 
     @property
     def timing(self) -> tuple[Step, ...]:
-        """Return the statements outside of the flows that wait or set a rate, sorted by position."""
+        """Return the statements that wait or set a rate but are on no flow, sorted by position."""
         return tuple(sorted(self.prober.timing.values(), key=lambda s: s.span))
 
     @property
     def deciding(self) -> tuple[Step, ...]:
-        """Return the statements outside of the flows that decide what is published, sorted by position."""
+        """Return the statements that decide what is published but are on no flow, sorted by position."""
         return tuple(sorted(self.prober.deciding.values(), key=lambda s: s.span))
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:

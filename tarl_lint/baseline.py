@@ -39,7 +39,7 @@ class Baseline:
 def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[Finding, ...]:
     """Return the findings, marked as accepted where the baseline has them.
 
-    If there are more of a kind than the baseline accepts, all of that kind are new.
+    If more findings have the same fingerprint than the baseline accepts, all of them are new.
     """
     found = Counter(f.fingerprint for f in findings)
     return tuple(

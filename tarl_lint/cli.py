@@ -222,7 +222,7 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     baseline.save(path, written)
     parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} removed"]
     if kept := sum(e.count for e in result.kept):
-        parts.append(f"{kept} kept that this run did not analyse")
+        parts.append(f"{kept} kept from files that this run did not analyse")
     yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)

@@ -22,7 +22,10 @@ __all__ = ["Result", "Superseded", "Workspace"]
 
 
 class Superseded(BaseException):
-    """A later edit made this run obsolete. It is not an Exception, so it is not reported as a bug of the analysis."""
+    """A later edit made this run obsolete.
+
+    This class does not inherit from Exception, so it is not reported as a bug of the analysis.
+    """
 
 
 class Workspace:

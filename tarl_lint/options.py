@@ -150,9 +150,17 @@ def _add_system(group: argparse._ArgumentGroup) -> None:
         metavar="FILE",
         help="analyse the nodes of a launch file as one system, its arguments as NAME:=VALUE; all: each launch file",
     )
-    group.add_argument("--from", dest="origin", metavar="TOPIC", help="show what data of this topic reaches")
     group.add_argument(
-        "--to", dest="target", metavar="TOPIC", help="show what reaches this topic, through what"
+        "--from",
+        dest="origin",
+        metavar="TOPIC",
+        help="show which published topics the data of this topic reaches",
+    )
+    group.add_argument(
+        "--to",
+        dest="target",
+        metavar="TOPIC",
+        help="show which topics reach this topic, and through which statements or nodes",
     )
 
 

@@ -103,7 +103,7 @@ def _require() -> None:
     try:
         import rosbags.rosbag2  # noqa: F401
     except ImportError as error:
-        raise LogError(f"Bags are read with `rosbags`: run {install_command('ros')}.") from error
+        raise LogError(f"Reading bags needs `rosbags`: run {install_command('ros')}.") from error
 
 
 def _unreadable() -> tuple[type[Exception], ...]:

@@ -80,7 +80,7 @@ def _changed(target: Target, force: bool) -> bytes:
             changed = file.applied(content)
         except MisfitError as misfit:
             raise RefusedError(
-                f"{target.shown} differs from the text that {patch.name} was made for, and its change at line "
+                f"{target.shown} differs from the text that {patch.name} was made for, and the change at line "
                 f"{misfit} does not apply: restore that text, or search for the repair again."
             ) from misfit
         original = _before_others(content, patch, file)

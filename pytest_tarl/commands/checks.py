@@ -28,8 +28,8 @@ def sealed(patch: Patch) -> None:
     """Raise RefusedError if a patch has no digest, because edits of it could not be detected."""
     if not patch.sealed:
         raise RefusedError(
-            f"{patch.name} has no digest, so it cannot be verified on a changed file: restore the text that it was "
-            "made for, or search for the repair again."
+            f"{patch.name} has no digest, so TARL cannot check it on a changed file: restore the text for which "
+            "it was made, or search for the repair again."
         )
 
 

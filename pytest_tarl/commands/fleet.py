@@ -74,7 +74,7 @@ def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
         "--repair",
         default="",
         metavar="NAME",
-        help="repair in the robots' software: a name, or a patch file of .tarl/patches (default: none)",
+        help="repair that the robots' software contains: a name, or a patch file of .tarl/patches (default: none)",
     )
     flag(
         "--hash-robots", default="", metavar="SALT", help="store keyed digests in place of the robots' names"
@@ -83,8 +83,10 @@ def add_ingest(commands: argparse._SubParsersAction[Parser]) -> None:
         "--project",
         type=Path,
         metavar="DIR",
-        help="folder of the recorded test, through whose nodes bags are replayed (default: the one whose .tarl holds "
-        "the recording, else the current one)",
+        help=(
+            "project folder of the recorded test, whose nodes replay the bags (default: the folder whose .tarl "
+            "holds the recording, otherwise the current folder)"
+        ),
     )
     ingest.set_defaults(run=_ingest)
 
@@ -166,7 +168,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--robot",
         default="",
         metavar="NAME",
-        help="only missions of this robot, and those with the lowest reward",
+        help="judge only missions of this robot, and list those with the lowest reward",
     )
     flag(
         "--alpha",
@@ -179,7 +181,7 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--tolerance",
         type=float,
         metavar="R",
-        help="tolerated loss of reward per mission (default 5 %% of the recorded)",
+        help="tolerated loss of reward per mission (default 5 %% of the recorded reward)",
     )
     flag(
         "--cluster",
@@ -191,10 +193,12 @@ def add_fleet(commands: argparse._SubParsersAction[Parser]) -> None:
         "--workers",
         type=int,
         metavar="N",
-        help="threads that judge on this machine (default: one for each core)",
+        help="number of threads on this machine that judge missions (default: one for each core)",
     )
     flag("--json", type=Path, metavar="FILE", help="write the result to this file; - for standard output")
-    flag("--html", type=Path, metavar="FILE", help="write a page to this file, which needs no network")
+    flag(
+        "--html", type=Path, metavar="FILE", help="write an HTML page to this file; the page needs no network"
+    )
     flag(
         "--fail-if",
         action="append",

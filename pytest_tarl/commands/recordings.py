@@ -38,12 +38,18 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
     diff.add_argument(
         "second",
         nargs="?",
-        help="as FIRST; if it is missing, .tarl/margins is compared with the margins at the revision FIRST",
+        help=(
+            "the same for the second one; without it, .tarl/margins is compared with the margins at the revision "
+            "FIRST"
+        ),
     )
     diff.add_argument(
         "--fail-if-worse",
         action="store_true",
-        help="exit with 1 if the second one earns significantly less, or fails significantly nearer to nominal",
+        help=(
+            "exit with 1 if the second recording earns significantly less, or if the second margins fail "
+            "significantly nearer to nominal"
+        ),
     )
     diff.add_argument(
         "--max-loss",
@@ -75,7 +81,7 @@ def _diff(arguments: argparse.Namespace) -> int:
     from pytest_tarl.learning.fixture import load
 
     if arguments.second is None and is_recording(arguments.first):
-        arguments.parser.error(f"name a second recording beside {arguments.first}")
+        arguments.parser.error(f"name a second recording to compare with {arguments.first}")
     if arguments.second is None or not is_recording(arguments.first):
         return _diff_margins(arguments)
     first, second = load(Path(arguments.first)), load(Path(arguments.second))

@@ -179,7 +179,7 @@ def _check(order: Order) -> None:
             raise SettingsError(f"--{name} must be a number of seconds above 0, got {value:g}.")
     if order.once and (order.until_alarm or order.ros):
         raise SettingsError(
-            "--once reads the logs once and ends, so it excludes --until-alarm and --diagnostics."
+            "--once reads the logs once and ends, so it cannot be combined with --until-alarm or --diagnostics."
         )
     taken = {path.resolve() for path in (*order.logs, order.fixture, order.state)}
     if order.json is not None and order.json != STANDARD_OUTPUT and order.json.resolve() in taken:

@@ -52,7 +52,8 @@ def reap(which: int) -> None:
 def die_with_parent() -> Callable[[], None]:
     """Return a function that a new child calls before exec.
 
-    It restores default signals, and makes the kernel send SIGKILL to the child when this process ends.
+    The function restores default signals, and makes the kernel send SIGKILL to the child when this process
+    ends.
 
     The C library is loaded before the fork: if another thread held the loader's lock during the fork, the child would
     wait for it forever.

@@ -1,4 +1,6 @@
-"""The guardian: a process that runs a simulator. It reads commands and writes events, each a JSON line.
+"""The guardian: a process that runs a simulator.
+
+The guardian reads commands and writes events, each a JSON line.
 
 The simulator's processes are ended on a command of the test, or when the test's process has ended.
 """

@@ -121,7 +121,9 @@ class LinkROS1:
         if kind == "*" or topic in self._publishers:
             return
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)  # no queue: messages precede later calls
+            warnings.simplefilter(
+                "ignore", SyntaxWarning
+            )  # without a queue, a message is sent before a later service call
             self._publishers[topic] = rospy.Publisher(topic, _class(kind), tcp_nodelay=True, queue_size=None)
 
     def _on_clock(self, message: Any) -> None:

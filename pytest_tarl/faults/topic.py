@@ -84,12 +84,13 @@ def of_topic(
 def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
     """Return the range of a fault's sizes.
 
-    Raise SettingsError if it does not include `none`, the size at which there is no fault.
+    Raise SettingsError if the range does not include `none`, the size at which there is no fault.
     """
     found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
     if not found.low <= none <= found.high:
         raise SettingsError(
-            f"faults.{kind}(…, {low!r}, {high!r}): the sizes must include {none:g}, the nominal one, which is no fault."
+            f"faults.{kind}(…, {low!r}, {high!r}): the sizes must include {none:g}, the nominal size, which "
+            "means no fault."
         )
     return Span(found.low, found.high, none)
 

@@ -49,7 +49,8 @@ def identified(path: Path, fixture: Fixture) -> Bagged:
         digest.update(one.data)
     if bag.notes:  # the bag is truncated, and the complete bag would have another ID
         raise LogError(
-            f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore its index with "
+            f"{path}: {bag.notes[0].rstrip('.')}; but only whole missions are ingested: restore the index of the "
+            "bag with "
             "`rosbag reindex` or `ros2 bag reindex`, and ingest it again."
         )
     return Bagged(int.from_bytes(digest.digest()[:BYTES], "big"), bag.start / 1e9)
@@ -60,7 +61,7 @@ def replayed(path: Path, mission: int, fixture: Fixture, replay: Replay) -> tupl
     run = replay(path, mission)
     if not run.trace.steps:
         raise LogError(
-            f"{path} holds no step with rewards: at no moment, all sensors had a value and the monitor a reward."
+            f"{path} holds no step with rewards: at no moment did all sensors have a value and the monitor a reward."
         )
     found = sample(replace(run.trace, parts={}), mission, run.passed, plan_of(fixture).members)
     return replace(found, judgements=judgements(run.judged)), run.notes

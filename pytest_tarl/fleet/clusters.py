@@ -75,7 +75,7 @@ def of(
 def distances(maps: Sequence[ResidualMap]) -> Floats:
     """Return the distance of each pair of maps, shape (maps, maps).
 
-    It is infinite for maps without a common cell and on the diagonal.
+    The distance is infinite for maps without a common cell and on the diagonal.
     """
     mean = np.array([one.mean for one in maps])
     variance = np.array([one.variance for one in maps])

@@ -43,8 +43,8 @@ def parts(where: Store) -> list[Part]:
             part.beside("cells")
         ):  # a listing may be out of date
             raise FleetError(
-                f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: restore it, "
-                "or delete the latter and ingest its logs again."
+                f"{where.shown(part.beside('cells'))} is missing, so {where.shown(path)} cannot be judged: "
+                "restore the missing file, or delete the other one and ingest its logs again."
             )
         found.append(part)
     return found

@@ -82,7 +82,10 @@ def _context(answer: Answer, vocabulary: Vocabulary) -> dict[str, Any]:
         "by": ", ".join(question.by),
         "named": len(named),
         "rate": f"{100 * found.q:g} %",
-        "onsets": "Columns count the named robots by the time when their missions began to differ; lines mark groups.",
+        "onsets": (
+            "Each column counts the named robots whose missions began to differ at that time. Each line marks a "
+            "changed group."
+        ),
         "clusters": [
             _cluster(one.robots, one.cells, one.residuals, vocabulary) for one in answer.clusters.found
         ],

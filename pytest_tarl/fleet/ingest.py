@@ -175,7 +175,7 @@ class _Writer:
         other = self._held(day).get(mission)
         if other is not None and other != robot:
             raise LogError(
-                f"A mission of {robot} is in {self.store.shown('')} already, as one of {other}: correct "
+                f"A mission of {robot} is already in {self.store.shown('')}, as a mission of {other}: correct "
                 f"--robot, or delete the files of {other} and ingest its logs again."
             )
         return other is not None

@@ -1,7 +1,7 @@
 """The tasks that workers run close to the data: score missions, or read the transitions of some missions.
 
-A worker reads the files itself. It returns one byte for each score of a mission (its bin), or the transitions of the
-missions that are compared with the recording.
+A worker reads the files itself. The worker returns one byte for each score of a mission (the bin of the
+score), or the transitions of the missions that are compared with the recording.
 """
 
 from __future__ import annotations

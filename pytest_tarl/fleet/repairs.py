@@ -29,8 +29,8 @@ OUTCOMES = ("total", "passed")
 class Effect:
     """The effect of a repair in a group; `reward` and `success` are differences per mission.
 
-    They are NaN if no stratum has both kinds of missions. `missions` and `robots` are counted only in strata that have
-    both kinds.
+    Both are NaN if no stratum has missions with and without the repair. `missions` and `robots` are counted
+    only in strata that have both kinds.
     """
 
     repair: str

@@ -62,7 +62,6 @@ def residual_maps(
 
     The residuals of a robot with few missions may vary too little by chance. The variance of its map is therefore at
     least the variance that the same number of recorded visits would have.
-    recorded visits.
     """
     query = "SELECT min(number) AS first, max(number) + 1 AS ends FROM missions WHERE robot = ?"
     spans = []

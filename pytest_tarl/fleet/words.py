@@ -62,7 +62,7 @@ def _onsets(answer: Answer, words: Vocabulary) -> Iterator[str]:
     named = {one.name for one in (*found.drifted, *found.below)}
     rate = f"false discovery rate at most {100 * found.q:g} % for each kind of evidence"
     yield ""
-    yield f"{len(named):,} of {len(found.every):,} groups: changed in time ({rate}){':' if named else ''}"
+    yield f"{len(named):,} of {len(found.every):,} groups: changed over time ({rate}){':' if named else ''}"
     ordered = sorted(
         (one for one in found.every if one.name in named),
         key=lambda one: (-max(one.world, one.bound), one.name),
@@ -79,7 +79,7 @@ def _clusters(answer: Answer, words: Vocabulary) -> Iterator[str]:
     if not found.found and not found.unclear:
         return
     yield ""
-    yield "Robots whose drifts are alike"
+    yield "Robots with similar drifts"
     for one in found.found:
         mean = sum(one.residuals) / max(1, len(one.residuals))
         where = (
@@ -188,7 +188,10 @@ def notes(answer: Answer) -> Iterator[str]:
         "note: the false discovery rates assume that the number of a robot's missions does not depend on how they went."
     )
     if any(one.compared < one.missions for one in answer.groups):
-        yield f"note: verdicts compare {MOST:,} missions of a larger group, chosen by their digests."
+        yield (
+            f"note: if a group has more than {MOST:,} missions, its verdict uses {MOST:,} of them, chosen by their "
+            "digests."
+        )
     if any(one.outside for one in answer.groups):
         outside = sum(one.outside for one in answer.groups)
         yield (

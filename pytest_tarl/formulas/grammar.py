@@ -40,7 +40,7 @@ WORDS = (
 )  # fmt: skip
 HINTS = (
     (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
-    (r"=[^=]", "two values are compared with =="),
+    (r"=[^=]", "write == to compare two values"),
     (r"[&|]", "write and, or"),
 )  # hints, by the first token that cannot be parsed
 MINUS = "write (0 - gap) for -gap"
@@ -57,7 +57,7 @@ class _Strict(ErrorListener):  # type: ignore[misc]
     def syntaxError(self, *told: Any) -> None:  # noqa: N802
         """Raise ReadingError for characters that are not in the grammar; the fifth argument is antlr's message."""
         msg: str = told[4]
-        raise ReadingError(f"{msg.partition(': ')[2]} means nothing in a formula")
+        raise ReadingError(f"{msg.partition(': ')[2]} has no meaning in a formula")
 
 
 def words(text: str) -> tuple[list[str], list[str]]:
@@ -120,7 +120,7 @@ def _reason(text: str, problem: str) -> str:
         return "it ends too early"
     negated = text[:column].endswith("-")
     hint = next((hint for start, hint in HINTS if re.match(start, rest)), MINUS if negated else "")
-    return f"it cannot be understood from {rest!r} on{hint and '; '}{hint}"
+    return f"it cannot be parsed from {rest!r} on{hint and '; '}{hint}"
 
 
 def _connected(node: AbstractNode) -> Any:
@@ -146,13 +146,15 @@ def _connected(node: AbstractNode) -> Any:
 def _check(node: Any) -> None:
     begin, end = bounds(node)
     if not 0 <= begin <= end:
-        raise ReadingError(f"the bounds [{begin / 1e9:g}:{end / 1e9:g}] s must rise and not be negative")
+        raise ReadingError(
+            f"the bounds [{begin / 1e9:g}:{end / 1e9:g}] s must increase and must not be negative"
+        )
 
 
 def _numeric(node: Any) -> Any:
-    """Return the atom. Raise ReadingError if it compares formulas or names no signal."""
+    """Return the atom. Raise ReadingError if the atom compares formulas or names no signal."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
         raise ReadingError("it compares or computes with a formula: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):
-        raise ReadingError("a part of it names no signal, so nothing could ever change it")
+        raise ReadingError("a part of it names no signal, so its value could never change")
     return node

@@ -33,7 +33,7 @@ from pytest_tarl.formulas.semantics import (
 from pytest_tarl.formulas.signals import Samples, cut
 
 Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
-FARTHEST = 1e308  # limit of the unknown future value of an atom
+FARTHEST = 1e308  # bound on the magnitude of an atom's future values, which are unknown
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,8 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
     """Return the first instant after which no future can satisfy the formula, or None if it can still be satisfied.
 
-    The instant is never too early. It can be too late if atoms depend on each other, because the future of each atom is
-    bounded separately.
+    The instant is never too early. The instant can be too late if atoms depend on each other, because the
+    future of each atom is bounded separately.
     """
     low, high = 0, len(instants)
     while low < high:

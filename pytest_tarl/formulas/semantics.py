@@ -46,7 +46,7 @@ __all__ = [
     "Eventually", "Implies", "Neg", "Skeleton", "TimedAlways", "TimedEventually", "bounds", "operands",
 ]  # fmt: skip
 
-TRUTH = 1e-300  # |robustness| of a comparison of equal values, so that a positive robustness always means satisfied
+TRUTH = 1e-300  # magnitude of the robustness of a comparison of equal values, so that it is never 0
 UNITS = {"": 10**9, "s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 BOOLEAN = (Neg, Conjunction, Disjunction, Implies)

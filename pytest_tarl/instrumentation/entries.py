@@ -7,7 +7,9 @@ from typing import Any
 
 
 class Entries(list[Any]):
-    """Events of a single-threaded program. It inherits the methods of `list`, which CPython calls without a frame.
+    """Events of a single-threaded program.
+
+    The class inherits the methods of `list`, which CPython calls without a frame.
 
     Code objects are compared, hashed, printed and pickled together with their constants. Therefore this list is equal
     only to itself, has a short `repr`, and its unpickled copy in another process records nothing.

@@ -220,7 +220,7 @@ def _stored(message: object, name: str) -> object:
     return stored.get(name, stored.get(f"_{name}"))
 
 
-# reads class attributes without the metaclass, which can run code of the program even for these
+# Read attributes of a class without its metaclass, because a metaclass can run code of the program.
 _bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
 _attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
 

@@ -17,8 +17,9 @@ from statistics import fmean, variance
 from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares of the wealth that each bet may lose in the worst possible episode
-# initial share of the wealth for the bold bet; of 200 correct repairs that lose 3 % of the reward and never fail, 0.9
-# accepts 197 and 0.5 accepts 93; of correct repairs that seldom fail, both accept equally many
+# Initial share of the wealth for the bold bet. In a simulation of 200 correct repairs that lose 3 % of the
+# reward and never fail, the test accepts 197 with 0.9 and 93 with 0.5. If correct repairs seldom fail, both
+# values accept equally many.
 OF_BOLD = 0.9
 DOUBT = 1.5  # safety factor for the variance, which is estimated from few episodes
 CERTAIN = 0.005  # approximate probability of giving up early although the mean is above the limit

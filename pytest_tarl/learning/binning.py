@@ -32,8 +32,8 @@ def quantiles(name: str, values: Sequence[float], bins: int) -> tuple[float, ...
     spread = float(np.ptp(known)) if known.size else 0.0
     if not spread:
         raise RecordingError(
-            f"Sensor {name!r} read {f'{known[0]:g} all the time' if known.size else 'nothing'} in the episodes for "
-            "learning its bins, so they cannot be learned. Give it low, high and bins, or remove it."
+            f"Sensor {name!r} read {f'{known[0]:g} all the time' if known.size else 'nothing'} in the episodes "
+            "from which its bins are learned, so there are no bins. Give it low, high and bins, or remove it."
         )
     places = DIGITS - math.floor(math.log10(spread))
     cuts = np.quantile(known, np.linspace(0.0, 1.0, bins + 1)).round(places) + 0.0

@@ -125,7 +125,7 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
     A bet against each candidate mean m stakes λ on values above m. If m is the mean, the wealth is a martingale, so it
     rarely reaches 1 / risk. The bound is the largest m whose bet reached that wealth. λ depends only on earlier values.
-    It is tuned for the given number of values, or for any number with `anytime`.
+    λ is tuned for the given number of values; with `anytime`, for any number.
     """
     if not values.size:
         return 0.0
@@ -165,9 +165,9 @@ def loss_between(
     """Return one-sided bounds on mean(offline) - mean(online), each at the confidence.
 
     Without a declared range, the result is the wider of two intervals. The first holds the shifts that a studentised
-    permutation test does not reject (Janssen 1997). It is exact if the totals of both worlds differ by a constant,
-    however skewed they are. The second is Welch's interval, for totals that are about normal and may vary more in one
-    world. Raise ValueError if a total lies outside the declared range.
+    permutation test does not reject (Janssen 1997). This interval is exact if the totals of both worlds
+    differ by a constant, however skewed the totals are. The second is Welch's interval, for totals that are
+    about normal and may vary more in one world. Raise ValueError if a total lies outside the declared range.
     """
     episodes = min(len(offline), len(online))
     if declared is None:
@@ -184,8 +184,8 @@ def loss_between(
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
     """Return the loss that a test at `risk` detects with probability POWER; inputs have shape (episodes,).
 
-    The result is a normal approximation. It is infinite if the episodes have so few permutations that no loss can be
-    significant.
+    The result is a normal approximation. The result is infinite if the episodes have so few permutations that
+    no loss can be significant.
     """
     if comb(offline.size + online.size, online.size) <= 1 / risk:  # integers, since a float would overflow
         return inf

@@ -46,7 +46,7 @@ class Difference:
 def tolerated(offline: Sample, stated: float | None) -> float:
     """Return δ, the tolerated loss per episode.
 
-    It is 5 % of the mean recorded reward or the tolerance of the marker, whichever is larger.
+    δ is 5 % of the mean recorded reward or the tolerance of the marker, whichever is larger.
     """
     return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
 
@@ -127,7 +127,7 @@ def _compared_without(
 ) -> tuple[Region, dict[Cell, float]]:
     """Return the region and the change of each deployed cell, computed without some sensors.
 
-    This does not affect p_drift, so it adds no false alarms.
+    Leaving out sensors does not affect p_drift, so it adds no false alarms.
     """
     kept = [sensor for d, sensor in enumerate(sensors) if d not in without]
     shorter = projected(offline, without), projected(online, without)

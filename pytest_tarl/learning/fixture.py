@@ -1,7 +1,8 @@
 """The recording of a test: `--tarl-record` writes it, `--tarl-online` reads it.
 
-It is one `.npz` file: a JSON header with a format version and a hash, and the packed columns of the statistics. It is
-loaded without pickle. It is written to a temporary file, which is then renamed. Equal episodes give equal bytes.
+A recording is one `.npz` file: a JSON header with a format version and a hash, and the packed columns of the
+statistics. The file is loaded without pickle. TARL writes a temporary file and then renames it. Equal
+episodes give equal bytes.
 
 Format versions:
 1  Columns of float64.
@@ -121,7 +122,7 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a recording. Raise FixtureError if it is missing, unreadable, damaged or of another format."""
+    """Read a recording. Raise FixtureError if the file is missing, unreadable, damaged or of another format."""
     try:
         content = read_regular(path)
     except FileNotFoundError:
@@ -138,7 +139,7 @@ def load(path: Path) -> Fixture:
 def parsed(content: bytes, path: str) -> Fixture:
     """Return the recording from the content of a file; `path` names the file in messages.
 
-    Raise FixtureError if it is damaged, too large for the memory, or of another format.
+    Raise FixtureError if the file is damaged, too large for the memory, or of another format.
     """
     try:
         columns = read_arrays(content)

@@ -156,7 +156,7 @@ def _smallest(draws: Floats, first: int) -> Floats:
     """Return 1 for the `first` smallest numbers of each row and 0 for the others, in the same shape."""
     limit = np.partition(draws, first, axis=1)[:, first, None]
     picked = (draws < limit).astype(np.float64)
-    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which several numbers equal the limit
+    tied = np.flatnonzero(picked.sum(axis=1) != first)  # rows in which several random numbers equal the limit
     for row in tied.tolist():
         picked[row] = 0.0
         picked[row, np.argpartition(draws[row], first)[:first]] = 1.0

@@ -1,8 +1,8 @@
 """Compute the Bellman residual of each step, in two parts: the move to the next cell, and the reward.
 
-A residual is the difference between what a step brings and what the designed utility predicts. Its expectation is zero
-wherever the world is unchanged since the fit. Residuals therefore locate the change itself, and not the cells upstream
-of it (performance-difference lemma, Kakade & Langford 2002).
+A residual is the difference between what a step brings and what the designed utility predicts. The
+expectation of a residual is zero wherever the world is unchanged since the fit. Residuals therefore locate
+the change itself, and not the cells upstream of it (performance-difference lemma, Kakade & Langford 2002).
 
 A residual smaller than its error is set to 0. If the reward is constant, a residual that small reflects only rounding
 (packing.py) and the order of summation.

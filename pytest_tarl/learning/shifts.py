@@ -70,8 +70,8 @@ def _drawn(rows: int, chosen: int, shuffles: int) -> Ints:
 class _Sums:
     """Sums over rows of x and of d, which is 1 for deployed episodes and 0 for others.
 
-    They have shape (shuffles,), or () for a single group. Since d² = d, they give the sums of x + t·d and of its square
-    for every shift t.
+    The sums have shape (shuffles,), or () for a single group. Since d² = d, they give the sums of x + t·d and
+    of its square for every shift t.
     """
 
     rows: int

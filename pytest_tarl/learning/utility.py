@@ -56,7 +56,8 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve q = ρ̄ + Wq by biconjugate gradients (van der Vorst 1992), then by sweeps q ← ρ̄ + Wq.
 
-    This needs memory only for the transitions, not for all pairs of states. Each sweep reduces the error by the factor
+    The method needs memory only for the transitions, not for all pairs of states. Each sweep reduces the
+    error by the factor
     γ: one or two suffice if the gradients converged, more are needed if they broke down.
     """
 

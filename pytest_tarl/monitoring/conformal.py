@@ -100,9 +100,9 @@ def factors(low: Floats, high: Floats, found: Floats) -> None:
     """Write to `found` the factor by which each bet multiplies its stake, shape (missions, bets, scores).
 
     `low` and `high` are ranks of shape (missions, scores). Bets of the form εp^(ε-1) win on small ranks if p is
-    the rank, and on large ranks if p is 1 minus the rank. They win on both if p is twice the distance from the rank to
-    the nearer end of [0, 1]. The lines 1 ± (1 - 2p)/2 win on small shifts, where p is the rank. Powers are computed by
-    square roots, which round equally on all platforms.
+    the rank, and on large ranks if p is 1 minus the rank. The bets win on small and on large ranks if p is
+    twice the distance from the rank to the nearer end of [0, 1]. The lines 1 ± (1 - 2p)/2 win on small
+    shifts, where p is the rank. Powers are computed by square roots, which round equally on all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

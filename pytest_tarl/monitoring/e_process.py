@@ -1,8 +1,9 @@
 """Bet against a lower bound on a mean: a sequential test of E[x] ≥ m for observations in [0, 1].
 
-Each observation multiplies the stake by 1 + λ(m - x). For 0 ≤ λ ≤ 1/(1 - m), this factor is never negative. Its mean is
-at most 1 while the mean of x, given all earlier observations, is at least m (Waudby-Smith & Ramdas 2023). If each x is
-0 or 1, the stake is the likelihood ratio of the success rate m(1 - λ(1 - m)) against m.
+Each observation multiplies the stake by 1 + λ(m - x). For 0 ≤ λ ≤ 1/(1 - m), this factor is never negative.
+The mean of the factor is at most 1 while the mean of x, given all earlier observations, is at least m
+(Waudby-Smith & Ramdas 2023). If each x is 0 or 1, the stake is the likelihood ratio of the success rate m(1 -
+λ(1 - m)) against m.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The writer process: copy messages of an observer from shared memory to the log.
 
-It ends on request, or when standard input closes because the node's process has ended. In both cases it first writes
-all messages that were sent.
+The writer ends on request, or when standard input closes because the node's process has ended. In both cases
+it first writes all messages that were sent.
 """
 
 from __future__ import annotations

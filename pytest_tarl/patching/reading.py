@@ -61,7 +61,7 @@ class Patch:
 
 
 def read(path: Path) -> Patch:
-    """Read a patch. Raise RepairError if it is missing, not written by TARL, truncated or edited."""
+    """Read a patch. Raise RepairError if the patch is missing, not written by TARL, truncated or edited."""
     try:
         content = unquoted(read_regular(path))
     except OSError as problem:
@@ -130,7 +130,7 @@ def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
         start, old, new = int(found[1]), int(found[2] or 1), int(found[4] or 1)
         hunk = Hunk(start - (old > 0), tuple(_signed(lines[at + 1 : end])))
         if (len(hunk.old), len(hunk.new)) != (old, new) or hunk.start < 0:
-            raise ValueError("hunk of another length")
+            raise ValueError("a hunk has a wrong length")
         yield hunk
 
 
@@ -144,5 +144,5 @@ def _signed(lines: Sequence[bytes]) -> list[tuple[str, bytes]]:
         elif sign and sign in " +-" and line.endswith(b"\n"):
             body.append((sign, line[1:]))
         else:
-            raise ValueError("no line of a hunk")
+            raise ValueError("a line belongs to no hunk")
     return body

@@ -80,7 +80,7 @@ class RealBus(Bus):
     def _own_class(self, message: Any, topic: str) -> Any:
         """Convert a message to the class of the installed ROS.
 
-        Raise RecordingError if it is invalid or not installed.
+        Raise RecordingError if the message is invalid or its class is not installed.
         """
         own = type(message)
         package, _, short = type_name(own).partition("/")

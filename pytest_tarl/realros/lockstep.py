@@ -47,7 +47,7 @@ class Wire:
     def take(self) -> tuple[Way, Any] | None:
         """Wait for the message that was sent first and return it, or None if no message is in transit.
 
-        Raise RecordingError if it does not arrive within PATIENCE.
+        Raise RecordingError if the message does not arrive within PATIENCE.
         """
         if not self._expected:
             return None

@@ -131,8 +131,8 @@ class RclpyNetwork:
     def joined(self, subscription: Any) -> None:
         """Count the publishers' stored messages as in transit to a new subscription.
 
-        Wait until all are sent: a node that took a newer message first would also get old messages, which a short queue
-        drops.
+        Wait until all of them are sent. Otherwise the node might take a newer message first and then also get
+        old messages, which a short queue would have dropped.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
@@ -165,7 +165,7 @@ class RclpyNetwork:
 
         Return (topic, message); None if no message is in transit.
 
-        Raise RecordingError if it does not arrive within PATIENCE.
+        Raise RecordingError if the message does not arrive within PATIENCE.
         """
         if not self.for_world:
             return None

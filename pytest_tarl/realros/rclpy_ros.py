@@ -56,7 +56,7 @@ class RclpyBus(RealBus):
     def _publisher(self, topic: str, message_class: Any, latch: bool) -> Any:
         """Return the world's publisher.
 
-        It is transient local with depth 1 if it latches or if a subscription requires that.
+        The publisher is transient local with depth 1 if it latches or if a subscription requires that.
         """
         qos = self._network.rclpy.qos
         wanted = [

@@ -82,7 +82,7 @@ class RospyBus(RealBus):
 
 
 class Lane:
-    """The callbacks of a node for one topic. They handle one message at a time, as in rospy's thread."""
+    """The callbacks of a node for one topic. The callbacks handle one message at a time, as in rospy's thread."""
 
     def __init__(self, process: Process, subscriber: Any) -> None:
         self._process = process

@@ -25,7 +25,10 @@ class Purse:
     begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
-        """Return the trials of a phase. They raise BudgetSpentError when it ends; then pass them to `settle`."""
+        """Return the trials of a phase.
+
+        The trials raise BudgetSpentError when the phase ends; then pass the trials to `settle`.
+        """
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)
 

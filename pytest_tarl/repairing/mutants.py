@@ -56,7 +56,7 @@ class Mutants:
         self._ahead.foresee(self._foreseen(wanted, drift))
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
-        """Run one episode of a candidate. Raise RepairError if it cannot be written into the source."""
+        """Run one episode of a candidate. Raise RepairError if the candidate cannot be written into the source."""
         plan = EpisodePlan(seed, drift, self.source(candidate))
         return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 

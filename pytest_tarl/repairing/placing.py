@@ -133,8 +133,8 @@ class Placing:
         key = name.rpartition("/")[2].removeprefix("~")
         who = "the test itself passes it (parameters=…, argv=…)" if key in text else "this test sets it"
         return (
-            f"`{operand.code}` is changed at its use: the parameter {name!r} has a default and possibly a value in the "
-            f"package, but {who}, and tests are never edited: change the parameter where your robot sets it"
+            f"`{operand.code}` is changed at its use. The parameter {name!r} has a default and possibly a value in "
+            f"the package, but {who}, and TARL never edits tests. Change the parameter where your robot sets it"
         )
 
     def _users(self, place: Place, used: Sequence[Operand]) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Constants that need not be searched, because a factor on another constant has the same effect.
 
-These are factors of one product, and constants that a constructor stores for later use.
+Such constants are factors of one product, and constants that a constructor stores for later use.
 """
 
 from __future__ import annotations

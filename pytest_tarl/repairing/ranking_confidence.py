@@ -32,7 +32,7 @@ def ranking_confidence(
     elif places:
         first = f"the repair of the first held on {held} fresh seeds"
     else:
-        first = "no repair confirms the first"
+        first = "no accepted repair confirms the first"
     if ranking is None:
         simulated = f"{len(effects)} of {sites} lines were simulated, most of them in few runs"
         return f"{first}; {simulated} (--tarl-localize=full ranks all)"
@@ -44,7 +44,7 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     first = places[0] if places else max(effects, key=lambda site: max(one.effect for one in effects[site]))
     found = ranking.certainty(first) if len(places) < 2 else None
     if found is None:
-        return f"alone, {len(effects)} lines were simulated with every factor"
+        return f"{len(effects)} lines were simulated alone, with every factor"
     told = f"{found.gaining} of {len(effects)} lines with constants gain anything alone"
     if found.by is None:
         return told
@@ -53,8 +53,8 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     span = f"{by}, about {percent(CONFIDENCE)}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"
-        return f"{told}; {more} more than it in the drifted world ({span})"
+        return f"{told}; {more} more than the first in the drifted world ({span})"
     if found.level:
         others = "one other" if found.level == 1 else f"{found.level} others"
-        return f"{told}; {others} cannot be distinguished from it (the next: {span})"
-    return f"{told}; it is ahead of the next ({span})"
+        return f"{told}; {others} cannot be distinguished from the first (the next: {span})"
+    return f"{told}; the first gains more than the next ({span})"

@@ -1,6 +1,7 @@
 """Choose the constants that are moved on a scale other than factors.
 
-These are zeros, shares close to 1, and named offsets that are small compared with the values to which they are added.
+Such constants are zeros, shares close to 1, and named offsets that are small compared with the values to
+which they are added.
 """
 
 from __future__ import annotations

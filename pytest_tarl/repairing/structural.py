@@ -186,7 +186,7 @@ class Structures:
         return [operand for one in fitting for operand in self._at(one, nearest[:COMMANDS], first=None)]
 
     def _at_the_best(self, known: Sequence[Template], among: Sequence[Spot]) -> list[Operand]:
-        """Return the operands of the templates that need no sensor at the statement that responds most."""
+        """Return, at the statement that responds most, the operands of the templates that need no sensor."""
         here = [spot for spot in among if str(spot.site) in self.responding[:1]]
         fitting = [one for one in known if one.on not in OF_SENSORS]
         return [operand for one in fitting for operand in self._at(one, here, first=True)]

@@ -45,7 +45,7 @@ def plane(comparison: Comparison) -> Plane:
 
 
 def _covered(comparison: Comparison, dimension: int) -> float:
-    """Return the share of a sensor's values that occur in the region; at 1, the sensor does not separate it."""
+    """Return the share of a sensor's values that occur in the region. At 1, the sensor cannot separate the region."""
     seen = {cell[dimension] for cell in comparison.cells}
     region = (*comparison.region.cells, *comparison.region.novel)
     return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0

@@ -34,7 +34,7 @@ def sentences(stated: Guarantee) -> Iterator[str]:
         yield f"{most} of the missions earn at least {figure(stated.quantile)}, {sure}"
     elif stated.needed:
         yield (
-            f"a reward that {most} of the missions reach can be stated from {stated.needed} episodes on, "
+            f"stating a reward that {most} of the missions reach needs {stated.needed} episodes, "
             f"{stated.needed - stated.episodes} more than were run"
         )
     yield "each bound holds separately"

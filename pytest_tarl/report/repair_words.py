@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair
-from pytest_tarl.report.amounts import amount, atr, signed
+from pytest_tarl.report.amounts import amount, atr
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.words import designed_world, world_name
 
@@ -16,7 +16,7 @@ REASONS: dict[Reason, str] = {
     "time": "the search reached its time limit",
     "interrupted": "the search was interrupted",
     "not confirmed": "its gain was not confirmed on further seeds",
-    "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
+    "worse than unrepaired": "on fresh seeds the best change found earns less than the unrepaired node",
     "another test gets worse": "the best change found makes another recorded test of the node worse",
     "not over the whole range": "the best change found works only in a part of the drift's range",
     "not at its definition": "the best change found works only at a use, but --tarl-edit=definition was given",
@@ -31,8 +31,8 @@ ENDS: dict[Reason, str] = {
     "": "accepted",
     "gain too small": "dropped, it gains too little",
     "nominal gets worse": "dropped, the designed world gets worse",
-    "not confirmed": "dropped, not confirmed on further seeds",
-    "worse than unrepaired": "dropped, earns less than no repair",
+    "not confirmed": "dropped, its gain was not confirmed on further seeds",
+    "worse than unrepaired": "dropped, it earns less than the unrepaired node",
     "another test gets worse": "dropped, another test of the node gets worse",
     "not over the whole range": "dropped, it works only in a part of the drift's range",
     "not at its definition": "dropped, it works only at a use of the constant",
@@ -71,12 +71,17 @@ def repair_words(repair: Repair) -> str:
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
     """Describe the gain of a partial repair and its effect on the designed world."""
-    sure = f"about {percent(partial.confidence)} confidence"
-    gained = f"{signed(partial.gain)} per episode, at least {signed(partial.low)} ({sure})"
+    sure = f"with about {percent(partial.confidence)} confidence"
+    least = "least" if partial.designed_low >= 0.0 else "most"
     return (
-        f"{gained}, of {amount(partial.lost)} lost; {designed_world(comparison)} "
-        f"{signed(partial.designed)}, at least {signed(partial.designed_low)}"
+        f"the drift costs {amount(partial.lost)} per episode, and the change regains {amount(partial.gain)} of it "
+        f"(at least {amount(partial.low)}, {sure}); in the {designed_world(comparison)}, an episode with the change "
+        f"earns {_more_or_less(partial.designed)} (at {least} {_more_or_less(partial.designed_low)})"
     )
+
+
+def _more_or_less(difference: float) -> str:
+    return f"{amount(abs(difference))} {'more' if difference >= 0.0 else 'less'}"
 
 
 def refusal(repair: Repair) -> str:
@@ -98,7 +103,9 @@ def attempt_words(attempt: Attempt) -> str:
     if not attempt.episodes:
         return f"{attempt.what}: {outcome}"
     kind = "fresh" if attempt.fresh else "known"
-    return f"{attempt.what}: {outcome}, {amount(attempt.mean)} in {attempt.episodes} {kind} episodes"
+    return (
+        f"{attempt.what}: {outcome}, mean reward {amount(attempt.mean)} in {attempt.episodes} {kind} episodes"
+    )
 
 
 def ways_out(comparison: Comparison) -> str:

@@ -221,7 +221,7 @@ class Bus:
         place.publications.append(publication)
 
     def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
-        """Add a node's subscription. It receives latched messages as soon as the node waits."""
+        """Add a node's subscription. The subscription receives latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
         for publication in place.publications:

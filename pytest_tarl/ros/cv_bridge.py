@@ -58,7 +58,8 @@ class CvBridge:
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
         """Return an array of shape (height, width[, channels]) as an image message.
 
-        Raise TypeError if it is not an array, CvBridgeError if its type does not fit the encoding.
+        Raise TypeError if the image is not an array, CvBridgeError if the type of the array does not fit the
+        encoding.
         """
         if not hasattr(cvim, "dtype"):
             raise TypeError("Your input type is not a numpy array")

@@ -115,7 +115,7 @@ def named(one: Launched, names: Iterable[str]) -> bool:
 def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
     """Return a launch file: a path relative to `folder`, or its name in the workspace around it.
 
-    Raise SettingsError if there is none; its message begins with `where`.
+    Raise SettingsError if there is no such file; the message of the error begins with `where`.
     """
     path = (folder / file).resolve()
     if path.is_file():

@@ -101,7 +101,7 @@ def occupancygrid_to_numpy(msg: Any) -> Any:
 def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
     """Return an array of shape (height, width) as a map; masked cells become unknown.
 
-    Raise TypeError unless it is a two-dimensional array of int8.
+    Raise TypeError unless the array is two-dimensional and of int8.
     """
     import numpy as np
 

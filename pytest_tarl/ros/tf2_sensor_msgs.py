@@ -12,7 +12,10 @@ __all__ = ["do_transform_cloud"]
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """Return the cloud in the transform's frame. Its first three fields are x, y and z; the others are unchanged."""
+    """Return the cloud in the transform's frame.
+
+    The first three fields of the cloud are x, y and z; the others are unchanged.
+    """
     move, turn = transform.transform.translation, transform.transform.rotation
     rigid = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))
     points = [(*rigid.apply(tuple(point[:3])), *point[3:]) for point in read_points_list(cloud)]

@@ -138,7 +138,10 @@ class TransformTree:
         self.authorities: dict[str, str] = {}
 
     def add(self, message: Any, time: int, *, static: bool, authority: str = "") -> None:
-        """Add geometry_msgs/TransformStamped. Raise InvalidArgumentException if it is not a valid transform."""
+        """Add geometry_msgs/TransformStamped.
+
+        Raise InvalidArgumentException if the message is not a valid transform.
+        """
         child, parent = clean(message.child_frame_id), clean(message.header.frame_id)
         move, turn = message.transform.translation, message.transform.rotation
         pose = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))

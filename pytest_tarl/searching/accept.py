@@ -8,8 +8,8 @@ In both the drifted and the designed world, the test must show that
 
 The loss of one mission is capped at the reward of a designed mission, because failures are counted separately. Each
 mission is paired with the unrepaired program's mission of the same seed in the designed world. The means are tested by
-betting (learning/betting.py). The size of the bets is chosen before the test, from episodes on separate seeds. These
-episodes can refuse the candidate but not accept it.
+betting (learning/betting.py). The size of the bets is chosen before the test, from episodes on separate
+seeds. The episodes that set the bets can refuse the candidate but not accept it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Candidate guards, the conditions under which a repair applies.
 
-They are proposed from the region of change, from novel cells and from single sensors. Simulation selects among them.
+Guards are proposed from the region of change, from novel cells and from single sensors. Simulation selects
+among them.
 """
 
 from __future__ import annotations
@@ -81,10 +82,10 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
     """Return the guards to search under: `ALWAYS`, and those that hold where much changed and rarely elsewhere.
 
     A guard's merit is the share of the change where it holds minus the share of designed steps where it holds (Youden's
-    J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost. `ALWAYS` usually
-    comes second. It comes first if no guard has much merit, because the drift then seems to be everywhere. It also
-    comes first if the best guard holds wherever the drifted robot went. Such a guard says nothing about places that
-    only a repaired robot reaches.
+    J). A guard that never holds in the designed world gets a bonus, and a second condition has a cost.
+    `ALWAYS` usually comes second. `ALWAYS` comes first if no guard has much merit, because the drift then
+    seems to be everywhere, and also if the best guard holds wherever the drifted robot went. Such a guard
+    says nothing about places that only a repaired robot reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 

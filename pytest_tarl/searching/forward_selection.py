@@ -22,7 +22,7 @@ PROMISING = 0.5  # minimum gain of a combination that is balanced, as a share of
 LEADERS = 5
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
 CLIMBS = (0.9, 1.1)  # factors by which a fixed parameter of a structural change is multiplied repeatedly
-CLIMB = 4  # maximum number of such multiplications
+CLIMB = 4  # maximum number of multiplications of one fixed parameter
 AMPLE = 1.02  # maximum gain of a refused combination that is adjusted, as a share of the wanted gain
 STRONG = 5.0  # factor for units that have no effect alone
 
@@ -246,7 +246,8 @@ class ForwardSelection:
     def sharpened(self, unit: Unit, factor: float, guard: Guard) -> Iterator[Candidate]:
         """Adjust the factor of a single unit that gains much on average, on the seeds where it earns least.
 
-        Unlike in a combination, failed missions count by their reward: near a narrow range, some missions fail.
+        Unlike in a combination, a failed mission counts with its reward, because some missions fail near a
+        narrow range of good values.
         """
         base = Joint(((unit, factor),), guard)
         begin, pairs = base.candidate(self.mutate), self.goal.pairs

@@ -1,8 +1,8 @@
 """Sequential halving: run every arm (an operand with a factor), and drop half of the arms after each round.
 
-Each round uses common seeds. It also drops arms that gain nothing or that fall significantly behind in a paired race,
-and it refines the best arms. References: Karnin, Koren & Somekh 2013; for the race, Maron & Moore 1994. The first round
-runs every arm once, so the search needs at least (operands × factors) episodes.
+Each round uses common seeds. The search also drops arms that gain nothing or that fall significantly behind
+in a paired race, and it refines the best arms. References: Karnin, Koren & Somekh 2013; for the race, Maron &
+Moore 1994. The first round runs every arm once, so the search needs at least (operands × factors) episodes.
 """
 
 from __future__ import annotations

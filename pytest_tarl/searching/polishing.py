@@ -1,8 +1,8 @@
 """Adjust the factors of a change that earns nearly enough on several seeds.
 
 A joint search uses large steps and usually one seed, so it finds only the good regions. The best point of a region
-often passes all missions but earns a few percent too little. Its neighbours are then better than any point elsewhere.
-This also applies to a single constant whose range of good values is narrow.
+often passes all missions but earns a few percent too little. The neighbours of this point are then better
+than any point elsewhere. The same is true for a single constant whose range of good values is narrow.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ KNOWN = 3  # minimum number of seeds on which a combination to adjust has run
 SEEDS = 3  # number of seeds on which factors are compared
 # ratios by which a factor is moved up or down; the second follows when the first no longer helps
 STEPS = (1.2, 1.08)
-SHARP_STEPS = (1.08, 1.03)  # the same for a single constant that earns much on most seeds
-MUCH = 0.7  # minimum gain of such a constant, as a share of the wanted gain
+SHARP_STEPS = (1.08, 1.03)  # such ratios for a single constant that earns much on most seeds
+MUCH = 0.7  # minimum gain of a constant that SHARP_STEPS applies to, as a share of the wanted gain
 EPISODES = 36  # number of episodes after which no further factor is tried
 BEHIND = 0.05  # maximum shortfall on the first seeds, as a share of the wanted gain; beyond it, no further seed runs
 

@@ -98,7 +98,7 @@ class Goal:
         return self.enough - fmean(map(self._less, seeds))
 
     def _less(self, seed: int) -> float:
-        """Return how much less than the mean a seed's mission may earn."""
+        """Return by how much the mission of a seed may earn less than the mean."""
         return self.harder.get(seed, 0.0) + self.tolerated.get(seed, 0.0)
 
 
@@ -123,7 +123,8 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    # extra episodes, added to the budget once a candidate has gained `FAR` of what `worth` wants
+    # extra episodes, added to the budget once a candidate has gained the share `FAR` of the gain that `worth`
+    # wants
     reserve: int = 0
     worth: Goal | None = None  # the goal whose wanted gain releases `reserve`
     # whether a candidate loses the missions that rejected candidates lost
@@ -281,9 +282,10 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
     """Return whether a candidate passes on further seeds, starting after `goal.pairs[first]`.
 
     The seeds on which other candidates fell short run first. A candidate is rejected early if it loses the missions
-    that rejected candidates lost in their acceptance tests. It is also rejected at the first failed mission, if
-    missions succeed in the designed world and the drift's size does not vary. The other reasons are a second seed with
-    too little reward, and a low estimate of the candidate's mean total (`falls_short`).
+    that rejected candidates lost in their acceptance tests. A candidate is also rejected at its first failed
+    mission, if missions succeed in the designed world and the drift's size does not vary. The other reasons
+    are a second seed with too little reward, and a low estimate of the candidate's mean total
+    (`falls_short`).
     """
     if trials.loses(candidate):
         return False

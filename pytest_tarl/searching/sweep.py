@@ -386,7 +386,8 @@ class Sweep:
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
 
-        This runs before refused operands are refined further, so combinations come before near-duplicates.
+        Combinations are tried before refused operands are refined further, so they come before
+        near-duplicates.
         """
         self.refused -= {tried for tried in self.refused if tried[1] == guard}
         leaders = self.gains.leaders(guard)

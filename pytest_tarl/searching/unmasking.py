@@ -17,10 +17,10 @@ from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
 GAINED = 0.3  # minimum gain of a change under which others are tried, as a share of the wanted gain
-LONGER = 1.2  # minimum ratio of the lengths of its missions to those without the change
+LONGER = 1.2  # minimum ratio of the length of missions with the change to their length without it
 MOST = 24  # maximum number of constants to try under the change
 FINER = (1.5, 0.65)  # factors for a constant that has an effect under the change
-ROUNDS = 2  # number of times that the best factor of such a constant is refined
+ROUNDS = 2  # number of times that the best factor of a constant is refined under the change
 
 
 def longer(base: Joint, selection: ForwardSelection) -> bool:

@@ -18,9 +18,11 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
 HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
-# standard errors by which a loss must be below the tolerated one for a bound with 4 % risk to show it 4 times in 5
+# number of standard errors between a loss and the tolerated loss at which a bound with 4 % risk shows in 4 of
+# 5 cases that the loss is tolerated
 HOLDING = 3.0
-# standard errors by which a loss must be above the tolerated one for a bound with 0.4 % risk to show it 4 times in 5
+# number of standard errors between a loss and the tolerated loss at which a bound with 0.4 % risk shows in 4
+# of 5 cases that the loss is too large
 FAILING = 4.0
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
 CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail
@@ -33,7 +35,7 @@ class Model:
 
     Each episode has its own threshold: it fails if t exceeds the threshold. Thresholds follow a logistic distribution,
     with a uniform prior over CENTRES and SCALES. The mean loss of reward is interpolated linearly between the measured
-    values of t. Its standard deviation is that of the nearest measured value beyond t.
+    values of t. The standard deviation of the loss is that of the nearest measured value beyond t.
     """
 
     evidence: Mapping[float, Evidence]

@@ -129,7 +129,7 @@ def _failure(write: Callable[[Path], None], path: Path) -> OSError | None:
 def _problem(found: Stress) -> str:
     """Return why the test fails, or an empty text.
 
-    It fails if a direction breaks `must_hold`, or if the nominal world differs from the recorded one.
+    The test fails if a direction breaks `must_hold`, or if the nominal world differs from the recorded one.
     """
     if found.ended == "nominal":
         return words.nominal_words()

@@ -111,7 +111,7 @@ class Evaluator:
 
         Episodes are paired by seed with nominal ones. Several points may share a pool if none of them was chosen by its
         outcomes. `risk` is divided evenly among `sizes`, the numbers of episodes after which the test checks for a
-        decision. It also stops once a failure can hardly be shown any more. Raise BudgetSpentError.
+        decision. The test also stops once a failure can hardly be shown any more. Raise BudgetSpentError.
         """
         share = risk / len(sizes)
         for size in sizes:

@@ -151,8 +151,9 @@ def margin_of(
 def refuted(given: Guarantee, outcomes: Sequence[Outcome], nominal: Sequence[Outcome], risk: float) -> bool:
     """Return whether fresh episodes show, with error probability `risk`, that the guarantee fails.
 
-    It fails if too few episodes pass or too much reward is lost. Losses are paired by seed with nominal episodes. The
-    bound of the loss is exact if the marker declares total_range; otherwise it is Student's approximation.
+    The guarantee fails if too few episodes pass or too much reward is lost. Losses are paired by seed with
+    nominal episodes. The bound of the loss is exact if the marker declares total_range; otherwise it is
+    Student's approximation.
     """
     if _too_few_pass(given, outcomes, risk / 2):
         return True
@@ -175,8 +176,8 @@ def hopeless(
 ) -> bool:
     """Return whether the first episodes make it unlikely that `most` episodes will refute the guarantee.
 
-    It is unlikely if the guarantee would still hold after adding about one standard error to both the loss and the
-    number of failures.
+    A refutation is unlikely if the guarantee would still hold after adding about one standard error to both
+    the loss and the number of failures.
     """
     count, failed = len(outcomes), sum(not one.passed for one in outcomes)
     if (failed + sqrt(failed + 1.0)) / count * most >= most - most_passed(given, most, risk):

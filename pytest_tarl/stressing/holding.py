@@ -64,7 +64,7 @@ def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) ->
 
 def least(share: float, failed: int, risk: float) -> int:
     """Return the minimum number of episodes that show a success rate of `share` although `failed` of them failed."""
-    # upper limit of the search: of `failed` + 1 groups of episodes, one has no failure
+    # upper limit of the search: if the episodes form `failed` + 1 groups, at least one group has no failure
     most = (failed + 1) * episodes_for_quantile(1.0 - share, 1.0 - risk / (failed + 1))
     sizes = range(LEAST, max(most, LEAST) + 1)
     return sizes[bisect_left(sizes, True, key=lambda n: rate(n - failed, n, 1.0 - risk).low >= share)]

@@ -84,7 +84,10 @@ def text(found: Margins) -> str:
 
 
 def read(content: bytes, where: str) -> Margins:
-    """Parse the content of a margins file. Raise FixtureError if it is not one; `where` names the file."""
+    """Parse the content of a margins file.
+
+    Raise FixtureError if the file is not a margins file; `where` names the file.
+    """
     try:
         document = json.loads(content)
         if document["format"] != FORMAT_VERSION:

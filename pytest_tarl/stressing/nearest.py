@@ -37,7 +37,8 @@ PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # minimum expected gain of a drift that is tried, in units of the best distance
 # numbers of standard deviations by which the predictions may be optimistic, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# largest shortfall of a tried drift that counts as failing, in units of the excess loss that fresh episodes can show
+# maximum predicted shortfall, as a share of the detectable excess loss, at which a tried drift counts as
+# failing
 SURE = 0.5
 # number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
 CLEAR = 4.0
@@ -59,9 +60,9 @@ SPREAD = 0.35  # initial standard deviation of CMA-ES, in units of the best dist
 FIRM = ((0.5, 1.2), (1.0, 1.8), (1.5, 2.5))
 NEAR = ((0.35, 1.05), (0.15, 0.9))
 EXPECTED = ((0.2, 0.9), (0.4, 1.0), (0.6, 1.2), (0.8, 1.5), (1.0, 2.0), (1.5, 2.5))
-# excess of a loss over the tolerated one, in standard errors, that fresh episodes show 4 times in 5
+# excess over the tolerated loss, in standard errors, that fresh episodes show in 4 of 5 cases
 STANDARD = 4.1
-# excess of a failure rate, in standard errors, that fresh episodes show 4 times in 5; maximum failure rate
+# excess of a failure rate, in standard errors, that fresh episodes show in 4 of 5 cases; maximum failure rate
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
@@ -69,7 +70,7 @@ PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 # share of the distance below which components may be noise; they are dropped before confirmation
 TRIFLE = 0.15
 
-Steps = Sequence[tuple[float, float]]  # (errors of the model, excess) for each step of FIRM, NEAR or EXPECTED
+Steps = Sequence[tuple[float, float]]  # the pairs of FIRM, NEAR or EXPECTED: errors of the model, excess
 
 
 @dataclass
@@ -213,8 +214,8 @@ class Nearest:
     def _farther(self, limit: float) -> list[Point]:
         """Return up to three failing drifts farther than `limit` that change several directions, nearest first.
 
-        They are tested if no nearer candidate is confirmed: the model may have been wrong, or a few episodes may have
-        failed by chance.
+        These drifts are tested if no nearer candidate is confirmed: the model may have been wrong, or a few
+        episodes may have failed by chance.
         """
         usual, coordinates = self.evaluator.space.nominal, self._nominal()
         found = [

@@ -182,8 +182,8 @@ def _statements(stress: Stress) -> Iterator[str]:
         yield from (f"<p>{escape(one)}</p>" for one in statement_words(stress))
         return
     yield (
-        f"<p>Each ran in failing episodes, of which {found.failing} were repeated, and in none of {found.others} "
-        "other episodes.</p>"
+        f"<p>Each statement ran in some of the {found.failing} failing episodes that were repeated, and in none "
+        f"of {found.others} other episodes.</p>"
     )
     rows = (
         f"<tr><td>{escape(one.path)}:{one.line}<td>{one.failing} of {found.failing}"

@@ -1,7 +1,7 @@
 """Sobol indices: how much of the margin's variance over the declared space each direction explains.
 
-The package SALib creates the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018). It is
-imported only when needed, because it imports pandas and matplotlib.
+The package SALib creates the sample and the estimates (Saltelli et al. 2010, doi:10.1016/j.cpc.2009.09.018).
+SALib is imported only when needed, because it imports pandas and matplotlib.
 """
 
 from __future__ import annotations

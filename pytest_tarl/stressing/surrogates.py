@@ -1,7 +1,7 @@
 """Gaussian processes over drifts: regression for the loss, classification for the failure rate.
 
-They follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the failure rate.
-Both functions are fixed at nominal: the loss at 0, the logit of the failure rate at a constant.
+Both follow Rasmussen & Williams 2006, algorithms 2.1, 3.1 and 3.2, with a binomial likelihood for the failure
+rate. Both functions are fixed at nominal: the loss at 0, the logit of the failure rate at a constant.
 """
 
 from __future__ import annotations

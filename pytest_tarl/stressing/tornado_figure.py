@@ -68,5 +68,6 @@ def tornado_words(stress: Stress) -> str:
         parts.append(f"{name}: {', '.join(ends)}")
     told = "; ".join(parts)
     return (
-        f"Largest margin that each direction alone loses; 1, the dashed limit, uses up the guarantee. {told}."
+        "Largest loss of margin over each direction alone; at 1, the dashed line, the guarantee is just met. "
+        f"{told}."
     )

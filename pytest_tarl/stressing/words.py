@@ -16,7 +16,7 @@ ROUNDING = 1e-9  # tolerance for rounding errors of places on a ray
 
 ENDED = {
     "budget": "The budget of {budget} did not suffice for the whole search: raise --tarl-stress-budget.",
-    "interrupted": "Interrupted after {episodes} episodes: this is what was known by then.",
+    "interrupted": "Interrupted after {episodes} episodes: these are the results so far.",
 }
 
 
@@ -159,9 +159,10 @@ def repair_lines(stress: Stress) -> Iterator[str]:
         if one.draws is not None:
             draws = one.draws
             yield (
-                f"over the declared space: {draws.passed_after} instead of {draws.passed_before} of {draws.episodes} "
-                f"fresh draws pass, at least {100 * draws.success_at_least:.3g} % with 95 % confidence, and each earns "
-                f"{draws.reward_after:.4g} instead of {draws.reward_before:.4g}."
+                f"over the declared space: {draws.passed_after} of {draws.episodes} fresh draws pass with the "
+                f"repair, {draws.passed_before} without it; success at least {100 * draws.success_at_least:.3g} "
+                f"% with 95 % confidence; mean reward {draws.reward_after:.4g} instead of "
+                f"{draws.reward_before:.4g}."
             )
         if one.withheld:
             yield f"The repair is withheld, since {one.withheld}."

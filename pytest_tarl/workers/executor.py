@@ -78,7 +78,7 @@ class Answer:
     def result(self) -> EpisodeRun:
         """Wait for the episode and return its run.
 
-        Raise TarlError if it could not run; raise pytest's Exit or Skipped if the test did.
+        Raise TarlError if the episode could not run; raise pytest's Exit or Skipped if the test did.
         """
         try:
             return protocol.answered(self.plan, self.future.result())

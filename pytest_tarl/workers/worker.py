@@ -161,7 +161,8 @@ def instruments(given: dict[str, Any]) -> Instruments:
 def _forwarded(requests: int, told: int) -> None:
     """Forward requests. If the parent run has ended, end this process immediately, even while a node runs.
 
-    This runs in a thread that `threading` does not list, because the recorder takes all listed threads for nodes.
+    The function runs in a thread that `threading` does not list, because the recorder takes all listed
+    threads for nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:

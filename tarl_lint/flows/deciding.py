@@ -17,7 +17,7 @@ CONSTRUCTORS = frozenset(["__init__", "__post_init__"])
 
 
 def deciding(tracer: Tracer, flows: Collection[Flow]) -> tuple[Step, ...]:
-    """Return the statements outside of the flows on which published values depend by data or control.
+    """Return the statements that are on no flow although published values depend on them, by data or control.
 
     Only files on a flow count. Assignments that set up a node (of a module, a class or a constructor) are left out:
     their constants are found where they are used.

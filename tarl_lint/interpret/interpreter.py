@@ -1,7 +1,7 @@
 """The state of the abstract interpretation, shared by all its parts.
 
-The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly,
-and functions of higher parts through `ctx.ops` (declared in `operations.py`, assigned in `wiring.py`).
+The parts are modules of functions that take the interpreter as `ctx`. The functions of a part call lower
+parts directly, and higher parts through `ctx.ops` (declared in `operations.py`, assigned in `wiring.py`).
 """
 
 from __future__ import annotations

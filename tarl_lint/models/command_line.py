@@ -1,7 +1,7 @@
 """The command line of a launched node: `sys.argv`, and the lists that a program makes of it.
 
-Its arguments are constants, so topic names among them are known. In lists that the program makes by selecting or
-grouping arguments, each element is tracked separately.
+The command-line arguments are constants, so topic names among them are known. In lists that the program makes
+by selecting or grouping arguments, each element is tracked separately.
 """
 
 from __future__ import annotations

@@ -118,7 +118,7 @@ def as_text(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def as_number(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `int(x)`. It is a constant in a run for one launched node, where numbers may be part of names."""
+    """Return `int(x)`. The result is a constant in a run for one launched node, where numbers may be part of names."""
     known, constant = it.arguments[0][0].constant() if len(it.arguments[0]) == 1 else (False, None)
     if not (ctx.exact and known and isinstance(constant, str | int | float)):
         return ctx.ops.generic(ctx, f"builtins.{it.name}", it.arguments, it.frame, it.call)

@@ -12,8 +12,9 @@ from pathlib import Path
 class Layout:
     """Derives the names of modules and packages; examines each directory once. Paths are absolute.
 
-    The nearest import root counts. It is a script's own directory, the directory that holds the outermost package
-    (whatever its name: `src/`, `include/`, `scripts/`), or a `package_dir` in setup.py or setup.cfg.
+    The nearest import root counts. An import root is a script's own directory, the directory that holds the
+    outermost package (whatever its name: `src/`, `include/`, `scripts/`), or a `package_dir` in setup.py or
+    setup.cfg.
     """
 
     def __init__(self) -> None:

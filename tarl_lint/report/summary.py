@@ -63,7 +63,7 @@ def _beyond(result: Result) -> Iterator[Line]:
         more = f" and {len(result.ended) - _CLASSES} more" if len(result.ended) > _CLASSES else ""
         yield (
             (
-                f"Not followed: data passed to classes outside the files: {named}{more} ({setting}).",
+                f"Not followed: data that is passed to classes outside the linted files, {named}{more} ({setting}).",
                 "quiet",
             ),
         )

@@ -1,8 +1,8 @@
 """Cache of results by content, settings and version. A problem with it never fails a run.
 
-One file contains the entries of the last run on the same paths with the same settings. Its first line is the digest
-of the rest, so a damaged file is not read. The file is written under another name and then renamed, so concurrent
-runs only replace each other's file.
+One file contains the entries of the last run on the same paths with the same settings. The first line of the
+file is the digest of the rest, so a damaged file is not read. The file is written under another name and then
+renamed, so concurrent runs only replace each other's file.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Worker processes. They cannot import linted files, and Ctrl-C ends them silently.
+"""Worker processes. A worker cannot import linted files, and Ctrl-C ends it silently.
 
 Workers are forked if possible: a fork already has the modules and the `sys.path` of this process, so it need not import
 anything. A spawned worker has the working directory on its import path before any code of tarl-lint runs. On Windows,

@@ -41,7 +41,7 @@ def _patterns(value: Any) -> tuple[str, ...] | None:
 
 
 def check_pattern(pattern: str) -> str:
-    """Return a pattern. Raises ValueError if it has backslashes, since such a pattern would match nothing."""
+    """Return a pattern. Raises ValueError for a pattern with backslashes, which would match nothing."""
     if re.search(r"\\(\w|$)", pattern):
         meant = pattern.replace("\\", "/")
         raise ValueError(f"{pattern!r} has backslashes: patterns are written as in .gitignore: {meant!r}.")

@@ -1,6 +1,7 @@
 """Find the topics that the C++ source of a node names as literals in calls, without any analysis of the code.
 
-These topics are drawn and composed, so that a chain does not end at a C++ node. No rule relies on them.
+The topics of C++ nodes are drawn and composed, so that a chain does not end at a C++ node. No rule relies on
+them.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ class UnreadableError(Exception):
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """Return the content of a file. Raises UnreadableError if it has more than `most` bytes or cannot be read.
+    """Return the content of a file. Raises UnreadableError if the file has more than `most` bytes or cannot be read.
 
     A named pipe or a device is not opened: reading it can block or never end.
     """

@@ -35,7 +35,7 @@ def is_launch_name(name: str) -> bool:
 def launch_file(named: str, workspace: Workspace, shown: str) -> Path:
     """Return a launch file of the workspace by its name, or as `package/name`; `shown` names the workspace.
 
-    Raises NoLaunchFileError if there is none, or if several packages have it.
+    Raises NoLaunchFileError if there is no such launch file, or if several packages have one.
     """
     package, _, name = named.rpartition("/")
     for packages in (workspace.packages, tuple(one.package for one in workspace.hidden)):

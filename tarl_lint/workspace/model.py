@@ -70,7 +70,8 @@ class Hidden:
 class Workspace:
     """All packages below a folder, sorted by name; of packages with the same name, the first counts.
 
-    `hidden` are further packages. They are found by name and by path, but are not among `packages`.
+    `hidden` are further packages. Hidden packages are found by name and by path, but are not among
+    `packages`.
     """
 
     root: Path

@@ -57,7 +57,7 @@ _OF_ELEMENTS: Final = frozenset(["index", "count", "remove"])  # methods that co
 
 
 def binary(kind: type[ast.operator], left: Any, right: Any) -> Any:
-    """Return the result of an operator. Raises ValueError if it is too large, and what the operator raises."""
+    """Return the result of an operator. Raises ValueError if the result is too large, and what the operator raises."""
     if kind is ast.Mod and isinstance(left, str):
         return left % _for_text(left, left.count("%"), right)
     numbers = isinstance(left, int | float), isinstance(right, int | float)

@@ -91,9 +91,7 @@ def test_the_example_workspace_has_no_hazards(capsys, monkeypatch):
     assert reported(capsys, "all") == []
 
 
-def test_accepted_hazards_stay_accepted_and_runs_without_launch_files_keep_them(
-    tmp_path, capsys, monkeypatch
-):
+def test_accepted_hazards_stay_in_the_baseline_after_runs_without_launch_files(tmp_path, capsys, monkeypatch):
     file = str(workspace(tmp_path, known_rules()["TARL301"].INVALID[0]))
     monkeypatch.chdir(tmp_path)
     assert main(["--launch", file]) == 1
@@ -158,7 +156,9 @@ def test_code_that_earlier_versions_reported_wrongly_has_no_findings(snippet, tm
 
 
 @pytest.mark.parametrize("condition", ['if="$(env REAL)"', 'unless="$(env REAL)"', ""])
-def test_a_node_that_is_started_under_a_condition_is_no_second_author(condition, tmp_path, capsys):
+def test_a_node_that_is_started_under_a_condition_does_not_count_as_a_second_publisher(
+    condition, tmp_path, capsys
+):
     text = known_rules()["TARL305"].INVALID[0].replace("<node ", f"<node {condition} ", 1)
     found = reported(capsys, str(workspace(tmp_path, text)))
     assert [one["code"] for one in found] == ([] if condition else ["TARL305"])

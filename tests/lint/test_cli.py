@@ -101,7 +101,7 @@ def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys
     node.write_text("def f(:\n")
     out = lint(capsys, "--write-baseline")[1]
     assert out == (
-        "tarl-flows.json: 1 flow accepted (0 new, 0 removed, 1 kept that this run did not analyse).\n"
+        "tarl-flows.json: 1 flow accepted (0 new, 0 removed, 1 kept from files that this run did not analyse).\n"
         "Not analysed: 1 file that is not readable as Python 3 (TARL001).\n"
     )
 

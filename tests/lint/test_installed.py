@@ -99,8 +99,9 @@ def test_without_the_setting_the_base_class_is_opaque_and_named(workspace):
     (workspace / "pyproject.toml").write_text("[tool.tarl-lint]\n")
     result = linted(workspace)
     assert pairs(result) == set()
-    assert 'classes outside the files: robot_base.BaseNode (follow-installed = ["robot_base"])' in said(
-        result
+    assert (
+        'classes outside the linted files, robot_base.BaseNode (follow-installed = ["robot_base"])'
+        in said(result)
     )
 
 

@@ -99,7 +99,7 @@ def test_the_newest_object_of_a_site_is_separate_from_older_ones(ctx, frame):
     assert heap.read_field(ctx, newest, "x").deps == frozenset()
 
 
-def test_data_is_found_at_any_depth_but_not_elsewhere(ctx):
+def test_data_is_found_at_any_depth_inside_an_object_but_not_in_other_objects(ctx):
     outer, inner, empty = (instance(ctx, key) for key in "abc")
     updates.write_field(ctx, pointer(inner), "x", Value(DATA))
     updates.write_field(ctx, pointer(outer), "inner", pointer(inner))
@@ -107,7 +107,7 @@ def test_data_is_found_at_any_depth_but_not_elsewhere(ctx):
     assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
 
 
-def test_parts_of_a_message_without_own_data_add_nothing_to_the_data_of_the_message(ctx):
+def test_parts_without_data_add_nothing_to_the_data_of_their_message(ctx):
     message = recency.intern(ctx, "message", "m")
     message.info = 7
     message.sub("pose").sub("position")
@@ -117,7 +117,7 @@ def test_parts_of_a_message_without_own_data_add_nothing_to_the_data_of_the_mess
 
 
 @pytest.mark.parametrize("name", [heap.ANY, heap.LENGTH, heap.KEYS, heap.HELD, heap.SENT])
-def test_a_summary_field_of_a_library_object_is_not_one_of_its_parts(ctx, name):
+def test_a_summary_field_of_a_library_object_is_no_part_of_the_object(ctx, name):
     obj = recency.intern(ctx, "lib", "matrix")
     assert heap.read_field(ctx, obj, name) is BOTTOM
     assert not obj.subs
@@ -172,7 +172,9 @@ def carrying(graph, frame, key):
     return graph.node(key, Place(frame, None, "assign", (0, 0, 0, 0)), frozenset())
 
 
-def test_content_depends_on_a_carrier_only_if_the_content_was_inside_when_it_was_passed_on(ctx, frame):
+def test_content_depends_on_a_carrier_only_if_it_was_in_the_carrier_when_the_carrier_was_passed_on(
+    ctx, frame
+):
     graph = ctx.graph
     item, carrier = carrying(graph, frame, "item"), carrying(graph, frame, "carrier")
     content, carriers = frozenset([item]), frozenset([carrier])
@@ -183,7 +185,7 @@ def test_content_depends_on_a_carrier_only_if_the_content_was_inside_when_it_was
     assert graph.through(content, carriers) == {arrived}
 
 
-def test_a_call_depends_on_the_carriers_behind_a_cached_answer(ctx, frame):
+def test_a_call_depends_on_the_carriers_used_by_a_cached_answer(ctx, frame):
     graph = ctx.graph
     item, first, second = (carrying(graph, frame, key) for key in ("item", "first", "second"))
     graph.hold(first, frozenset([item]))

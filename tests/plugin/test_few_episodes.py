@@ -21,7 +21,7 @@ def test_the_note_is_absent_for_many_or_equal_episodes() -> None:
 
 
 def test_the_note_says_that_up_to_three_episodes_show_nothing() -> None:
-    shown = "episodes are too few: a comparison with as many cannot show any loss. Record at least 4."
+    shown = "episodes are too few: a comparison with so few episodes cannot show any loss. Record at least 4."
     assert detectable(np.array([1.0, 2.0])) == [f"2 {shown}"]
     assert detectable(np.ones(3)) == [f"3 {shown}"]
     assert "shows a loss of" in detectable(np.arange(4.0))[0]

@@ -18,7 +18,7 @@ def test_recording_prints_bounds_and_saves_them(tank: pytest.Pytester) -> None:
         "  16 of 16 missions succeeded: success rate at least 82.9 % with 95 % confidence, over the "
         "worlds that this test samples",
         "  mean reward -* per mission: at least -* with 95 % confidence (approximate: no total_range is declared)",
-        "  a reward that 95 % of the missions reach can be stated from 59 episodes on, 43 more than were run",
+        "  stating a reward that 95 % of the missions reach needs 59 episodes, 43 more than were run",
     )
     stated = load(fixture_file(tank)).stated
     assert stated is not None

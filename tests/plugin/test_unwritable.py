@@ -23,7 +23,10 @@ ADVICE = {
     errno.EFBIG: "the file is larger than its limit: raise the limit, for example with `ulimit -f unlimited`, and run "
     "the command again.",
     errno.EROFS: "make the folder writable, or work in a copy.",
-    errno.EIO: "another kind of file is in its place, or the disk fails: check the path and run the command again.",
+    errno.EIO: (
+        "something other than a regular file is at this path, or the disk fails: check the path and run the command "
+        "again."
+    ),
 }
 
 

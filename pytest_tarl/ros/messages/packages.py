@@ -63,7 +63,10 @@ class PackagePart(ModuleType):
 
 
 class MessagePackage(ModuleType):
-    """`package`. Its parts are available without an explicit import, as in ROS, where messages import each other."""
+    """`package`.
+
+    The parts of the package are available without an explicit import, as in ROS, where messages import each other.
+    """
 
     def __init__(self, kind: Kind, package: str) -> None:
         super().__init__(package, f"Message package {package}, built from definitions.")

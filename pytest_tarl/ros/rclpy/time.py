@@ -17,7 +17,7 @@ CONVERSION_CONSTANT = S_TO_NS = NANOSECONDS
 
 
 class ClockType(Enum):
-    """The clock of an instant. It prints as `ClockType.ROS_TIME`; it is not an int, but `int` converts it."""
+    """The clock of an instant. A clock type prints as `ClockType.ROS_TIME`; it is not an int, but `int` converts it."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

@@ -19,7 +19,7 @@ def _server(api: str) -> tuple[RospyNode, ParameterServer]:
 
 
 def get_param(param_name: str, default: Any = _NOTHING) -> Any:
-    """Return a parameter. Raise KeyError if it is not set and there is no default."""
+    """Return a parameter. Raise KeyError if the parameter is not set and there is no default."""
     asked()
     node, server = _server("get_param")
     value = server.get(node.resolve(param_name), _NOTHING)

@@ -184,7 +184,7 @@ class Publisher(Topic):
     def connection_header(self) -> dict[str, str]:
         """Return the connection header for subscribers.
 
-        It is computed on request, since `init_node` may be called after the publisher is created.
+        The header is computed on request, since `init_node` may be called after the publisher is created.
         """
         return {**self._headers, "callerid": self._node.name, "latching": str(self._latch)}
 

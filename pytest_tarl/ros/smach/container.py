@@ -53,7 +53,10 @@ class Container(State):
 
     @classmethod
     def opened(cls) -> Any:
-        """Return the open container. Raise InvalidStateError if there is none or it is not of this class."""
+        """Return the open container.
+
+        Raise InvalidStateError if no container is open or the open container is not of this class.
+        """
         if not Container._open:
             raise InvalidStateError("Attempting to add to a container, but no container is currently open.")
         if not isinstance(Container._open[-1], cls):

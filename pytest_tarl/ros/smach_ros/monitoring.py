@@ -17,7 +17,8 @@ _LOOK = Duration(0.05)
 class MonitorState(State):
     """Calls `cond_cb(userdata, message)` for each message of a topic, until it returns a false value.
 
-    Its outcomes are "invalid" in that case, "valid" after `max_checks` messages, and "preempted".
+    The outcomes of the state are "invalid" after a false value, "valid" after `max_checks` messages, and
+    "preempted".
     """
 
     def __init__(

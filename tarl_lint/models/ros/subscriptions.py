@@ -160,7 +160,10 @@ def receive(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def message_filter(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a subscriber of message_filters. Its first argument is the topic in rospy and the node in rclpy."""
+    """Return a subscriber of message_filters.
+
+    The first argument of the call is the topic in rospy and the node in rclpy.
+    """
     first = it.arguments[0][0] if it.arguments[0] else BOTTOM
     if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
         it.fact = catalog.FILTER_WITH_NODE

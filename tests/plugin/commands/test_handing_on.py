@@ -55,7 +55,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     return Calls(monkeypatch)
 
 
-def test_watch_hands_on_its_defaults(calls: Calls) -> None:
+def test_the_command_watch_passes_on_its_defaults(calls: Calls) -> None:
     calls.replace(watch, "run", 7)
     assert cli.main(["watch", "a.log", "b.log", "--fixture", "x/f.npz"]) == 7
     assert calls.made == [
@@ -66,7 +66,7 @@ def test_watch_hands_on_its_defaults(calls: Calls) -> None:
     assert (order.once, order.until_alarm, order.ros, order.json) == (False, False, "", None)
 
 
-def test_watch_hands_on_what_is_given(calls: Calls) -> None:
+def test_the_command_watch_passes_on_its_arguments(calls: Calls) -> None:
     calls.replace(watch, "run", 0)
     flags = "--state s --json - --alpha 0.1 --seed 3 --interval 2 --every 5 --once --until-alarm --diagnostics rospy"
     cli.main(["watch", "a.log", "--fixture", "f.npz", *flags.split()])
@@ -75,14 +75,16 @@ def test_watch_hands_on_what_is_given(calls: Calls) -> None:
     )
 
 
-def test_observe_hands_on_its_defaults_and_says_what_it_did(calls: Calls, capsys: Printed) -> None:
+def test_the_command_observe_passes_on_its_defaults_and_prints_a_summary(
+    calls: Calls, capsys: Printed
+) -> None:
     calls.replace(observing, "observe", "2 missions\x1b")
     assert cli.main(["observe", "node.py"]) == 0
     assert calls.made == [("observe", observing.Order(Path("node.py")))]
     assert capsys.readouterr() == ("", "2 missions\\x1b\n")
 
 
-def test_observe_hands_on_what_is_given(calls: Calls) -> None:
+def test_the_command_observe_passes_on_its_arguments(calls: Calls) -> None:
     calls.replace(observing, "observe", "")
     flags = (
         "--entry main --log m.log --log-size 1.5 --log-keep 4 --fixture f.npz --module a.py --module b.py "
@@ -108,7 +110,9 @@ def test_observe_hands_on_what_is_given(calls: Calls) -> None:
 @pytest.mark.parametrize(
     ("flags", "given"), [([], (False, False)), (["--force"], (True, False)), (["--partial"], (False, True))]
 )
-def test_apply_hands_on_its_patches(calls: Calls, capsys: Printed, flags: list[str], given: Any) -> None:
+def test_the_command_apply_passes_on_its_patches(
+    calls: Calls, capsys: Printed, flags: list[str], given: Any
+) -> None:
     calls.replace(applying, "apply", ["applied", "test it"])
     assert cli.main(["apply", "a.patch", "b.patch", *flags]) == 0
     force, partial = given
@@ -118,7 +122,7 @@ def test_apply_hands_on_its_patches(calls: Calls, capsys: Printed, flags: list[s
     assert capsys.readouterr().out == "applied\ntest it\n"
 
 
-def test_revert_hands_on_its_patches_and_the_folder(calls: Calls, capsys: Printed) -> None:
+def test_the_command_revert_passes_on_its_patches_and_its_folder(calls: Calls, capsys: Printed) -> None:
     calls.replace(applying, "revert", ["reverted"])
     assert cli.main(["revert", "a.patch", "--directory", "d"]) == 0
     assert calls.made == [("revert", [Path("a.patch")], Path("d"))]
@@ -132,7 +136,7 @@ def test_the_editor_applies_a_patch_with_all_checks(calls: Calls) -> None:
 
 
 @pytest.mark.parametrize("flags", [[], ["--sites"]])
-def test_show_hands_on_the_recording_and_its_sizes(
+def test_the_command_show_passes_on_the_recording_and_its_sizes(
     calls: Calls, capsys: Printed, tmp_path: Path, flags: list[str]
 ) -> None:
     path = tmp_path / "f.npz"
@@ -190,7 +194,7 @@ def test_a_difference_fails_only_on_request(
 def test_a_recording_is_compared_with_a_second_one(capsys: Printed) -> None:
     with pytest.raises(SystemExit):
         cli.main(["diff", "a.npz"])
-    assert "a second recording beside a.npz" in capsys.readouterr().err
+    assert "a second recording to compare with a.npz" in capsys.readouterr().err
 
 
 ROW = SimpleNamespace(title="test_it[mud]", name="speed", cells=("1 m/s", "2 m/s"), change="more fragile")
@@ -237,7 +241,7 @@ def test_margins_are_compared_as_markdown(calls: Calls, capsys: Printed) -> None
     ]
 
 
-def test_rows_of_one_test_have_one_heading() -> None:
+def test_rows_of_the_same_test_share_a_heading() -> None:
     rows: Any = [ROW, ROW, SimpleNamespace(**{**vars(ROW), "title": "test_b"}), ROW]
     titles = [line for line in margins_diff.lines(rows) if not line.startswith(" ")]
     assert titles == ["test_it[mud]", "test_b", "test_it[mud]"]
@@ -263,7 +267,9 @@ def test_a_changed_guarantee_is_noted() -> None:
     ("arguments", "given"),
     [([], (Path(".tarl/results"), None)), (["d", "--since", "main"], (Path("d"), "main"))],
 )
-def test_summary_hands_on_its_folder(calls: Calls, capsys: Printed, arguments: list[str], given: Any) -> None:
+def test_the_command_summary_passes_on_its_folder(
+    calls: Calls, capsys: Printed, arguments: list[str], given: Any
+) -> None:
     calls.replace(summary, "markdown", "| a |\n")
     assert cli.main(["summary", *arguments]) == 0
     assert calls.made == [("markdown", *given)]
@@ -271,7 +277,7 @@ def test_summary_hands_on_its_folder(calls: Calls, capsys: Printed, arguments: l
 
 
 @pytest.mark.parametrize(("flags", "fixture"), [([], None), (["--fixture", "f.npz"], Path("f.npz"))])
-def test_merge_writes_the_recording_where_it_may_be_written(
+def test_the_command_merge_checks_the_path_and_saves_the_recording(
     calls: Calls, capsys: Printed, flags: list[str], fixture: Any
 ) -> None:
     calls.replace(fixtures, "prepare")
@@ -299,7 +305,7 @@ def ingested(calls: Calls, *found: ingesting.Ingested) -> None:
 REQUIRED = ["--to", "data", "--fixture", "f.npz", "--robot", "{folder}"]
 
 
-def test_ingest_hands_on_its_defaults_and_what_is_given(calls: Calls) -> None:
+def test_the_command_ingest_passes_on_its_arguments_and_defaults(calls: Calls) -> None:
     ingested(calls)
     cli.main(["ingest", "a.log", *REQUIRED])
     flags = "--version 2 --site roof --repair fix --hash-robots salt"
@@ -311,7 +317,9 @@ def test_ingest_hands_on_its_defaults_and_what_is_given(calls: Calls) -> None:
     )
 
 
-def test_ingest_tells_what_each_log_added_and_the_sum(calls: Calls, capsys: Printed) -> None:
+def test_the_command_ingest_prints_the_missions_of_each_log_and_their_sum(
+    calls: Calls, capsys: Printed
+) -> None:
     ingested(
         calls,
         added("a.log", missions=3),
@@ -405,13 +413,13 @@ def asked(calls: Calls) -> question.Question:
     return result
 
 
-def test_fleet_asks_with_its_defaults(calls: Calls, answered: Answer, capsys: Printed) -> None:
+def test_the_command_fleet_passes_on_its_defaults(calls: Calls, answered: Answer, capsys: Printed) -> None:
     assert cli.main(["fleet", "data"]) == 0
     assert asked(calls) == question.Question("data", workers=processors.available())
     assert capsys.readouterr().out == "line\\n\n"
 
 
-def test_fleet_asks_what_is_given(calls: Calls, answered: Answer) -> None:
+def test_the_command_fleet_passes_on_its_arguments(calls: Calls, answered: Answer) -> None:
     flags = (
         "--fixture f.npz --since 2026-10-01 --robot r --alpha 0.1 --tolerance 2 --cluster tcp://c --workers 3"
     )
@@ -421,7 +429,7 @@ def test_fleet_asks_what_is_given(calls: Calls, answered: Answer) -> None:
     )
 
 
-def test_fleet_writes_the_result_where_it_is_wanted(
+def test_the_command_fleet_writes_its_result_to_the_named_files(
     calls: Calls, answered: Answer, capsys: Printed, tmp_path: Path
 ) -> None:
     cli.main(["fleet", "data", "--json", "-"])
@@ -441,7 +449,7 @@ def test_fleet_writes_the_result_where_it_is_wanted(
         (("robot",), ["--fail-if", "degraded", "--fail-if", "robot"], 1),
     ],
 )
-def test_fleet_fails_if_one_of_the_rules_is_met(
+def test_the_command_fleet_fails_if_one_condition_of_fail_if_is_met(
     answered: Answer, met: tuple[str, ...], flags: list[str], status: int
 ) -> None:
     answered.met = met
@@ -461,7 +469,9 @@ def test_a_result_that_cannot_be_written_is_reported(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("flags", "out"), [([], "table\n"), (["--format", "json"], "{}\n")])
-def test_workspace_prints_a_table_or_json(calls: Calls, capsys: Printed, flags: list[str], out: str) -> None:
+def test_the_command_workspace_prints_a_table_or_json(
+    calls: Calls, capsys: Printed, flags: list[str], out: str
+) -> None:
     calls.replace(workspace, "described", "found")
     calls.replace(workspace, "table", ["table"])
     calls.replace(workspace, "document", "{}\n")
@@ -497,7 +507,7 @@ def test_each_command_needs_the_packages_of_its_extra(
             assert capsys.readouterr().err == f"tarl: tarl {command[0]} needs {extra}\n"
 
 
-def test_output_that_nobody_reads_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_output_is_not_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> list[str]:
         raise BrokenPipeError
 
@@ -517,10 +527,10 @@ def test_output_that_nobody_reads_is_no_error(monkeypatch: pytest.MonkeyPatch) -
         (["node.py", "--log", "m.log", "--"], []),
     ],
 )
-def test_all_arguments_after_two_dashes_are_the_nodes_own(given: list[str], argv: list[str]) -> None:
+def test_all_arguments_after_two_dashes_go_to_the_node(given: list[str], argv: list[str]) -> None:
     found = cli.parser().parse_args(["observe", *given])
     assert (found.node, found.log, found.argv) == (Path("node.py"), Path("m.log"), argv)
 
 
-def test_two_dashes_also_begin_file_names_that_begin_with_one() -> None:
+def test_file_names_that_begin_with_a_dash_are_accepted_after_two_dashes() -> None:
     assert cli.parser().parse_args(["show", "--", "-f.npz"]).fixture == Path("-f.npz")

@@ -23,7 +23,7 @@ from pytest_tarl.commands.cli import main
             "tarl: Name one of the commands above, as in `tarl show .tarl/utility/NAME.npz`.",
         ),
         (["diff"], "usage: tarl diff", "tarl diff: first is missing."),
-        (["diff", "a.npz"], "usage: tarl diff", "tarl diff: Name a second recording beside a.npz."),
+        (["diff", "a.npz"], "usage: tarl diff", "tarl diff: Name a second recording to compare with a.npz."),
         (["watch"], "usage: tarl watch", "tarl watch: LOG and --fixture are missing."),
         (["diff", "a", "b", "c"], "usage: tarl diff", "tarl diff: Unknown argument 'c'."),
         (["show", "--site", "--x"], "usage: tarl show", "tarl show: fixture is missing."),

@@ -115,7 +115,7 @@ def test_arguments_that_contradict_each_other_are_refused(changed: Any, said: st
         {"logs": (Path("a.log"), Path("b.log"))},
     ],
 )
-def test_other_arguments_are_accepted(changed: Any) -> None:
+def test_arguments_that_do_not_contradict_each_other_are_accepted(changed: Any) -> None:
     watch._check(replace(ORDER, **changed))
 
 
@@ -159,7 +159,7 @@ def test_a_long_log_is_reported_while_it_is_read(clock: Clock, capsys: Printed) 
     assert capsys.readouterr().out == "headline 2\nheadline 3\n"
 
 
-def test_each_problem_is_told_once(clock: Clock, capsys: Printed) -> None:
+def test_each_problem_is_reported_once(clock: Clock, capsys: Printed) -> None:
     watched = Watch(problems=("a.log: torn",))
     told = teller(watched)
     told.look()
@@ -168,7 +168,9 @@ def test_each_problem_is_told_once(clock: Clock, capsys: Printed) -> None:
     assert capsys.readouterr().err == "tarl: a.log: torn\ntarl: b.log: gone\n"
 
 
-def test_a_file_of_the_result_is_kept_up_to_date(clock: Clock, tmp_path: Path, capsys: Printed) -> None:
+def test_the_result_file_is_updated_while_the_watch_runs(
+    clock: Clock, tmp_path: Path, capsys: Printed
+) -> None:
     path = tmp_path / "a.json"
     watched = Watch([], [status(1)], [])
     told = teller(watched, json=path)
@@ -185,14 +187,14 @@ def test_a_file_of_the_result_is_kept_up_to_date(clock: Clock, tmp_path: Path, c
     assert capsys.readouterr().out == ""
 
 
-def test_json_on_standard_output_replaces_the_words(clock: Clock, capsys: Printed) -> None:
+def test_json_on_standard_output_replaces_the_text_report(clock: Clock, capsys: Printed) -> None:
     watched = Watch([status(1, below=True)])
     told = teller(watched, json=Path("-"))
     assert told.close(told.look()) == 1
     assert capsys.readouterr().out == "json 1\njson 1\n"
 
 
-def test_under_once_only_the_report_is_printed(clock: Clock, capsys: Printed) -> None:
+def test_with_once_only_the_report_is_printed(clock: Clock, capsys: Printed) -> None:
     watched = Watch([status(1, below=True)], problems=("torn",))
     told = teller(watched, once=True)
     assert told.close(told.look()) == 1
@@ -244,7 +246,9 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 @pytest.mark.parametrize(("below", "code"), [(True, 1), (False, 0)])
-def test_once_returns_whether_there_is_an_alarm(begun: Any, below: bool, code: int, capsys: Printed) -> None:
+def test_with_once_the_exit_status_says_whether_there_is_an_alarm(
+    begun: Any, below: bool, code: int, capsys: Printed
+) -> None:
     watched = Watch([status(1, below=below)])
     given = begun(watched)
     order = replace(ORDER, once=True, alpha=0.1, seed=3)
@@ -254,7 +258,7 @@ def test_once_returns_whether_there_is_an_alarm(begun: Any, below: bool, code: i
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_once_reports_and_then_fails_on_an_unreadable_log(begun: Any, capsys: Printed) -> None:
+def test_with_once_an_unreadable_log_is_reported_and_the_command_fails(begun: Any, capsys: Printed) -> None:
     watched = Watch([status(1)], problems=("a.log: torn.", "b.log: gone."))
     begun(watched)
     with pytest.raises(LogError, match=r"^a\.log: torn\. b\.log: gone\.$"):
@@ -263,7 +267,7 @@ def test_once_reports_and_then_fails_on_an_unreadable_log(begun: Any, capsys: Pr
     assert capsys.readouterr().out == "report\n1\n"
 
 
-def test_an_interruption_ends_once_between_two_missions(begun: Any) -> None:
+def test_with_once_an_interruption_ends_the_watch_between_two_missions(begun: Any) -> None:
     watched = Watch()
 
     def poll() -> Iterator[int]:
@@ -287,7 +291,7 @@ def test_a_second_interruption_ends_at_once() -> None:
             signal.raise_signal(signal.SIGINT)
 
 
-def test_in_another_thread_signals_are_left_alone() -> None:
+def test_a_watch_in_another_thread_does_not_change_signal_handlers() -> None:
     before, found = signal.getsignal(signal.SIGINT), []
 
     def other() -> None:
@@ -300,7 +304,7 @@ def test_in_another_thread_signals_are_left_alone() -> None:
     assert found == [(False, before)]
 
 
-def test_a_watch_goes_on_until_the_first_alarm(begun: Any, capsys: Printed) -> None:
+def test_a_watch_with_until_alarm_runs_until_the_first_alarm(begun: Any, capsys: Printed) -> None:
     watched = Watch([], [status(1)], [status(2, below=True)], [status(3, below=True)])
     begun(watched)
     assert run(replace(ORDER, until_alarm=True, interval=1e-6)) == 1
@@ -308,7 +312,7 @@ def test_a_watch_goes_on_until_the_first_alarm(begun: Any, capsys: Printed) -> N
     assert capsys.readouterr().out == "headline 2\nreport\n2\n"
 
 
-def test_a_watch_waits_between_two_looks(begun: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_watch_waits_between_two_reads_of_the_logs(begun: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     waited: list[float | None] = []
 
     class Event(threading.Event):
@@ -324,7 +328,7 @@ def test_a_watch_waits_between_two_looks(begun: Any, monkeypatch: pytest.MonkeyP
     assert waited == [7.5] * 3
 
 
-def test_as_a_ros_node_the_node_looks_until_the_end(
+def test_a_watch_that_runs_as_a_ros_node_reads_the_logs_until_it_ends(
     begun: Any, monkeypatch: pytest.MonkeyPatch, capsys: Printed
 ) -> None:
     watched = Watch([status(1)], [status(2, below=True)])

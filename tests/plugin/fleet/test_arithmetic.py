@@ -46,7 +46,7 @@ def test_a_repair_helps_only_if_the_whole_interval_of_its_effect_is_above_zero(
     assert repaired(reward_bound=bound(low, high), strata=0).verdict == "not comparable"
 
 
-def test_strata_that_lack_one_of_the_arms_are_left_out() -> None:
+def test_strata_with_only_one_arm_are_left_out() -> None:
     robot_, stratum = ints(7, 7, 7, 8, 8, 9), ints(0, 0, 2, 2, 2, 1)
     treated, passed = ints(0, 1, 0, 1, 1, 0), ints(1, 0, 1, 1, 0, 1)
     total = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
@@ -58,7 +58,7 @@ def test_strata_that_lack_one_of_the_arms_are_left_out() -> None:
     assert found.passed.tolist() == [[1, 0], [1, 0], [0, 1]]
 
 
-def test_the_effect_weighs_strata_by_their_pairs_of_missions() -> None:
+def test_strata_are_weighted_by_their_number_of_pairs_of_missions() -> None:
     one = Strata(
         ints(0, 0, 1, 2),
         ints(0, 1, 1, 0),
@@ -110,7 +110,7 @@ def test_the_onset_of_a_robot_comes_from_the_test_with_the_most_evidence(
     )  # a bound that cannot be tested
 
 
-def test_the_residuals_of_the_recording_itself_are_zero_on_average() -> None:
+def test_residuals_of_the_recorded_missions_are_zero_on_average() -> None:
     recorded = fixture()
     world = residual_maps.designed(recorded)
     mean, variance, visits = residual_maps._mean(
@@ -125,7 +125,7 @@ def test_the_residuals_of_the_recording_itself_are_zero_on_average() -> None:
     assert world.of_visit[known].tolist() == (variance * visits)[known].tolist()
 
 
-def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> None:
+def test_the_noise_of_a_residual_map_is_at_least_the_noise_of_recorded_visits() -> None:
     recorded = fixture()
     world = residual_maps.designed(recorded)
     own = replace(recorded.sample, cells=((),) * (len(recorded.sample.cells) + 1))
@@ -140,7 +140,7 @@ def test_the_noise_of_a_residual_map_is_at_least_that_of_recorded_visits() -> No
     assert halved.variance[known] == pytest.approx(world.variance[:-1][known])
 
 
-def test_the_processes_of_all_robots_are_stored_in_one_array_and_split_by_robot() -> None:
+def test_the_e_processes_of_all_robots_share_one_array_that_is_split_by_robot() -> None:
     processes = restarts.begun(np.array([1.0] * 6))
     peak = np.array([1.0, 2.0, 10.0, 11.0, 20.0, 21.0])  # a bound of both robots, two scores of each
     some = Watched(ints(4, 7), replace(processes, peak=peak), ints(1, 2, 3, 4), 1)
@@ -246,7 +246,9 @@ def test_unrecorded_cells_of_a_chain_are_merged_into_one_cell() -> None:
     ("sizes", "most", "expected"),
     [((3, 0, 2, 4), 5, [[3, 2], [4]]), ((3, 2), 6, [[3, 2]]), ((6, 1), 5, [[6], [1]]), ((0,), 5, [])],
 )
-def test_parts_are_divided_into_tasks(sizes: tuple[int, ...], most: int, expected: list[list[int]]) -> None:
+def test_the_files_of_a_data_set_are_divided_into_tasks(
+    sizes: tuple[int, ...], most: int, expected: list[list[int]]
+) -> None:
     none = np.empty(0, np.uint64)
     wanted = [partitions.Wanted("c", "m", none, np.arange(size)) for size in sizes]
     assert [[one.numbers.size for one in some] for some in partitions.portions(wanted, most)] == expected
@@ -266,7 +268,7 @@ def test_the_weighted_mean_of_e_values_is_computed_from_logarithms_without_overf
     )  # without overflow
 
 
-def test_distances_are_the_largest_difference_in_standard_errors() -> None:
+def test_the_distance_of_two_maps_is_their_largest_difference_in_standard_errors() -> None:
     nan = np.nan
     maps = [
         ResidualMap("a", np.array([1.0, 0.0, nan]), np.array([0.5, 0.5, nan])),
@@ -296,7 +298,7 @@ def test_complete_linkage_joins_the_nearest_clusters_until_they_differ() -> None
     assert clusters._linked(apart[:1, :1], 5, 0.05) == [[0]]
 
 
-def test_a_cluster_pools_its_maps_by_the_inverse_of_their_variances() -> None:
+def test_a_cluster_weights_the_maps_of_its_robots_by_inverse_variance() -> None:
     maps = [
         ResidualMap("b", np.array([-3.0, np.nan, 0.0]), np.array([0.1, np.nan, 0.1])),
         ResidualMap("a", np.array([-6.0, -4.0, 0.0]), np.array([0.2, 0.1, 0.1])),
@@ -330,7 +332,7 @@ def test_for_a_singular_matrix_the_pseudo_inverse_and_the_rank_are_returned() ->
     assert (rank, nothing.tolist()) == (0, [[0.0, 0.0], [0.0, 0.0]])
 
 
-def test_a_map_has_the_missions_of_a_robot_from_its_onset_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_residual_map_uses_the_missions_of_a_robot_since_its_onset(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[int, int]] = []
 
     def following(*arguments: Any) -> Iterator[str]:

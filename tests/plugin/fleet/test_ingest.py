@@ -54,7 +54,7 @@ def rows(to: Path, table: str = "missions") -> list[tuple[object, ...]]:
     ).fetchall()
 
 
-def test_the_rows_are_the_missions_of_the_logs(tmp_path: Path) -> None:
+def test_the_rows_of_the_data_set_are_the_missions_of_the_logs(tmp_path: Path) -> None:
     test, logs = world(tmp_path)
     to = tmp_path / "data"
     assert sum(one.missions for one in ingest(order(test, logs, to))) == 15
@@ -181,7 +181,7 @@ def test_a_copy_under_the_name_of_another_robot_is_refused(tmp_path: Path) -> No
     list(ingest(order(test, logs, to)))
     (found,) = ingest(replace(order(test, logs, to), robot="r9"))
     assert "A mission of r9 is in" in found.problem
-    assert "already, as one of r0" in found.problem
+    assert ", as a mission of r0" in found.problem
     assert len(rows(to)) == 5
 
 
@@ -280,7 +280,7 @@ def test_a_missing_package_is_reported_in_one_sentence(
     )
 
 
-def test_other_commands_import_none_of_the_packages_of_ingest() -> None:
+def test_other_commands_do_not_import_the_packages_that_ingest_needs() -> None:
     import subprocess
 
     code = (

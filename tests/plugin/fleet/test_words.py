@@ -38,7 +38,7 @@ def test_a_fleet_without_alarms_is_reported_in_a_table_and_three_sentences() -> 
         "  site   missions  robots  pass rate          mean reward                      verdict           where",
         "  north  40        4       75.0 % (60 to 85)  2.5 (2.25 to 2.75, approximate)  too few missions",
         "",
-        "0 of 1 groups: changed in time (false discovery rate at most 10 % for each kind of evidence)",
+        "0 of 1 groups: changed over time (false discovery rate at most 10 % for each kind of evidence)",
         "",
         "0 of 1 robot: missions differ from the recording (false discovery rate at most 10 %)",
         (
@@ -94,7 +94,7 @@ def test_the_sentence_about_a_changed_group_uses_the_test_with_the_most_evidence
         one = robot("north", world, limit, told)
         found = answer(onsets=robots(one, drifted=(one,)))
         lines = [*words.lines(found)]
-        assert lines[5].startswith("1 of 1 groups: changed in time (")
+        assert lines[5].startswith("1 of 1 groups: changed over time (")
         assert lines[5].endswith("):")
         assert lines[6] == (
             f"  north: 9 of 10 missions passed, evidence {log2}, changed before mission {mission} "
@@ -141,11 +141,11 @@ def test_a_robot_below_a_bound_is_described_by_that_bound() -> None:
     assert "  r1: 9 of 10 missions passed, evidence 16, changed before mission 4 (no time)" in lines
 
 
-def test_clusters_name_place_and_mean_residual() -> None:
+def test_a_cluster_is_printed_with_its_place_and_mean_residual() -> None:
     names = tuple(f"r{n:02}" for n in range(22))
     found = Clusters((Cluster(names, PLACE, (-0.5, -1.0)), Cluster(("s1",), (), ())), ("u1", "u2"), 1500)
     lines = [*words.lines(answer(clusters=found))]
-    start = lines.index("Robots whose drifts are alike")
+    start = lines.index("Robots with similar drifts")
     assert lines[start - 1] == ""
     assert (
         lines[start + 1]
@@ -190,7 +190,7 @@ def test_each_note_appears_only_if_its_condition_holds() -> None:
     groups = (group("a", compared=39, outside=1200), group("b", outside=34), group("c"))
     found = [*words.notes(answer(groups=groups, copies=1001, left_out={"of another test": 2000}))][2:]
     assert found == [
-        "note: verdicts compare 1,000 missions of a larger group, chosen by their digests.",
+        "note: if a group has more than 1,000 missions, its verdict uses 1,000 of them, chosen by their digests.",
         (
             "note: 1,234 totals lie outside the recording's total_range; the bounds of their groups' "
             "means are approximate."
@@ -246,7 +246,7 @@ def component(name: str, variance: float, **changes: float) -> Component:
     return replace(Component(name, variance, variance / 2, variance * 2, 4), **changes)  # type: ignore[arg-type]
 
 
-def test_the_components_of_the_variance_with_their_lowest_levels() -> None:
+def test_each_variance_component_is_printed_with_its_lowest_values() -> None:
     site = replace(component("site", 0.3), effects=(-0.1, 0.4, -0.2, -0.1))
     version = component("version", -0.1, low=0.0, high=0.0)
     parts = Decomposition(
@@ -270,7 +270,7 @@ def test_the_components_of_the_variance_with_their_lowest_levels() -> None:
     ]
 
 
-def test_no_level_is_called_the_lowest_if_the_variance_may_be_zero() -> None:
+def test_no_value_is_named_as_the_lowest_if_the_variance_may_be_zero() -> None:
     levels = ("a", "b", "c", "d")
     site = replace(component("site", 0.3), effects=(-0.1, 0.4, -0.2, -0.1))
     assert decomposition_words.lowest(site, levels) == "c -0.2, a -0.1"

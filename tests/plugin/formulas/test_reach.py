@@ -56,12 +56,14 @@ def late(seconds: float) -> str:
         ("(x > 0) since (y > 0)", 9, PAST),
     ],
 )
-def test_every_part_must_be_evaluated_within_the_episode(text: str, ends: float, expected: str) -> None:
+def test_every_part_of_a_formula_must_be_evaluated_within_the_episode(
+    text: str, ends: float, expected: str
+) -> None:
     assert unjudged(tree(text), ends * NANOSECONDS) == expected
 
 
 @pytest.mark.parametrize(
     "text", ["always[2:5] (x > 0)", "(x > 0) until[2:5] (y > 0)", "always (once[2:3] (x > 0))"]
 )
-def test_an_episode_without_end_reaches_every_part(text: str) -> None:
+def test_every_part_of_a_formula_can_be_evaluated_if_the_episode_never_ends(text: str) -> None:
     assert unjudged(tree(text)) == ""

@@ -151,13 +151,13 @@ MISTAKES = {
     "a sign of another language": (
         'requires=["always (wet > 0) → wet"]',
         OBSERVE,
-        "'→' means nothing in a formula",
+        "'→' has no meaning in a formula",
     ),
     "two formulas": ('requires=["always wet wet"]', OBSERVE, "more than one formula"),
-    "one equals sign": ('requires=["always (wet = 1)"]', OBSERVE, "two values are compared with =="),
+    "one equals sign": ('requires=["always (wet = 1)"]', OBSERVE, "write == to compare two values"),
     "true": ('requires=["always (wet == true)"]', OBSERVE, "booleans are 1 and -1"),
     "a minus": ('requires=["always (-wet > 0)"]', OBSERVE, "write (0 - gap) for -gap"),
-    "bounds that fall": ('requires=["always[5:2] (wet > 0)"]', OBSERVE, "[5:2] s must rise"),
+    "bounds that fall": ('requires=["always[5:2] (wet > 0)"]', OBSERVE, "[5:2] s must increase"),
     "the next sample": ('requires=["always (next (wet > 0))"]', OBSERVE, "count samples"),
     "unless without bounds": (
         'requires=["always(wet > 0) unless (wet > 0)"]',

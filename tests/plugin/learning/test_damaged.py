@@ -240,7 +240,7 @@ def test_a_damaged_recording_is_reported_before_any_episode_and_can_be_replaced(
         done = tank.runpytest("--tarl-record", "--tarl-episodes=4")
         done.assert_outcomes(failed=1)
         done.stdout.fnmatch_lines(
-            ["*cannot be written (Is a directory): another kind of file is in its place*"]
+            ["*cannot be written (Is a directory): something other than a regular file is at this path*"]
         )
         return
     for broken in (good[: len(good) // 2], DAMAGED["deep JSON"](), DAMAGED["not an array"]()):

@@ -202,7 +202,9 @@ def test_the_chain_counts_every_step_with_a_known_cell() -> None:
 
 @given(lengths=st.lists(st.integers(0, 300), max_size=12), seed=st.integers(0, 2**16))
 @settings(max_examples=40)
-def test_totals_of_many_episodes_equal_those_of_each_one_bitwise(lengths: list[int], seed: int) -> None:
+def test_totals_of_many_episodes_equal_the_totals_of_single_episodes_bitwise(
+    lengths: list[int], seed: int
+) -> None:
     draws = np.random.default_rng(seed)
     reward = draws.normal(size=sum(lengths)) * 10.0 ** draws.integers(-8, 8, sum(lengths))
     ends = np.concatenate(([0], np.cumsum(np.array(lengths, np.int64))))

@@ -93,7 +93,7 @@ def test_a_sensor_without_a_topic_is_refused_because_nothing_sets_it_on_a_robot(
 
 
 @pytest.mark.parametrize("more", [{"mission": "/mission"}, {"idle": 1.0}])
-def test_the_start_of_the_node_begins_no_mission_if_a_topic_does(
+def test_the_start_of_the_node_begins_no_mission_if_a_topic_begins_missions(
     more: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert ended(tmp_path, monkeypatch, None, **more)[0] == []
@@ -154,7 +154,9 @@ def test_without_formulas_changes_are_not_written(tmp_path: Path) -> None:
     assert all("changes" not in one for one in records(tmp_path / "log"))
 
 
-def test_sent_records_do_not_count_as_waiting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_records_that_were_sent_do_not_count_as_waiting(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(outlet, "MOST_WAITING", 30_000)
     observer = Observer([], tmp_path / "log", ABOUT)
     observer.begin()

@@ -24,14 +24,16 @@ PATCH = FilePatch(
 )
 
 
-def test_a_patch_on_its_own_file_gives_its_result_and_is_undone() -> None:
+def test_a_patch_can_be_applied_to_its_own_file_and_undone() -> None:
     assert PATCH.exact(BEFORE) == PATCH.applied(BEFORE) == AFTER
     assert PATCH.reverse.exact(AFTER) == PATCH.reverse.applied(AFTER) == BEFORE
     assert PATCH.exact(BEFORE + b"\n") is None
 
 
 @pytest.mark.parametrize("lines", range(3, 12))
-def test_of_two_matching_places_the_one_with_the_offset_of_the_previous_hunk_is_changed(lines: int) -> None:
+def test_if_a_hunk_matches_twice_the_place_with_the_offset_of_the_previous_hunk_is_changed(
+    lines: int,
+) -> None:
     above = b"".join(b"# %d\n" % n for n in range(lines))
     assert PATCH.applied(above + BEFORE) == above + AFTER
 

@@ -76,7 +76,7 @@ def place(source: Document, name: str = "HERE") -> ast.stmt:
     )
 
 
-def test_every_way_of_binding_is_found(source: Document) -> None:
+def test_names_are_found_in_every_kind_of_binding(source: Document) -> None:
     found = {one.target for one in bindings(source)}
     assert {
         "math",
@@ -141,7 +141,7 @@ def test_a_name_is_bound_if_it_is_local_or_given_at_import(
     assert is_bound(source, place(source, at), code) is bound
 
 
-def test_what_the_statement_itself_reads_is_bound() -> None:
+def test_names_that_the_statement_itself_reads_count_as_bound() -> None:
     source = document("a.py", "def f():\n    print(a.b[0].c, key=d)\n    if e:\n        g\n")
     call, branch = source.tree.body[0].body  # type: ignore[attr-defined]
     for code in ("a", "a.b", "a.b[0]", "a.b[0].c", "d"):
@@ -163,7 +163,7 @@ def test_what_the_statement_itself_reads_is_bound() -> None:
         ("gain", "HERE", set(), False),
     ],
 )
-def test_the_first_values_are_those_that_the_module_assigns(
+def test_the_first_value_of_a_name_is_the_one_that_the_module_assigns(
     source: Document, code: str, at: str, values: set[object], fresh: bool
 ) -> None:
     if code == "gain":  # a name of the class is no global one; its own binding is inside the class
@@ -205,7 +205,9 @@ def test_used_names_include_those_of_all_scopes_and_the_builtins(source: Documen
         ("class", set(), "class_reading"),
     ],
 )
-def test_a_free_name_is_similar_and_no_keyword(base: str, taken: set[str], found: str) -> None:
+def test_a_free_name_resembles_the_wanted_name_and_is_not_a_keyword(
+    base: str, taken: set[str], found: str
+) -> None:
     assert free(base, taken) == found
 
 
@@ -263,12 +265,12 @@ CHECKED = [
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
 @pytest.mark.parametrize(("text", "checked"), CHECKED, ids=[text for text, _ in CHECKED])
-def test_a_place_is_checked_if_it_is_not_reached_without_the_value(text: str, checked: bool) -> None:
+def test_a_place_counts_as_checked_if_it_is_reached_only_with_the_value(text: str, checked: bool) -> None:
     source = document("a.py", "def f():\n" + "".join(f"    {line}\n" for line in text.split("\n")))
     assert is_checked(source, place(source), "x") is checked
 
 
-def test_a_statement_that_relies_on_the_value_is_checked_itself() -> None:
+def test_a_statement_that_computes_with_the_value_counts_as_checked() -> None:
     source = document("a.py", "def f():\n    y = x * 2\n    z = x\n")
     relies, reads = source.tree.body[0].body  # type: ignore[attr-defined]
     assert is_checked(source, relies, "x") is True

@@ -53,7 +53,9 @@ def test_a_literal_takes_the_scaled_value_with_four_digits(value: Any, factor: f
 @pytest.mark.parametrize(
     ("value", "factor", "expected"), [(5, 2.35, 12), (1, 1.2, 2), (1, 0.9, 0), (10, 0.04, 0)]
 )
-def test_a_count_stays_an_integer_and_moves_by_at_least_one(value: int, factor: float, expected: int) -> None:
+def test_an_integer_count_stays_an_integer_and_changes_by_at_least_one(
+    value: int, factor: float, expected: int
+) -> None:
     assert mutations(constant(value), factor, integral=True) == Mutation(constant(value), expected)
 
 
@@ -190,7 +192,7 @@ def step(delta, mud, pos):
 """
 
 
-def test_neighbours_under_one_guard_share_one_if() -> None:
+def test_adjacent_statements_under_one_guard_share_one_if() -> None:
     analysis = HandMade({"node.py": TWO}, held=HELD)
     uses = [analysis.operand("5", 5, "5 *"), analysis.operand("0.1", 0.1, "0.1 + a")]
     changed = rewrite(analysis, [Mutation(use, 2.5) for use in reversed(uses)], MUD, TOPICS)
@@ -337,7 +339,7 @@ def test_places_that_need_integers_are_recognised(code: str, integral: bool) -> 
         ("y = = 5\n", [("5", 5, 7)], Guard(), "cannot be parsed as Python"),
     ],
 )
-def test_changes_that_cannot_be_written_are_refused_with_a_reason(
+def test_a_change_that_cannot_be_written_is_refused_with_a_reason(
     text: str, changes: list[Any], guard: Guard, words: str
 ) -> None:
     analysis = HandMade({"node.py": text}, held={("/terrain", "data"): ("y",)})

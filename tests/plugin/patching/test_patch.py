@@ -145,7 +145,7 @@ def test_a_patch_applies_from_anywhere_in_the_repository(tmp_path: Path, at: str
     assert node.read_text() == "a = 7\n"
 
 
-def test_the_usual_command_is_short(tmp_path: Path) -> None:
+def test_the_command_that_applies_a_patch_is_usually_short(tmp_path: Path) -> None:
     root = repository(tmp_path / "robot")
     (root / "node.py").write_text("a = 5\n")
     patch = patched(root, {root / "node.py": "a = 7\n"})
@@ -153,7 +153,9 @@ def test_the_usual_command_is_short(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("nested", ["src/driver", "elsewhere/../src/driver"])
-def test_a_repository_inside_the_workspace_gets_paths_of_its_own(tmp_path: Path, nested: str) -> None:
+def test_a_patch_of_a_repository_inside_the_workspace_is_applied_in_that_repository(
+    tmp_path: Path, nested: str
+) -> None:
     root = tmp_path / "workspace"
     (root / "elsewhere").mkdir(parents=True)
     inner = repository(root / nested)
@@ -179,7 +181,7 @@ def test_a_patch_applies_without_a_repository(tmp_path: Path, monkeypatch: pytes
     assert [node.read_text() for node in nodes] == ["a = 7\n"] * 2
 
 
-def test_a_link_into_the_sources_is_followed(tmp_path: Path) -> None:
+def test_a_symbolic_link_into_the_sources_is_followed(tmp_path: Path) -> None:
     root = repository(tmp_path / "robot")
     (root / "install").mkdir()
     (root / "node.py").write_text("a = 5\n")

@@ -35,7 +35,7 @@ def test_a_template_writes_its_example(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_without_the_condition_the_original_value_stays(path: Path) -> None:
+def test_the_original_value_is_used_if_the_condition_does_not_hold(path: Path) -> None:
     example = contents(path)["example"]
     before = example["before"].lstrip("\n")
     partner = span(before, example["pair"]) if "pair" in example else None
@@ -146,7 +146,9 @@ class Node:
         ),
     ],
 )
-def test_an_unnamed_value_gets_a_name_before_its_statement(statement: str, at: str, lines: list[str]) -> None:
+def test_an_unnamed_value_is_assigned_to_a_name_before_its_statement(
+    statement: str, at: str, lines: list[str]
+) -> None:
     limited = "self.last_value += max(-0.1, min(0.1, value - self.last_value))"
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
@@ -166,7 +168,9 @@ def test_an_unnamed_value_gets_a_name_before_its_statement(statement: str, at: s
         ("while self.gain * error > 1.0: error -= 1.0", "self.gain * error"),
     ],
 )
-def test_a_value_that_is_not_always_evaluated_gets_no_name_before(statement: str, at: str) -> None:
+def test_a_value_that_is_not_always_evaluated_is_not_assigned_to_a_name_before_its_statement(
+    statement: str, at: str
+) -> None:
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
     form = Form(template(SHIPPED / "rate_limit.toml"))

@@ -28,19 +28,19 @@ SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
 NONE = Refused(None, "no operand helps")
 
 
-def test_a_refused_candidate_is_reported_if_no_other_is_left() -> None:
+def test_a_refused_candidate_is_reported_if_no_other_candidate_is_left() -> None:
     refused = Refused(SOME, "gain too small")
     assert furthest(NONE, refused) is refused
     assert furthest(refused, NONE) is refused
 
 
-def test_a_candidate_that_held_in_the_drifted_world_ranks_above_one_that_did_not() -> None:
+def test_a_candidate_that_held_in_the_drifted_world_ranks_above_a_candidate_that_did_not() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
 
 
-def test_the_best_reward_is_reported_among_equals() -> None:
+def test_among_equal_candidates_the_best_reward_is_reported() -> None:
     low, high = Refused(SOME, "gain too small", 3.0), Refused(ANOTHER, "gain too small", 4.0)
     assert furthest(low, high) is high
     first, second = Refused(SOME, "gain too small"), Refused(ANOTHER, "gain too small")
@@ -232,7 +232,7 @@ class Edge(Window):
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.4, 3.5), st.floats(0.91, 0.99))
-def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: float) -> None:
+def test_a_value_at_the_edge_of_the_range_that_works_is_moved_further(low: float, share: float) -> None:
     """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)
@@ -254,7 +254,7 @@ class Costly(Window):
 
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.2, 1.4))
-def test_a_value_whose_missions_succeed_and_earn_too_little_is_moved_back(low: float) -> None:
+def test_a_value_whose_missions_succeed_but_earn_too_little_is_moved_back(low: float) -> None:
     field: Any = Costly(low, 1.6)
     field.order.goal = replace(field.order.goal, passing=True)
     assert low <= accepted_factor(field, (2.6,)) < 1.9
@@ -346,7 +346,7 @@ def test_a_candidate_within_a_few_percent_of_an_examined_one_is_not_examined(
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_operand_takes_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
+def test_no_operand_uses_up_all_acceptance_tests_and_every_candidate_stays_in_the_queue(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""
@@ -366,7 +366,9 @@ def test_no_operand_takes_all_acceptance_tests_and_every_candidate_stays_in_the_
     assert len(examiner.waiting) == 5
 
 
-def test_waiting_candidates_are_tested_once_no_other_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waiting_candidates_are_tested_when_no_other_candidate_is_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
     )
@@ -420,7 +422,7 @@ class TwoSided(Narrow):
         return Outcome(DESIGNED if good else DRIFTED, passed=good)
 
 
-def test_a_value_with_which_other_missions_fail_is_bisected() -> None:
+def test_a_value_that_makes_other_missions_fail_is_bisected() -> None:
     field: Any = TwoSided(2.4, 3.0)
     controls = tuple(Pair(seed, DESIGNED) for seed in range(len(KNOWN), len(KNOWN) + 2))
     field.order.goal = replace(field.order.goal, controls=controls)

@@ -30,7 +30,7 @@ def halfway(tank: pytest.Pytester) -> Path:
     assert not found["accepted"]
     assert found["partial"]["low"] > 0
     assert found["partial"]["designed_low"] <= found["partial"]["designed"]
-    assert re.search(r"partial: .* per episode, at least \+.* lost; designed world", told)
+    assert re.search(r"partial: .*: the drift costs .* regains .* \(at least .*; in the designed world", told)
     (page,) = tank.path.glob(".tarl/report/*.html")
     assert "Partial, not accepted" in page.read_text()
     assert not list(tank.path.glob(".tarl/patches/*.patch"))

@@ -82,7 +82,7 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     )  # repaired for the new world, recorded in the old one
     done = worn.runpytest(*RECORD, *WORN)
     done.assert_outcomes(passed=1, deselected=1)
-    done.stdout.fnmatch_lines(["*the design now has the drift 'worn': runs without flags get it*"])
+    done.stdout.fnmatch_lines(["*the design now includes the drift 'worn': runs without flags get it*"])
     assert adopted(fixture_file(worn)) == ("worn",)
     worn.runpytest().assert_outcomes(passed=2)
     worn.runpytest(*ONLINE, *WORN).assert_outcomes(passed=1, deselected=1)

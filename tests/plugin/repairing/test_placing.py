@@ -236,7 +236,7 @@ def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pyt
     where, told, lines = repaired(worn)
     assert where.startswith("keeper.py:")
     assert "self.gain * missing" in lines
-    assert "the test itself passes it (parameters=…, argv=…), and tests are never edited" in told
+    assert "the test itself passes it (parameters=…, argv=…), and TARL never edits tests" in told
 
 
 def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) -> None:

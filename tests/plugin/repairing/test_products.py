@@ -48,7 +48,9 @@ if __name__ == "__main__":
         ("0.0 * GAIN + msg.data * 0.0", []),
     ],
 )
-def test_a_factor_of_a_product_stands_for_the_others(use: str, same: list[str], tmp_path: Path) -> None:
+def test_one_factor_of_a_product_is_searched_on_behalf_of_the_others(
+    use: str, same: list[str], tmp_path: Path
+) -> None:
     path = tmp_path / "keeper.py"
     path.write_text(NODE.format(use=use))
     analysis = analyse([path], root=tmp_path)
@@ -89,7 +91,7 @@ class Keeper:
 """
 
 
-def test_where_a_constructor_stores_a_constant_its_use_is_searched(tmp_path: Path) -> None:
+def test_the_use_of_a_constant_that_a_constructor_stores_is_searched(tmp_path: Path) -> None:
     path = tmp_path / "keeper.py"
     path.write_text(MADE_LATE)
     analysis = analyse([path], root=tmp_path)

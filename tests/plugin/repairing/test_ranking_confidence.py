@@ -48,7 +48,7 @@ def test_a_ranking_states_by_how_much_the_first_line_leads() -> None:
 
 
 def test_the_first_line_is_not_called_the_best_if_other_lines_gain_more() -> None:
-    assert "one line gains more than it in the drifted world (-" in ranking_confidence(
+    assert "one line gains more than the first in the drifted world (-" in ranking_confidence(
         ORDER, EFFECTS, accepted(BIAS), raced()
     )
 
@@ -62,12 +62,14 @@ def raced() -> Ranking:
 
 def test_lines_repaired_together_are_reported_together() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
-    assert told.startswith("the first 2 were repaired together, which held on 12 fresh seeds; alone, ")
+    assert told.startswith(
+        "the first 2 were repaired together, which held on 12 fresh seeds; 2 lines were simulated alone"
+    )
 
 
 def test_a_ranking_says_if_it_is_incomplete_or_without_a_repair() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
-    assert told.startswith("no repair confirms the first; ")
+    assert told.startswith("no accepted repair confirms the first; ")
     assert told.endswith("the budget ended before all were ranked")
 
 

@@ -94,7 +94,7 @@ def test_a_budget_is_a_number_or_a_time(tank: pytest.Pytester, budget: str) -> N
     done.stderr.fnmatch_lines(["*--tarl-budget*"])
 
 
-def test_an_interrupted_search_reports_its_best_and_ends_the_run(tank: pytest.Pytester) -> None:
+def test_an_interrupted_search_reports_its_best_candidate_and_ends_the_run(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "    draws = ", f"{INTERRUPT}    draws = ")
     tank.runpytest(*RECORD)
     done = tank.runpytest_subprocess(*REPAIR)
@@ -106,7 +106,7 @@ def test_an_interrupted_search_reports_its_best_and_ends_the_run(tank: pytest.Py
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
-def test_dropped_candidates_and_their_successors_are_reported(
+def test_dropped_candidates_and_the_candidates_tried_next_are_reported(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, accept = [], accepting.accept
@@ -166,7 +166,7 @@ def test_{name}(tarl, shared):
 """
 
 
-def test_another_recorded_test_of_the_node_must_not_lose(tank: pytest.Pytester) -> None:
+def test_another_recorded_test_of_the_node_must_not_lose_reward(tank: pytest.Pytester) -> None:
     tank.makepyfile(test_pipe=TEST[: TEST.index("@pytest")] + NEIGHBOUR.format(name="pipe", most=2.3))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
     done = tank.runpytest(
@@ -192,7 +192,7 @@ def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pyte
     )
 
 
-def test_a_module_that_the_marker_does_not_name_is_named(tank: pytest.Pytester) -> None:
+def test_a_module_of_the_flow_that_the_marker_omits_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(gains="GAIN = 2.0\n\n\ndef wanted(missing):\n    return GAIN * missing\n")
     changed(tank, "keeper", "flow = GAIN * missing", "flow = wanted(missing)")
     changed(tank, "keeper", "import rospy\n", "import rospy\nfrom gains import wanted\n")
@@ -222,7 +222,7 @@ class Draws:
 
 
 @slow
-def test_a_plugged_in_search_is_reproducible(tank: pytest.Pytester) -> None:
+def test_a_search_from_a_plug_in_is_reproducible(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine=OWN)
     tank.runpytest(*RECORD)
     told = tank.path / "told"
@@ -267,10 +267,10 @@ def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank
     assert "--tarl-repair --tarl-localize full" in told
     assert {one["method"] for one in full["culprits"] if one["operands"]} == {"ranking"}
     (page,) = tank.path.glob(".tarl/report/*.html")
-    assert "Confidence in this order: the repair of the first held on" in page.read_text()
+    assert "Confidence in this ranking: the repair of the first held on" in page.read_text()
 
 
-def test_localize_accepts_its_values_and_requires_a_repair(tank: pytest.Pytester) -> None:
+def test_the_flag_localize_accepts_its_values_and_requires_the_flag_repair(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*ONLINE, "--tarl-localize=full")
     done.stderr.fnmatch_lines(["*--tarl-localize needs --tarl-repair*"])
     done = tank.runpytest(*REPAIR, "--tarl-localize=ful")

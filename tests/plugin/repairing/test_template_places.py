@@ -64,7 +64,7 @@ def found(
         ("a", True, []),
     ],
 )
-def test_the_expressions_of_a_statement_have_a_kind(
+def test_each_expression_of_a_statement_has_a_kind(
     text: str, numeric: bool, places: list[tuple[str, str]]
 ) -> None:
     assert found(text, numeric=numeric) == places
@@ -75,7 +75,7 @@ def test_calls_of_functions_that_returned_numbers_count_as_arguments() -> None:
     assert found("out.publish(self.f(a), 1)", returned=("g",)) == []
 
 
-def test_the_value_of_a_return_counts_and_only_the_line_of_the_statement() -> None:
+def test_a_returned_value_is_a_place_for_templates_on_the_line_of_its_statement_only() -> None:
     text = "def f(a):\n    b = a + 1\n    return a - 1"
     assert found(text, line=3) == [("a - 1", "value")]
     assert found(text, line=2) == [("a + 1", "value")]
@@ -150,7 +150,7 @@ def test_the_distance_to_a_publish_call_is_the_shortest_of_all_flows() -> None:
         ("b", "xb", "bca"),
     ],
 )
-def test_statements_that_responded_come_first_and_the_others_by_turns(
+def test_statements_that_responded_come_first_and_the_others_take_turns(
     culprits: str, responding: str, names: str
 ) -> None:
     given = order([A, B, C], culprits=tuple(culprits))
@@ -198,17 +198,19 @@ def g():
         ("m.p.x", "one(1)", False),
     ],
 )
-def test_a_pair_differs_only_in_its_axis_within_one_function(first: str, second: str, paired: bool) -> None:
+def test_two_values_of_one_function_that_differ_only_in_their_axis_form_a_pair(
+    first: str, second: str, paired: bool
+) -> None:
     one, other = spot(first), spot(second)
     assert pairs([one, other], 9) == ([(one, other)] if paired else [])
 
 
-def test_comparisons_and_spots_of_other_files_make_no_pair() -> None:
+def test_comparisons_and_values_of_other_files_form_no_pair() -> None:
     assert pairs([spot("m.p.x", "comparison"), spot("m.p.y")], 9) == []
     assert pairs([spot("m.p.x"), spot("m.p.y", within=document("q.py", TEXT))], 9) == []
 
 
-def test_pairs_are_limited_in_number() -> None:
+def test_the_number_of_pairs_is_limited() -> None:
     spots = [spot(text) for text in ("m.p.x", "m.p.y", "m.q.x", "m.q.z")]
     assert len(pairs(spots, 9)) == 2
     assert pairs(spots, 1) == [(spots[0], spots[1])]

@@ -85,10 +85,10 @@ def test_an_attempt_has_its_outcome_and_its_episodes() -> None:
     one = Attempt("5 → 12", "not confirmed", 2.5, 7, True)
     assert (
         repair_words.attempt_words(one)
-        == "5 → 12: dropped, not confirmed on further seeds, 2.50 in 7 fresh episodes"
+        == "5 → 12: dropped, its gain was not confirmed on further seeds, mean reward 2.50 in 7 fresh episodes"
     )
     assert repair_words.attempt_words(replace(one, fresh=False, reason="")) == (
-        "5 → 12: accepted, 2.50 in 7 known episodes"
+        "5 → 12: accepted, mean reward 2.50 in 7 known episodes"
     )
     assert repair_words.attempt_words(replace(one, episodes=0, reason="never tested")) == (
         "5 → 12: not tested, because other candidates used all acceptance tests"
@@ -98,7 +98,8 @@ def test_an_attempt_has_its_outcome_and_its_episodes() -> None:
 def test_a_partial_repair_states_its_gain_with_bounds(varied: Varied) -> None:
     partial = Partial("5 → 12", 3.0, 2.0, 4.0, -0.5, -1.0, 0.95, "", "p.patch")
     expected = (
-        "+3.00 per episode, at least +2.00 (about 95 % confidence), of 4.00 lost; {} -0.50, at least -1.00"
+        "the drift costs 4.00 per episode, and the change regains 3.00 of it (at least 2.00, with about 95 % "
+        "confidence); in the {}, an episode with the change earns 0.50 less (at most 1.00 less)"
     )
     assert repair_words.partial_words(partial, varied()) == expected.format("designed world")
     assert repair_words.partial_words(partial, varied(permanent=True)) == expected.format("old world")
@@ -251,7 +252,7 @@ def test_attempts_before_an_accepted_repair_are_counted_and_other_attempts_are_l
     told = [
         *terminal._repair(varied(repair=replace(accepted, history=(*history, Attempt("ok", "", 1, 1, True)))))
     ]
-    assert told[1:] == ["5 tried before; the last: c4: dropped, not confirmed on further seeds"]
+    assert told[1:] == ["5 tried before; the last: c4: dropped, its gain was not confirmed on further seeds"]
     refused = Repair(False, "", (), reason="budget", history=history)
     told = [*terminal._repair(varied(repair=refused))]
     assert told[0] == "none accepted: the search reached its limit of episodes"
@@ -273,7 +274,9 @@ def test_a_repair_states_the_share_of_the_loss_that_it_restores(varied: Varied) 
     ("lengths", "expected"),
     [((5, 4, 3), True), ((4, 4, 3), False), ((4, 5, 3), False), ((5,), False)],
 )
-def test_the_designed_curve_is_clipped_at_the_longest_other(lengths: tuple[int, ...], expected: bool) -> None:
+def test_the_designed_curve_is_clipped_where_the_longest_other_curve_ends(
+    lengths: tuple[int, ...], expected: bool
+) -> None:
     kinds = ("offline", "online", "search")
     curves = [{"kind": kind, "mean": [0.0] * size} for kind, size in zip(kinds, lengths, strict=False)]
     assert html._clipped(curves) is expected

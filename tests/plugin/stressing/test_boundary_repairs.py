@@ -165,7 +165,10 @@ def test_attempted_repairs_are_listed_in_text_json_and_page() -> None:
     told = [*repair_lines(found)]
     assert told[0] == "a from 0.5 to 1: none accepted: <why>."
     assert told[2] == "a to 1: not beyond 0.5 → beyond 0.9: more robust"
-    assert "59 instead of 30 of 60 fresh draws pass, at least 92 % with 95 % confidence" in told[3]
+    assert (
+        "59 of 60 fresh draws pass with the repair, 30 without it; success at least 92 % with 95 % confidence"
+        in told[3]
+    )
     shown = page.render(found)
     assert "&lt;why&gt;" in shown
     assert "<td>beyond 0.9<td>more robust" in shown
@@ -183,7 +186,7 @@ def test_a_repair_that_loses_reward_elsewhere_is_withheld() -> None:
     assert "over the declared space" in Fixed((row,), fine, poor).loses
     failing = tuple(replace(one, passed=number > 30) for number, one in enumerate(fine))
     assert (
-        "of 60 draws from the declared space, 31 more fail than before the repair"
+        "of 60 draws from the declared space, 31 more fail with the repair than without it"
         in Fixed((row,), fine, failing).loses
     )
     nearer = Fixed((Row("t[world]", wide, narrow),), poor, fine)

@@ -166,7 +166,7 @@ def test_diff_compares_with_a_revision_and_fails_if_asked(
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (("nowhere:.tarl/margins", ".tarl/margins"), "git knows no such revision"),
+        (("nowhere:.tarl/margins", ".tarl/margins"), "git does not know this revision"),
         (("--", "-x:.tarl/margins", ".tarl/margins"), "is not a git revision"),
         (("nosuch.json", ".tarl/margins"), "nosuch.json: no such file or folder"),
         (("broken.json", ".tarl/margins"), "broken.json: not a file of margins"),
