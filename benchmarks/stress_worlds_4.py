@@ -164,7 +164,7 @@ def belt(x: Vector, draws: np.random.Generator) -> tuple[bool, float]:
         draws.normal(0.0, 0.09),
         draws.normal(1.0, 0.07),
     )
-    place, side = -150.0 + draws.normal(0.0, 8.0), draws.normal(0.0, 12.0)  # mm from the camera's axis
+    place, side = -150.0 + draws.normal(0.0, 8.0), draws.normal(0.0, 12.0)  # relative to the axis (mm)
     reads = draws.normal(0.0, 0.8, (90, 2)).tolist()
     arm, reach, steady, seen, seen_side, since, speed = 120.0, -60.0, 0, -150.0, 0.0, 0.0, 90.0
     for tick in range(90):

@@ -44,7 +44,7 @@ def adopted(path: Path) -> tuple[str, ...]:
 
 
 def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Drift]) -> tuple[str, ...]:
-    """Return the design's drifts after recording under the drift `name`; unchanged if `name` is None."""
+    """Return the drifts of the design after a recording under the drift `name`; without a name, they are unchanged."""
     if name is None:
         return design
     if name == AS_WRITTEN and name not in drifts:

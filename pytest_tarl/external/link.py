@@ -75,7 +75,7 @@ class Link:
         self._context.try_shutdown()
 
     def subscribe(self, topics: list[str]) -> None:
-        """Also pass on messages of these topics, once the simulator publishes them; report the ROS graph again."""
+        """Pass on messages of these topics, too, once the simulator publishes them; report the ROS graph again."""
         for topic in topics:
             self._wanted.setdefault(topic, None)
         self._known = {}

@@ -61,7 +61,7 @@ class LinkROS1:
         """Shut the node down and leave the master."""
         import rospy
 
-        with suppress(Exception):  # it may have ended
+        with suppress(Exception):  # the node may have ended
             rospy.signal_shutdown("the episode is over")
 
     def subscribe(self, topics: list[str]) -> None:

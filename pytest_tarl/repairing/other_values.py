@@ -24,7 +24,7 @@ MILDER = (0.75, 0.5)  # exponents of the factors of a candidate whose missions s
 RATIOS = (1.1, 1.03)  # ratios between neighbouring values, around a value that loses too much in its test
 MOVES = 3  # maximum number of moves in one direction with one ratio
 BETTER = 0.1  # a neighbour must earn at least this share of the margin more
-CLOSE = 1.3  # good values may lie between two rejected values if their ratio is at most this
+CLOSE = 1.3  # maximum ratio of two rejected values between which good values may lie
 
 OtherValues = Generator[Candidate, Tried, None]
 Place = tuple[frozenset[Operand], Guard]

@@ -35,7 +35,7 @@ ENDS: dict[Reason, str] = {
     "worse than unrepaired": "dropped, it earns less than the unrepaired node",
     "another test gets worse": "dropped, another test of the node gets worse",
     "not over the whole range": "dropped, it works only in a part of the drift's range",
-    "not at its definition": "dropped, it works only at a use of the constant",
+    "not at its definition": "dropped, it works only at one use of the constant, not at its definition",
     "fails too often": "dropped, missions fail too often",
     "not shown": "dropped, 200 episodes are too few to show that it is sufficient",
     "cannot be written": "dropped, it cannot be written to the source",

@@ -10,7 +10,7 @@ PointStamped = message_type("geometry_msgs/msg/PointStamped")
 DT = 0.1
 DURATION = 9.0
 PLACE = (0.0, 2.0, 5.0)
-BLURRED = 0.3  # m, error in one axis
+BLURRED = 0.3  # error in one axis (m)
 
 
 class Wall:

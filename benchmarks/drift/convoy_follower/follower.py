@@ -5,11 +5,11 @@ import rospy
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float64
 
-NEAR = 5.0  # m between standing vehicles
+NEAR = 5.0  # distance between standing vehicles (m)
 HEADWAY = 0.5  # s
 GAP_GAIN = 0.5  # 1/s²
 SPEED_GAIN = 1.0  # 1/s
-STRONGEST = 2.5  # m/s² to speed up
+STRONGEST = 2.5  # largest acceleration (m/s²)
 EMERGENCY = -8.0  # m/s²
 
 

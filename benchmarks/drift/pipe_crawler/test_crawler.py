@@ -11,7 +11,7 @@ Float64 = message_type("std_msgs/Float64")
 DT = 0.1
 LENGTH = 4.0
 NARROW = (1.5, 2.6)
-GRIP = 30.0  # N; with a stronger push in the wide pipe, the wheels spin and wear
+GRIP = 30.0  # force above which the wheels spin and wear in the wide pipe (N)
 TIME_BOUND = 16.0
 
 

@@ -11,7 +11,7 @@ Float64 = message_type("std_msgs/Float64")
 
 DT = 0.2
 DURATION = 20.0
-LOST = 0.6  # rad from the sun
+LOST = 0.6  # angle between panel and sun (rad)
 
 
 class Roof:

@@ -4,7 +4,7 @@ OFFSET_GAIN = 0.35  # rad per m
 ANGLE_GAIN = 0.8  # rad per rad
 CHANGE_GAIN = 0.3  # rad per m/s
 MOST_STEERING = 0.7  # rad
-SLOW = 0.4  # m/s, speed below which steering is gentle
+SLOW = 0.4  # speed below which steering is gentle (m/s)
 
 
 class FurrowGuide:

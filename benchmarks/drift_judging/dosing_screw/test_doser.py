@@ -8,7 +8,7 @@ from pytest_tarl.ros import message_type
 Float64 = message_type("std_msgs/Float64")
 
 DT = 0.1
-PER_TURN = 0.04  # kg, dry
+PER_TURN = 0.04  # mass of dry powder (kg)
 MARGIN = 0.25  # share of the order by which a bag may be wrong
 TIME_BOUND = 22.0
 

@@ -13,7 +13,7 @@ SETTLED = 7.0  # time from which the height is rewarded, s
 BAND = 0.3  # m
 MOST_OUT = 2.5  # s
 WEIGHT = 2.25  # m/s²
-STRENGTH = 5.0  # m/s² at full duty and full battery
+STRENGTH = 5.0  # acceleration at full duty and full battery (m/s²)
 
 
 class Yard:

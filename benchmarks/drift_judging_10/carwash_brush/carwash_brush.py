@@ -27,7 +27,7 @@ class CarwashBrush(Node):
     def __init__(self):
         super().__init__("carwash_brush")
         self.target_force = self.declare_parameter("target_force", 50.0).value  # N
-        self.idle = self.declare_parameter("idle_current", 2.0).value  # A, of the free brush
+        self.idle = self.declare_parameter("idle_current", 2.0).value  # current of the free brush (A)
         self.per_newton = self.declare_parameter("amps_per_newton", 0.030).value  # A/N
         self.contact = self.declare_parameter("contact_force", 12.0).value  # N
         self.approach = self.declare_parameter("approach_speed", 0.15).value  # m/s

@@ -11,11 +11,11 @@ Bool = message_type("std_msgs/msg/Bool")
 Float32 = message_type("std_msgs/msg/Float32")
 
 DT = 0.05
-LENGTH = 4.5  # m of car
+LENGTH = 4.5  # length of the car (m)
 PORTAL = 0.25  # m/s
-STIFF = 400.0  # N per metre of penetration
+STIFF = 400.0  # force per metre of penetration (N/m)
 SCRATCH = 80.0  # N
-WASHED = 22.0  # N at least
+WASHED = 22.0  # minimum force (N)
 TIME_BOUND = 30.0
 
 
@@ -25,10 +25,10 @@ class Bay:
     def __init__(self, rng, per_newton):
         self.rng = rng
         self.per_newton = per_newton * rng.uniform(0.97, 1.03)
-        self.side = rng.uniform(0.35, 0.5)  # m from the parked brush
+        self.side = rng.uniform(0.35, 0.5)  # distance from the parked brush (m)
         self.bulge = rng.uniform(0.03, 0.06), rng.uniform(0.0, 6.0)
         self.portal, self.arm, self.speed = 0.0, 0.0, 0.0
-        self.waiting = 6.0  # s before the portal drives
+        self.waiting = 6.0  # time before the portal drives (s)
         self.clean, self.scratched = 0.0, 0.0
         self.time, self.gained = 0.0, 0.0
         self.failure = ""

@@ -14,12 +14,12 @@ class CheesePortioner(Node):
             [
                 ("portion", 250.0),  # g
                 ("density", 1.09),  # g/cm³
-                ("kerf", 0.10),  # cm, thickness that the blade cuts away
-                ("spacing", 1.0),  # cm between heights
+                ("kerf", 0.10),  # thickness that the blade cuts away (cm)
+                ("spacing", 1.0),  # distance between two heights (cm)
                 ("push", 2.0),  # cm/s
                 ("creep", 0.5),  # cm/s near the cut
                 ("creep_at", 0.85),  # share of a portion
-                ("clearance", 12.0),  # cm under the raised blade
+                ("clearance", 12.0),  # clearance under the raised blade (cm)
             ],
         )
         self.area = 0.0

@@ -4,7 +4,7 @@ from collections import namedtuple
 
 Section = namedtuple("Section", "area highest")
 
-FLOOR = 0.15  # cm; lower heights are the belt
+FLOOR = 0.15  # lower heights are those of the belt (cm)
 
 
 def section(heights, spacing):

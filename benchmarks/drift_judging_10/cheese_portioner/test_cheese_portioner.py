@@ -28,7 +28,7 @@ class Block:
         self.height = rng.uniform(6.5, 8.0)
         self.waves = rng.uniform(0.2, 0.5), rng.uniform(0.0, 6.0)
         self.place, self.speed = 0.0, 0.0
-        self.passed = 0.0  # g since the last cut
+        self.passed = 0.0  # mass since the last cut (g)
         self.down = False
         self.cut, self.bad = 0, 0
         self.time, self.gained = 0.0, 0.0

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, Float32, String
 
 GRAVITY = 9.81
-CALLS = {"guard": -3.0, "draw": 0.0, "back": 1.2}  # m behind the middle of the house
+CALLS = {"guard": -3.0, "draw": 0.0, "back": 1.2}  # distance behind the middle of the house (m)
 
 
 class Thrower(object):

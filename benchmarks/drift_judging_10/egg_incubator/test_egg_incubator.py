@@ -14,7 +14,7 @@ UInt16 = message_type("std_msgs/UInt16")
 DT = 10.0
 MINUTES = 130.0
 BEST = ((0.0, 37.7), (60.0, 37.2), (100.0, 36.8))  # minutes, °C
-MAY_MISS = 1.0  # K, mean over a few minutes
+MAY_MISS = 1.0  # mean error over a few minutes (K)
 
 
 class Box:

@@ -3,8 +3,8 @@
 import math
 
 FULL = 4095
-SERIES = 10000.0  # ohm, between the thermistor and the supply
-NOMINAL = 10000.0  # ohm at 25 °C
+SERIES = 10000.0  # resistance between the thermistor and the supply (ohm)
+NOMINAL = 10000.0  # resistance at 25 °C (ohm)
 BETA = 3950.0  # K
 KELVIN = 273.15
 

@@ -15,10 +15,10 @@ class GolfCaddy(Node):
         super().__init__("golf_caddy")
         self.lookahead = self.declare_parameter("lookahead", 1.0).value  # m
         self.cruise = self.declare_parameter("cruise", 1.2).value  # m/s
-        self.lateral = self.declare_parameter("lateral", 1.5).value  # m/s² in bends
+        self.lateral = self.declare_parameter("lateral", 1.5).value  # lateral acceleration in bends (m/s²)
         self.turn_max = self.declare_parameter("turn_max", 1.5).value  # rad/s
-        self.keep_off = self.declare_parameter("keep_off", 1.5).value  # m to people
-        self.slow_from = self.declare_parameter("slow_from", 4.0).value  # m to people
+        self.keep_off = self.declare_parameter("keep_off", 1.5).value  # distance to people (m)
+        self.slow_from = self.declare_parameter("slow_from", 4.0).value  # distance to people (m)
         self.path = []
         self.pose = None
         self.index = 0

@@ -16,7 +16,7 @@ PoseStamped = message_type("geometry_msgs/msg/PoseStamped")
 Range = message_type("sensor_msgs/msg/Range")
 
 DT = 0.1
-WIDE = 0.9  # m on either side of the middle of the path
+WIDE = 0.9  # half of the width of the path (m)
 TIME_BOUND = 34.0
 
 
@@ -30,7 +30,7 @@ class Course:
         self.length = 32.0
         self.x, self.y, self.heading = 0.0, self.middle(0.0) + rng.uniform(-0.25, 0.25), 0.0
         self.turn, self.speed = 0.0, 0.0
-        self.person = rng.uniform(6.0, 14.0)  # s at which somebody crosses
+        self.person = rng.uniform(6.0, 14.0)  # time at which somebody crosses (s)
         self.time, self.moved = 0.0, 0.0
         self.failure = ""
 

@@ -15,14 +15,14 @@ class LabelApplicator(Node):
         self.mm_per_count = self.declare_parameter("mm_per_count", 0.40).value
         self.belt_ratio = self.declare_parameter("belt_ratio", 1.25).value  # pulleys 50:40
         self.eye_to_peel = self.declare_parameter("eye_to_peel", 180.0).value  # mm
-        self.label_length = self.declare_parameter("label_length", 80.0).value  # mm, with the gap
-        self.lead = self.declare_parameter("lead", 6.0).value  # mm, what the web needs to start
-        self.slowing = self.declare_parameter("slowing", 12.0).value  # mm before the end of a label
+        self.label_length = self.declare_parameter("label_length", 80.0).value  # length with the gap (mm)
+        self.lead = self.declare_parameter("lead", 6.0).value  # distance in which the web starts (mm)
+        self.slowing = self.declare_parameter("slowing", 12.0).value  # distance from the end of a label (mm)
         self.belt = None
         self.web = 0
         self.belt_speed = 0.0
         self.blocked = False
-        self.waiting = deque()  # counts of the belt when a bottle passed the eye
+        self.waiting = deque()  # counts of the belt at which a bottle passed the eye
         self.feed_from = None
         self.create_subscription(Int32, "belt/counts", self.on_belt, 10)
         self.create_subscription(Int32, "web/counts", self.on_web, 10)

@@ -14,7 +14,7 @@ Int32 = message_type("std_msgs/msg/Int32")
 
 DT = 0.02
 BOTTLES = 6
-WHEEL = 0.40  # mm per count of either encoder
+WHEEL = 0.40  # travel per count of either encoder (mm)
 EYE_TO_PEEL = 180.0  # mm
 LABEL = 80.0  # mm
 TIME_BOUND = 16.0

@@ -7,9 +7,9 @@ from std_msgs.msg import Float32, String
 
 PENS = {"K": "keep", "S": "sell", "V": "vet"}  # first letter of the tag
 ANGLES = {"keep": 0.0, "sell": 0.6, "vet": -0.6}  # rad
-LIGHT = 32.0  # kg; lambs below are kept, whatever their tag says
-PASSAGE = 2.4  # m from the reader until the tail is out of the gate
-WALK = 1.0  # m/s, a slow sheep
+LIGHT = 32.0  # lighter lambs are kept, whatever their tag says (kg)
+PASSAGE = 2.4  # distance from the reader at which the tail is out of the gate (m)
+WALK = 1.0  # speed of a slow sheep (m/s)
 GAIN = 6.0  # 1/s
 SWING_MAX = 2.5  # rad/s
 

@@ -13,7 +13,7 @@ DT = 0.05
 SHEEP = 5
 ANGLES = {"keep": 0.0, "sell": 0.6, "vet": -0.6}
 PENS = {"K": "keep", "S": "sell", "V": "vet"}
-ENTERS, LEAVES = 0.6, 2.2  # m behind the reader: the head enters the gate, the tail leaves it
+ENTERS, LEAVES = 0.6, 2.2  # places behind the reader where the head enters and the tail leaves (m)
 TIME_BOUND = 45.0
 
 

@@ -14,7 +14,7 @@ String = message_type("std_msgs/msg/String")
 
 DT = 0.05
 LENGTH = 70.0  # m
-GENTLE = 2.4  # m/s at the buffer
+GENTLE = 2.4  # speed at the buffer (m/s)
 TIME_BOUND = 50.0
 
 
@@ -24,7 +24,7 @@ class Tube:
     def __init__(self, rng, mass):
         self.rng = rng
         self.mass = mass
-        self.force = 1.9 * rng.uniform(0.97, 1.03)  # N of the blower at full drive
+        self.force = 1.9 * rng.uniform(0.97, 1.03)  # force of the blower at full drive (N)
         self.place, self.speed, self.drive = 0.0, 0.0, 0.0
         self.reeds = 0
         self.time, self.moved = 0.0, 0.0

@@ -17,7 +17,7 @@ class Phase(Enum):
 
 
 class TubePost(Node):
-    REED = 0.5  # m between the reed switches along the tube
+    REED = 0.5  # distance between two reed switches (m)
 
     def __init__(self):
         super().__init__("tube_post")

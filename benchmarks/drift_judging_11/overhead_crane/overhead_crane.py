@@ -6,7 +6,7 @@ import math
 import rospy
 from std_msgs.msg import Float32
 
-HALF_PERIOD = 1.003  # s of half a swing, per square root of a metre of rope
+HALF_PERIOD = 1.003  # time of half a swing with a rope of 1 m (s)
 V = 0.8  # m/s
 DRIVE_LAG = 0.15  # s
 

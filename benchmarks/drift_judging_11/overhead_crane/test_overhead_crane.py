@@ -11,7 +11,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 G = 9.81
-SWAY = 0.085  # m, half of the room on either side of a load
+SWAY = 0.085  # half of the free space beside a load (m)
 NEAR = 0.2  # m
 TIME_BOUND = 19.5
 

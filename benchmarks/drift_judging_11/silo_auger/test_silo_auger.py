@@ -13,7 +13,7 @@ String = message_type("std_msgs/String")
 
 DT = 0.2
 LOW, HIGH = 295.0, 312.0  # kg
-BURNS = 3.6  # s until a motor that is jammed burns
+BURNS = 3.6  # time after which a jammed motor burns (s)
 TIME_BOUND = 38.0
 
 

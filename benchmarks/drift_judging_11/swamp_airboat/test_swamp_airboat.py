@@ -15,7 +15,7 @@ PoseStamped = message_type("geometry_msgs/msg/PoseStamped")
 
 DT = 0.2
 LENGTH = 100.0
-CHANNEL = 1.5  # m on either side of the line
+CHANNEL = 1.5  # half of the width of the channel (m)
 POINTS = [(0.0, 0.0), (25.0, 4.0), (50.0, 0.0), (80.0, 6.0), (140.0, 6.0)]
 TIME_BOUND = 38.0
 

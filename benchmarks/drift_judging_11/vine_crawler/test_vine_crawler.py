@@ -16,7 +16,7 @@ DT = 0.2
 GAUGE = 0.52
 ROW = 2.2
 LENGTH = 2.5
-FREE = 0.55  # m from the middle of a row, where no vines stand
+FREE = 0.55  # distance from the middle of a row within which no vines stand (m)
 TIME_BOUND = 36.0
 
 

@@ -8,8 +8,8 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import Float32MultiArray
 
 TICKS = 400.0  # per metre
-GAUGE = 0.52  # m between the tracks
-ROW = 2.2  # m between rows
+GAUGE = 0.52  # distance between the tracks (m)
+ROW = 2.2  # distance between two rows (m)
 SPEED = 0.5
 TURN = 0.6  # rad/s
 

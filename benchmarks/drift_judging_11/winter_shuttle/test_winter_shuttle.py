@@ -12,7 +12,7 @@ DT = 0.25
 LENGTH = 120.0
 STOPS = [50.0, 105.0]
 BENDS = [(8.0, 20.0, 12.0), (70.0, 82.0, 15.0)]
-NEAR = 2.0  # m from a stop
+NEAR = 2.0  # distance from a stop (m)
 TIME_BOUND = 49.5
 
 

@@ -11,7 +11,7 @@ from std_msgs.msg import Float32
 CRUISE = 7.0  # m/s
 BRAKING = 1.6  # m/s2
 CORNERING = 2.2  # m/s2
-STOPS = [50.0, 105.0]  # m along the route
+STOPS = [50.0, 105.0]  # places along the route (m)
 BENDS = [(8.0, 20.0, 12.0), (70.0, 82.0, 15.0)]  # from, to, radius
 WAIT = 2.0  # s
 

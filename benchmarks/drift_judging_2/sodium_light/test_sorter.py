@@ -1,4 +1,4 @@
-"""Tomatoes are sorted by colour. Under a sodium lamp all of them look the same, and no repair is possible."""
+"""Tomatoes are sorted by colour. Under a sodium lamp all fruits look the same, and no repair is possible."""
 
 import pytest
 

@@ -11,9 +11,9 @@ class Waiter(Node):
     """Serve one table at a time."""
 
     CRUISE_SPEED = 0.9  # m/s
-    DOOR_SPEED = 0.45  # m/s, next to the kitchen door
+    DOOR_SPEED = 0.45  # speed next to the kitchen door (m/s)
     APPROACH_GAIN = 0.8  # 1/s
-    MIN_SPEED = 0.08  # m/s; the wheels stick at lower speeds
+    MIN_SPEED = 0.08  # the wheels stick at lower speeds (m/s)
     TOLERANCE = 0.05  # m
     LANE_GAIN = 1.2  # 1/s per m
 

@@ -7,10 +7,10 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool, Float32, String
 
 DRIVE = 0.7  # m/s
-PUSH = 0.15  # m/s, bumper against the door
-TOUCH = 0.08  # m, distance below which the bumper touches the door
+PUSH = 0.15  # speed with the bumper against the door (m/s)
+TOUCH = 0.08  # distance below which the bumper touches the door (m)
 SLOW_FROM = 0.6  # m
-OPEN_GAP = 1.0  # m, free distance that shows an open door
+OPEN_GAP = 1.0  # free distance that shows an open door (m)
 PATIENCE = 2.5  # s
 BACK_OFF = 0.3  # m/s
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 CHUTE = dict(sink=6.0, opening=1.2, throw=0.9)  # m/s, s until it is open, s of flight at the drone's speed
-FREE_FALL = 4.0  # m/s, mean speed until the chute is open
+FREE_FALL = 4.0  # mean speed until the chute is open (m/s)
 
 
 def fall_time(height):

@@ -5,8 +5,8 @@ import rospy
 from std_msgs.msg import Bool, Float32, UInt16
 
 ML_PER_GRAM = 0.99
-SOFT_END = 70.0  # ml before the mark at which the valve starts to close
-DRIP = 4.0  # ml that still flow after the valve has closed
+SOFT_END = 70.0  # volume before the mark at which the valve starts to close (ml)
+DRIP = 4.0  # volume that still flows after the valve has closed (ml)
 TILT = 45.0  # deg
 STRAIGHT_FROM = 0.55  # of the order
 

@@ -10,9 +10,9 @@ Float32 = message_type("std_msgs/Float32")
 UInt16 = message_type("std_msgs/UInt16")
 
 DT = 0.1
-FLOW = 80.0  # ml/s of an open valve
+FLOW = 80.0  # flow through an open valve (ml/s)
 MOST_FOAM = 35.0  # ml
-DRIP = 0.05  # s for which the spout still drips
+DRIP = 0.05  # time for which the spout still drips (s)
 
 
 class Bar:

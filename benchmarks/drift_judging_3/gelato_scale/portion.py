@@ -2,8 +2,8 @@
 import rospy
 from std_msgs.msg import Bool, Float32
 
-TUB = 38.0  # g, an empty tub
-AFTERRUN = 2.5  # g that still fall when the flap closes
+TUB = 38.0  # mass of an empty tub (g)
+AFTERRUN = 2.5  # mass that still falls when the flap closes (g)
 
 scale = {"gross": 0.0}
 rospy.init_node("portion")

@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 TUBS = 3
-FLOW = 45.0  # g/s through an open flap
+FLOW = 45.0  # flow through an open flap (g/s)
 WRONG = 8.0  # g
 TIME_BOUND = 30.0
 

@@ -27,7 +27,7 @@ class Loader:
         self.hoses = hoses
         self.angle = rng.uniform(-0.2, 0.2)
         self.goals = [rng.uniform(0.3, 0.6), rng.uniform(-0.2, 0.1)]
-        self.strength = rng.uniform(0.45, 0.55)  # rad/s if the valve is fully open
+        self.strength = rng.uniform(0.45, 0.55)  # rate with a fully open valve (rad/s)
         self.line = [0.0, 0.0]
         self.rate, self.missed, self.step = 0.0, 0, 0
         self.failure = ""

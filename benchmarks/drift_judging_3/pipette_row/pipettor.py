@@ -6,7 +6,7 @@ import rospy
 from liquid_classes import LiquidClass
 from std_msgs.msg import Float64, Float64MultiArray, Int16, String
 
-SAFE_Z = 20.0  # mm above the deck
+SAFE_Z = 20.0  # height above the deck (mm)
 TROUGH_Z = 2.0
 WELL_Z = 5.0
 TROUGH = -1  # position of the trough; wells are counted from 0

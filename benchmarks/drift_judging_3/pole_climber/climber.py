@@ -21,9 +21,9 @@ class ClampConfig:
     """Force control of the clamp."""
 
     rest: float = 90.0  # N
-    most: float = 320.0  # N, of the spring
-    raise_by: float = 40.0  # N per cycle of slip
-    relax_by: float = 1.5  # N per cycle without slip
+    most: float = 320.0  # force of the spring (N)
+    raise_by: float = 40.0  # increase per cycle with slip (N)
+    relax_by: float = 1.5  # decrease per cycle without slip (N)
     slip_ratio: float = 0.12
 
 

@@ -17,7 +17,7 @@ DT = 0.05
 SCREWS = 3
 CLAMP = 8.0  # kN
 WINDOW = 0.13  # share of it
-PER_TURN = 20.0  # kN per turn after the head touches the flange
+PER_TURN = 20.0  # force per turn after the head touches the flange (kN)
 DIAMETER = 6.0  # mm
 TIME_BOUND = 30.0
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 class Arc:
     """Wire and arc."""
 
-    stick_out: float = 12.0  # mm between nozzle and plate
-    start_delay: float = 0.4  # s, until the pool stands
-    crater_fill: float = 0.3  # s, at the end of the seam
+    stick_out: float = 12.0  # distance between nozzle and plate (mm)
+    start_delay: float = 0.4  # time until the pool stands (s)
+    crater_fill: float = 0.3  # time at the end of the seam (s)
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Travel:
     """The motion of the torch along the seam."""
 
     speed: float = 10.0  # mm/s
-    laser_ahead: float = 3.0  # mm by which the laser measures the plate ahead of the torch
+    laser_ahead: float = 3.0  # distance of the laser in front of the torch (mm)
 
 
 @dataclass(frozen=True)

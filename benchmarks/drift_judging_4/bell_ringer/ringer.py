@@ -5,8 +5,8 @@
 import rospy
 from std_msgs.msg import Bool, Float32, Int32, String
 
-PERIOD = 1.6  # s, from pull to pull
-PULL = 0.5  # s for which the rope is under load
+PERIOD = 1.6  # time from pull to pull (s)
+PULL = 0.5  # time for which the rope is under load (s)
 FIRST = 1.25  # factor of the first pulls, which start a bell at rest
 FIRST_PULLS = 3
 

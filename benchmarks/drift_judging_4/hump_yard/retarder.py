@@ -20,7 +20,7 @@ class Track:
 
     rolling_resistance: float = 0.0022  # share of the weight, for bearings at summer temperature
     gradient: float = 0.0006  # slope of the yard, downwards
-    coupling_speed: float = 1.1  # m/s at which buffers touch and the coupler closes
+    coupling_speed: float = 1.1  # speed at which buffers touch and the coupler closes (m/s)
 
     def release_speed(self, free: float) -> float:
         """Return the speed (m/s) at which a wagon has to leave the retarder to roll `free` metres."""

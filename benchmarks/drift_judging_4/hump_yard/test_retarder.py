@@ -8,8 +8,8 @@ from pytest_tarl.ros import message_type
 Bool = message_type("std_msgs/msg/Bool")
 Float64 = message_type("std_msgs/msg/Float64")
 
-BRAKING = 0.1  # s, length of a step while the wagon is in the retarder
-ROLLING = 1.0  # s, length of a step after the wagon has left the retarder
+BRAKING = 0.1  # length of a step while the wagon is in the retarder (s)
+ROLLING = 1.0  # length of a step after the wagon has left the retarder (s)
 COUPLES = (0.35, 2.0)  # m/s
 G = 9.81
 FALL = 0.0006

@@ -13,9 +13,9 @@ from std_msgs.msg import Bool, Empty, Float64
 
 @dataclass
 class Limits:
-    cruise: float = 8.0  # m/s, loaded
-    comfort: float = 1.2  # m/s2, service brake before the edge
-    hurry: float = 1.5  # m/s2, up to cruise
+    cruise: float = 8.0  # speed with a load (m/s)
+    comfort: float = 1.2  # deceleration by the service brake before the edge (m/s2)
+    hurry: float = 1.5  # acceleration up to cruise (m/s2)
 
 
 @dataclass

@@ -9,7 +9,7 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Bool, Float32, Float64MultiArray
 
-CORNER_ZONE = 8.0  # mm before and behind a corner
+CORNER_ZONE = 8.0  # distance before and behind a corner (mm)
 
 
 class SewingCell(Node):

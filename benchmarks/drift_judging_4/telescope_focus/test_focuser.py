@@ -9,7 +9,7 @@ Float32 = message_type("std_msgs/Float32")
 Int32 = message_type("std_msgs/Int32")
 String = message_type("std_msgs/String")
 
-DT = 120.0  # s, an exposure
+DT = 120.0  # duration of an exposure (s)
 EXPOSURES = 90
 SHARP = 42.0  # steps
 SLACK = 30.0  # steps of backlash
@@ -24,7 +24,7 @@ class Night:
         self.tube = "steel" if shrink < 35.0 else "aluminium"
         self.shrink = shrink * rng.uniform(0.97, 1.03)
         self.dusk = self.temperature = rng.uniform(12.0, 18.0)
-        self.cooling = rng.uniform(6.5, 9.0)  # K until dawn
+        self.cooling = rng.uniform(6.5, 9.0)  # fall of the temperature until dawn (K)
         self.base = int(rng.uniform(9000.0, 9800.0))
         self.wheel = [str(name) for name in rng.permutation(list(OFFSETS))]
         self.filter = "L"

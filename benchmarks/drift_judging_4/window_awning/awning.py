@@ -5,7 +5,7 @@ import math
 import rospy
 from std_msgs.msg import Float64, Float64MultiArray, String
 
-# klx at the facade -> extended share of the awning
+# light at the facade (klx) -> extended share of the awning
 CURVE = [(20.0, 0.0), (40.0, 0.25), (60.0, 0.5), (80.0, 0.75), (100.0, 1.0)]
 MAX_WIND = 12.0  # m/s
 

@@ -4,7 +4,7 @@ import math
 
 GRAVITY = 9.81
 PAD_DECELERATION = 2.4  # on the level, new pads on the steel rope
-REACTION = 0.15  # s, relay and pads
+REACTION = 0.15  # reaction time of relay and pads (s)
 
 
 def deceleration(slope):

@@ -10,7 +10,7 @@ from std_msgs.msg import Bool, Float64, String
 
 RATE = 10
 CRUISE = 4.0
-SOFT_START = 1.5  # m/s, maximum increase of speed, so that the camera does not swing
+SOFT_START = 1.5  # largest step of the speed at which the camera does not swing (m/s)
 
 mark = None
 place = None

@@ -6,8 +6,8 @@ from std_msgs.msg import Bool, Float32
 
 GENTLE = 0.4  # opening of the sluice while the fall is high
 FULL = 1.0
-CALM = 0.4  # m of fall below which the sluice may be fully open
-LEVEL = 0.04  # m of fall at which the gate can be moved
+CALM = 0.4  # fall below which the sluice may be fully open (m)
+LEVEL = 0.04  # fall at which the gate can be moved (m)
 
 fall = None
 occupied = False

@@ -12,10 +12,10 @@ Float32 = message_type("std_msgs/Float32")
 Point = message_type("geometry_msgs/Point")
 
 DT = 0.2
-REACH = 60.0  # m in still air
+REACH = 60.0  # throw distance in still air (m)
 BRAKE = 0.045  # share of the throw distance that 1 m/s of head wind takes away
-NEAR = 2.2  # m around the fire within which water helps
-NEEDED = 6.0  # s of water
+NEAR = 2.2  # distance from the fire within which water helps (m)
+NEEDED = 6.0  # time with water on the fire (s)
 TIME_BOUND = 25.0
 
 

@@ -1,6 +1,6 @@
 """Arithmetic of the winch drum behind the fly bar."""
 
-CIRCUMFERENCE = 0.80  # m of rope per turn
+CIRCUMFERENCE = 0.80  # rope per turn (m)
 
 
 def depth(turns):

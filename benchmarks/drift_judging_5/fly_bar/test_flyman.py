@@ -9,9 +9,9 @@ Float64 = message_type("std_msgs/Float64")
 String = message_type("std_msgs/String")
 
 DT = 0.1
-LAG = 0.15  # s, of the motor
+LAG = 0.15  # lag of the motor (s)
 MARKS = {"forest": 5.6, "castle": 4.4, "moon": 2.5, "storm": 3.5}
-NEAR = 0.14  # m, tolerated distance from a mark; a larger one is visible from the stalls
+NEAR = 0.14  # tolerated distance from a mark; a larger one is visible from the stalls (m)
 FLOOR = 6.9
 TIME_BOUND = 40.0
 

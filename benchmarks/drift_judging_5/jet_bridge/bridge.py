@@ -16,9 +16,9 @@ class Mode(Enum):
 
 class Bridge:
     GAIN = 0.8  # 1/s
-    LIFT = 0.12  # m/s at most
-    FLUSH = 0.03  # m, largest step that counts as level
-    CREEP = 1.2  # m from the aircraft
+    LIFT = 0.12  # largest speed (m/s)
+    FLUSH = 0.03  # largest step that counts as level (m)
+    CREEP = 1.2  # distance from the aircraft (m)
     CONTACT = 0.06
 
     def __init__(self):

@@ -9,7 +9,7 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.2
-TRIP = 0.15  # m, step at the sill over which people fall
+TRIP = 0.15  # step at the sill over which people fall (m)
 PASSENGERS = 40
 TIME_BOUND = 90.0
 

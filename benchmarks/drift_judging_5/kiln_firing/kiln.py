@@ -4,7 +4,7 @@
 import rospy
 from std_msgs.msg import Bool, Float32, String
 
-ELEMENTS = 60.0  # K/s that the elements give at full power
+ELEMENTS = 60.0  # heating rate of the elements at full power (K/s)
 LEAK = 0.03  # heat loss of the walls, 1/s
 KP = 0.004
 SOAK = 12.0  # s

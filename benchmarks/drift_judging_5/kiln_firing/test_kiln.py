@@ -13,8 +13,8 @@ Float32 = message_type("std_msgs/Float32")
 DT = 0.2
 ROOM = 20.0
 LEAK = 0.03
-BAND = 12.0  # K around the cone's temperature
-NEEDED = 8.0  # s within the band
+BAND = 12.0  # tolerated distance from the cone's temperature (K)
+NEEDED = 8.0  # time within the band (s)
 TIME_BOUND = 90.0
 
 

@@ -5,8 +5,8 @@
 import rospy
 from std_msgs.msg import Bool, Float32, Int32, String
 
-PULSE = 0.3  # s, current through the latch's coil
-PATIENCE = 1.5  # s within which the spring pushes the door open
+PULSE = 0.3  # duration of the current through the latch's coil (s)
+PATIENCE = 1.5  # time within which the spring pushes the door open (s)
 TRIES = 2
 
 CODES = {"7031": 1, "4410": 2, "9256": 3, "1188": 4}

@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 CODES = {"7031": 1, "4410": 2, "9256": 3, "1188": 4}
-COIL = 1.4  # s for which the coil tolerates uninterrupted current
+COIL = 1.4  # time for which the coil tolerates uninterrupted current (s)
 TIME_BOUND = 12.0
 
 
@@ -24,7 +24,7 @@ class Cabinet:
         self.needs = rng.uniform(0.1, 0.18)
         if rng.random() < stiff:
             self.needs = rng.uniform(0.42, 0.56)
-        self.swing = rng.uniform(0.2, 0.6)  # s from latch to switch
+        self.swing = rng.uniform(0.2, 0.6)  # time from latch to switch (s)
         self.current = 0.0
         self.free = None
         self.taken = False

@@ -21,7 +21,7 @@ class Treadmill:
         rospy.Subscriber("handrail/stop", Bool, self.on_stop)
 
     def on_place(self, msg):
-        self.place = msg.data  # m in front of the middle
+        self.place = msg.data  # place in front of the middle (m)
 
     def on_stop(self, msg):
         self.stopped = self.stopped or msg.data

@@ -9,10 +9,10 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
-END = 0.75  # m from the middle to either end
+END = 0.75  # distance from the middle to either end (m)
 PACES = 5
 PACE_TIME = 8.0
-QUICK = 0.3  # s, of the drive
+QUICK = 0.3  # time constant of the drive (s)
 
 
 class Walk:

@@ -12,7 +12,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64
 
-BALANCE_ANGLE = -0.012  # rad, pitch at which the body stands by itself
+BALANCE_ANGLE = -0.012  # pitch at which the body stands by itself (rad)
 PITCH_KP = 42.0
 PITCH_KD = 6.5
 SPEED_KP = 0.10

@@ -12,7 +12,7 @@ Odometry = message_type("nav_msgs/Odometry")
 Twist = message_type("geometry_msgs/Twist")
 
 DT = 0.02
-LENGTH = 0.35  # m, axle to centre of mass
+LENGTH = 0.35  # distance from the axle to the centre of mass (m)
 GO, HOLD = 4.0, 3.0  # s
 OFF = 0.6  # tolerated distance from the commanded place, m
 

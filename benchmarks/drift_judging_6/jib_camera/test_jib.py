@@ -15,9 +15,9 @@ DT = 0.02
 BEARING = 14.0  # Nm s/rad
 INERTIA = {"broadcast": 4.0, "cinema": 12.0}  # kg m^2
 SHOT, LENGTH = 1.4, 4.5  # s
-DRIVE = 0.1  # s, lag of the torque
+DRIVE = 0.1  # lag of the torque (s)
 FRAME = 0.05  # rad
-BEYOND = 0.06  # rad beyond the mark from which a viewer notices the swing
+BEYOND = 0.06  # overshoot from which a viewer notices the swing (rad)
 
 
 class Crane:

@@ -4,7 +4,7 @@ import math
 
 UPPER = 0.34  # m
 FOREARM = 0.30  # m
-FINGER = 0.09  # m from the wrist to the tip
+FINGER = 0.09  # distance from the wrist to the tip (m)
 
 
 def inverse(x, z):

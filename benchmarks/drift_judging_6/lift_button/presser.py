@@ -18,8 +18,8 @@ class Phase(Enum):
 
 
 class ButtonPresser(Node):
-    HOVER_GAP = 0.07  # m in front of the panel
-    PRESS_DEPTH = 0.014  # m beyond the panel; the finger has a spring
+    HOVER_GAP = 0.07  # distance in front of the panel (m)
+    PRESS_DEPTH = 0.014  # distance beyond the panel (m); the finger has a spring
     HOVER_TIME = 1.5  # s
     PRESS_TIME = 1.2  # s
 

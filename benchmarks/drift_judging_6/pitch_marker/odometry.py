@@ -3,8 +3,8 @@
 from math import cos, pi, sin
 
 TICKS = 1024.0  # per turn of a wheel
-WHEEL = 0.105  # m, radius
-TRACK = 0.52  # m between the points about which the two sides turn
+WHEEL = 0.105  # radius (m)
+TRACK = 0.52  # distance between the points about which the two sides turn (m)
 
 
 class Odometry(object):

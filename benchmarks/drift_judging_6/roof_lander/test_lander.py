@@ -12,7 +12,7 @@ TwistStamped = message_type("geometry_msgs/TwistStamped")
 String = message_type("std_msgs/String")
 
 DT = 0.1
-PAD, FENCE = 0.6, 2.2  # m from the marker
+PAD, FENCE = 0.6, 2.2  # distances from the marker (m)
 TIME_BOUND = 25.0
 
 

@@ -7,7 +7,7 @@ import rospy
 from std_msgs.msg import Bool, Float32, Int32
 
 pulses = deque(maxlen=6)  # (time, count)
-spacing = None  # m between two seeds
+spacing = None  # distance between two seeds (m)
 lowered = False
 
 

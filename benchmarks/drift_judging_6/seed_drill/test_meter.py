@@ -12,7 +12,7 @@ Float32 = message_type("std_msgs/Float32")
 Int32 = message_type("std_msgs/Int32")
 
 DT = 0.1
-FIELD = 40.0  # m of row
+FIELD = 40.0  # length of the row (m)
 ROLLING = {"dry": 0.40, "wet": 0.462}  # rolling diameter of the wheel, m
 MOISTURE = {"dry": (0.10, 0.26), "wet": (0.40, 0.60)}
 

@@ -14,7 +14,7 @@ Vector3Stamped = message_type("geometry_msgs/msg/Vector3Stamped")
 DT = 0.04
 LENGTH = 16.0  # s
 SERVO = 0.07  # s
-SHARP = 0.2  # rad/s above the rate of a smooth turn
+SHARP = 0.2  # excess over the rate of a smooth turn (rad/s)
 UPSET = 1.3  # rad
 
 

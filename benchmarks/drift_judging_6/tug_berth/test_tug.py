@@ -11,7 +11,7 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.25
 MASS, DRAG = 3.0, 1.2  # relative to the tug's full thrust: s^2/m and s/m
 GENTLE = 0.2  # m/s
-LOST = 16.0  # m from the quay
+LOST = 16.0  # distance from the quay (m)
 TIME_BOUND = 70.0
 
 

@@ -6,7 +6,7 @@ from std_msgs.msg import Bool, Float32
 
 GREEN = 0.30  # share of green pixels below the camera
 RELEASE = 0.22
-MIN_OPEN = 0.15  # s; a shorter pulse does not form a jet
+MIN_OPEN = 0.15  # a shorter pulse does not form a jet (s)
 
 
 class SpotSprayer:

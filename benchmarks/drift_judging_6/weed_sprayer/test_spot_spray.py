@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.05
 ROW = 14.0  # m
-JET = 0.10  # m on either side of the nozzle
+JET = 0.10  # half of the width of the jet (m)
 
 
 class Rover:

@@ -4,7 +4,7 @@ from belt import BeltTracker
 from rclpy.node import Node
 from std_msgs.msg import Float64, Int32
 
-HEAD_DOWN = 0.05  # s that the head takes to come down
+HEAD_DOWN = 0.05  # time in which the head comes down (s)
 
 
 class DeltaPicker(Node):

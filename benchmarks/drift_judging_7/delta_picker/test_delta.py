@@ -13,7 +13,7 @@ DT = 0.1
 DISTANCE = 400.0
 PARTS = 10
 LEAD = 0.05
-REACH = 14.0  # mm from the middle at which the suction cup still seals
+REACH = 14.0  # distance from the middle at which the suction cup still seals (mm)
 
 
 class Conveyor:

@@ -9,7 +9,7 @@ from sensor_msgs.msg import Range
 
 
 class FeedPusher(object):
-    SONAR_SIDE = 0.22  # m from the middle of the skirt to the sonar
+    SONAR_SIDE = 0.22  # distance from the middle of the skirt to the sonar (m)
 
     def __init__(self):
         self.k_dist = rospy.get_param("~k_dist", 1.1)

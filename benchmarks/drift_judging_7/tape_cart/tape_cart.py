@@ -4,7 +4,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, UInt16MultiArray
 
-PITCH = 0.02  # m between two eyes
+PITCH = 0.02  # distance between two eyes (m)
 lost = 0
 offset = 0.0
 

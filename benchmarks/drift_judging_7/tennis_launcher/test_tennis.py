@@ -12,10 +12,10 @@ String = message_type("std_msgs/msg/String")
 
 DT = 0.5
 SHOTS = 12
-NET = 7.0  # m from the machine
+NET = 7.0  # distance from the machine (m)
 DRAG = {"felt": 0.022, "foam": 0.085}  # 1/m
-NEAR = 1.3  # m from the spot
-LOW, HIGH = 2.5, 3.3  # m above the net line
+NEAR = 1.3  # distance from the spot (m)
+LOW, HIGH = 2.5, 3.3  # heights above the net line (m)
 
 
 def flight(speed, elevation, drag):

@@ -8,8 +8,8 @@ from std_msgs.msg import Float64
 
 
 class Resurfacer(object):
-    WIDTH = 2.13  # m of the towel
-    MIN_SPEED = 0.4  # m/s; the water is shut at lower speeds
+    WIDTH = 2.13  # width of the towel (m)
+    MIN_SPEED = 0.4  # the water is shut at lower speeds (m/s)
 
     def __init__(self):
         self.film = rospy.get_param("~film_mm", 0.16)

@@ -8,14 +8,14 @@ from geometry_msgs.msg import Point
 from rclpy.node import Node
 from std_msgs.msg import Float64, Int32
 
-SAW_KERF = 2.8  # mm, including the set of the teeth
+SAW_KERF = 2.8  # width of the cut, including the set of the teeth (mm)
 
 
 @dataclass
 class Cut:
-    board: float = 27.0  # mm, green
-    slab: float = 18.0  # mm, first slab with the bark
-    least: float = 40.0  # mm left on the carriage
+    board: float = 27.0  # thickness of a green board (mm)
+    slab: float = 18.0  # thickness of the first slab, with the bark (mm)
+    least: float = 40.0  # minimum thickness left on the carriage (mm)
     feed: float = 22.0  # m/min
     hard_feed: float = 15.0  # m/min above hard_current
     hard_current: float = 34.0  # A

@@ -13,7 +13,7 @@ class AntennaRotator(Node):
         self.max_rate = self.declare_parameter("max_rate", 5.0).value  # deg/s
         self.max_step = self.declare_parameter("max_step", 0.8).value  # deg/s per tick
         self.dead_band = self.declare_parameter("dead_band", 0.15).value  # deg
-        self.lead = self.declare_parameter("lead", 0.3).value  # s, rotator lags
+        self.lead = self.declare_parameter("lead", 0.3).value  # lag of the rotator (s)
         self.storm = self.declare_parameter("storm_wind", 22.0).value  # m/s
         self.park = self.declare_parameter("park_azimuth", 0.0).value
         self.track_from = self.declare_parameter("track_from_elevation", 3.0).value  # deg

@@ -15,7 +15,7 @@ Float32 = message_type("std_msgs/Float32")
 Int32 = message_type("std_msgs/Int32")
 
 DT = 0.1
-SLEW = 30.0  # s before the pass
+SLEW = 30.0  # time before the pass (s)
 PASS = 60.0  # s
 BEAM = 2.5  # deg, half width
 ENOUGH = 0.85  # share of the pass in the beam

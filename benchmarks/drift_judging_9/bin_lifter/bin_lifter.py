@@ -22,7 +22,7 @@ class BinLifter(Node):
     LOWER_SPEED = 0.6
     SLOW_BELOW = 0.3  # m
     TIP_TICKS = 12
-    SETTLE = 3  # ticks with the full force
+    SETTLE = 3  # number of ticks with the full force
 
     def __init__(self):
         super().__init__("bin_lifter")

@@ -3,7 +3,7 @@
 import dataclasses
 
 GRAVITY = 9.81
-FULL_BIN = 78.0  # kg; the arm's scale refuses heavier bins
+FULL_BIN = 78.0  # the arm's scale refuses heavier bins (kg)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -13,10 +13,10 @@ Float32 = message_type("std_msgs/Float32")
 String = message_type("std_msgs/String")
 
 DT = 1.0
-HEATS = 0.65  # K/s at full duty
+HEATS = 0.65  # heating rate at full duty (K/s)
 RIGHT = 1.2  # K
 RESTS = {"maltose": 63.0, "sugar": 72.0}
-HELD = 70.0  # s of each rest within the right temperature
+HELD = 70.0  # time of each rest within the right temperature (s)
 TIME_BOUND = 600.0
 
 

@@ -10,16 +10,16 @@ import rospy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, Float32
 
-DRUM_RADIUS = 0.30  # m, to the middle of the layers
+DRUM_RADIUS = 0.30  # radius to the middle of the layers (m)
 SLACK = 1.01  # cable per metre of trench
 DANCER_MIDDLE = 0.20  # m
 DANCER_GAIN = 0.8  # 1/s
-TRIM_MAX = 0.06  # m/s that the dancer may add or take
+TRIM_MAX = 0.06  # speed that the dancer may add or take away (m/s)
 OMEGA_MAX = 3.0  # rad/s
-OMEGA_STEP = 0.2  # rad/s per tick
+OMEGA_STEP = 0.2  # change per tick (rad/s)
 CRUISE = 0.45  # m/s
 CURVE_SLOWS = 0.6
-DANCER_LOW, DANCER_HIGH = 0.03, 0.37  # m, stop the crawler outside
+DANCER_LOW, DANCER_HIGH = 0.03, 0.37  # outside of these limits, the crawler stops (m)
 
 
 class CableLayer(object):

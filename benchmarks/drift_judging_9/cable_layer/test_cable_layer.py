@@ -11,9 +11,9 @@ Bool = message_type("std_msgs/Bool")
 Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
-LENGTH = 16.0  # m of trench
-LAYER = 0.02  # m that the radius loses over the trench
-LOOPS_AT = 0.4  # m of cable in the dancer
+LENGTH = 16.0  # length of the trench (m)
+LAYER = 0.02  # decrease of the radius over the trench (m)
+LOOPS_AT = 0.4  # length of the cable in the dancer (m)
 TIME_BOUND = 90.0
 
 

@@ -5,7 +5,7 @@ import rospy
 from std_msgs.msg import Bool, Float32
 
 # film
-PULL = 150.0  # N of film tension
+PULL = 150.0  # tension of the film (N)
 PULL_GAIN = 0.0012  # brake per newton
 TURNS = 8  # layers that the load gets
 TOP_TURNS = 2.0

@@ -11,7 +11,7 @@ String = message_type("std_msgs/String")
 
 DT = 0.1
 FULL_BRAKE = 500.0  # N
-HOLDS = 900.0  # N of all layers that hold the load
+HOLDS = 900.0  # force of all layers that holds the load (N)
 FILM = 15.5  # turns of film that a pallet may cost
 TIME_BOUND = 120.0
 

@@ -12,10 +12,10 @@ class PeopleMover(object):
         self.cruise = rospy.get_param("~cruise", 9.0)  # m/s
         self.accel = rospy.get_param("~accel", 1.0)  # m/s^2, passengers stand
         self.brake = rospy.get_param("~brake", 1.05)  # m/s^2 of the braking curve
-        self.creep = rospy.get_param("~creep", 0.25)  # m/s, last metre
+        self.creep = rospy.get_param("~creep", 0.25)  # speed in the last metre (m/s)
         self.creep_from = rospy.get_param("~creep_from", 0.8)  # m
-        self.tolerance = rospy.get_param("~tolerance", 0.12)  # m, allowed offset of the doors
-        self.gain = rospy.get_param("~gain", 1.8)  # 1/s, speed loop
+        self.tolerance = rospy.get_param("~tolerance", 0.12)  # allowed offset of the doors (m)
+        self.gain = rospy.get_param("~gain", 1.8)  # gain of the speed loop (1/s)
         self.max_brake = rospy.get_param("~max_brake", 2.0)  # m/s^2
         self.dwell = rospy.get_param("~dwell", 2.0)  # s
         self.distance = None

@@ -10,7 +10,7 @@ Float32 = message_type("std_msgs/Float32")
 
 DT = 0.1
 GRAVITY = 9.81
-RIGHT = 0.35  # m, allowed offset between train doors and platform doors
+RIGHT = 0.35  # allowed offset between train doors and platform doors (m)
 BOARDING = 25  # steps
 TIME_BOUND = 150.0
 

@@ -9,10 +9,10 @@ DEFAULTS = {
     "slow": 0.1,
     "dribble_at": 7,  # the bowl slows down when this number of pills is missing
     "soft_start": 0.4,  # s
-    "jam_after": 3.0,  # s without a pill
+    "jam_after": 3.0,  # time without a pill (s)
     "jam_drive": 1.0,
     "jam_time": 0.5,  # s
-    "vial_time": 1.0,  # s for a new vial
+    "vial_time": 1.0,  # time for a new vial (s)
     "rate": 20.0,
 }
 

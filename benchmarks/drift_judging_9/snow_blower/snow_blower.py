@@ -5,12 +5,12 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, Float32
 
 RATE = 10
-WIDTH = 0.7  # m, auger
+WIDTH = 0.7  # width of the auger (m)
 INTAKE = 0.16  # m^3/s that the auger takes
 V_MAX = 0.9  # m/s
-V_MIN = 0.08  # m/s, slower stalls the tracks
-V_BACK = -0.15  # m/s, out of a bank
-BANK = 1.1  # m, deeper is a bank, not snowfall
+V_MIN = 0.08  # the tracks stall at lower speeds (m/s)
+V_BACK = -0.15  # speed out of a bank (m/s)
+BANK = 1.1  # deeper snow is a bank, not snowfall (m)
 DEPTH_FILTER = 0.35
 ACCEL = 0.5  # m/s^2
 CHUTE_LEFT, CHUTE_RIGHT = 1.2, -1.2  # rad

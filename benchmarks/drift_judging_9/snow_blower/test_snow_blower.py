@@ -11,7 +11,7 @@ Float32 = message_type("std_msgs/Float32")
 DT = 0.1
 LENGTH = 20.0  # m
 THROUGHPUT = 36.0  # kg/s
-CHOKES_AT = 45.0  # kg in the chute
+CHOKES_AT = 45.0  # mass in the chute (kg)
 TIME_BOUND = 160.0
 
 

@@ -17,7 +17,7 @@ class TyreInflator(Node):
         super().__init__("tyre_inflator")
         self.declare_parameter("seconds_per_bar", 5.2)  # mid-size tyre at the station's pressure
         self.declare_parameter("tolerance", 0.1)  # bar
-        self.declare_parameter("lowest", 0.6)  # bar, less is a puncture
+        self.declare_parameter("lowest", 0.6)  # a lower pressure means a puncture (bar)
         self.declare_parameter("longest", 20.0)  # s
         self.declare_parameter("settle", 0.6)  # s
         self.declare_parameter("couple_time", 1.0)  # s

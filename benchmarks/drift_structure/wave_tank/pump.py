@@ -4,7 +4,7 @@
 import rospy
 from std_msgs.msg import Bool, Float64
 
-LEVEL = 0.6  # m, below which the pump runs
+LEVEL = 0.6  # level below which the pump runs (m)
 reading = None
 relay = None
 

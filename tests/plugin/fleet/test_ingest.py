@@ -180,7 +180,7 @@ def test_a_copy_under_the_name_of_another_robot_is_refused(tmp_path: Path) -> No
     to = tmp_path / "data"
     list(ingest(order(test, logs, to)))
     (found,) = ingest(replace(order(test, logs, to), robot="r9"))
-    assert "A mission of r9 is in" in found.problem
+    assert "A mission of r9 is already in" in found.problem
     assert ", as a mission of r0" in found.problem
     assert len(rows(to)) == 5
 

@@ -286,7 +286,7 @@ def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytes
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
     where, told, _ = repaired(worn, "--tarl-edit=definition", "--tarl-budget=60")
     assert not where or "missing" in told
-    assert "it works only at a use of the constant" in told
+    assert "it works only at one use of the constant" in told
 
 
 def test_an_unknown_place_is_explained(worn: pytest.Pytester) -> None:

@@ -275,7 +275,7 @@ def test_nodes_receive_messages_in_the_order_of_publication(start: Start) -> Non
     assert ros.namespace["got"] == [2.0, 4.0, 6.0]
 
 
-def test_observers_get_messages_before_subscribers_and_without_any(start: Start) -> None:
+def test_observers_get_messages_before_subscribers_and_also_without_subscribers(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String

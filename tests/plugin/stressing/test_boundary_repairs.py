@@ -55,7 +55,9 @@ def test_a_repair_moves_the_boundary_and_can_be_applied(
     told = done.stdout.str()
     assert re.search(r"  repair     pump from 0\.9\d+ to 0\.1: GAIN → ", told)
     assert re.search(r"pump to 0\.1: not beyond 0\.9\d+ → no failure shown", told)
-    before, now = map(int, re.findall(r"(\d+) instead of (\d+) of 10 fresh draws", told)[0][::-1])
+    now, before = map(
+        int, re.findall(r"(\d+) of 10 fresh draws pass with the repair, (\d+) without it", told)[0]
+    )
     assert now > before
     (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")
     tank.run("git", "apply", str(patch))

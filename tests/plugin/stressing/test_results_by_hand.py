@@ -265,7 +265,7 @@ def test_directions_that_do_not_fail_alone_are_listed_with_the_share_up_to_which
     assert [*_inside([harmless[0], *failing, harmless[1]])] == [(MUD, 1.0), (FLAT, 0.45), (LEFT, 1.0)]
 
 
-def test_a_drift_is_at_most_another_if_no_direction_is_farther_from_nominal() -> None:
+def test_a_drift_counts_as_no_larger_than_another_if_no_direction_is_farther_from_nominal() -> None:
     evaluator: Any = SimpleNamespace(space=SPACE)
     one = combined(mud=2.0, slope=-0.5).point
     assert _at_most(combined(mud=2.0).point, one, evaluator)
