@@ -22,7 +22,7 @@ class ProjectUrls(MetadataHookInterface):
 
 
 def urls(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the project's addresses by label. Raise ValueError unless they begin with https://."""
+    """Return the project's addresses by label. Raise ValueError unless every address begins with https://."""
     found: dict[str, str] = {}
     site, repository = (_address(name, environment) for name in ("SITE_URL", "REPOSITORY_URL"))
     if site:

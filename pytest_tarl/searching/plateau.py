@@ -18,7 +18,7 @@ from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, kind, named
 from pytest_tarl.searching.units import Unit
 
-INWARD = None  # stands for steps between the first two, which are 2.2 and 0.4
+INWARD = None  # a placeholder for steps between the first two steps (2.2 and 0.4)
 # (step, smaller step that must not have reduced the reward), in the order in which they are tried. Neighbouring inward
 # steps differ by at most 10 %.
 STEPS: tuple[tuple[float, float | None], ...] = (

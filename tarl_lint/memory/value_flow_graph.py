@@ -21,7 +21,7 @@ MAX_EDGES = (
 )
 FEW = 8
 MANY = 16  # maximum number of separate nodes in a field with weak updates; more nodes are merged
-MANY_CARRIERS = 64  # the same, for pointers to objects with content
+MANY_CARRIERS = 64  # the same limit for a field that holds pointers to objects with content
 MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
 CARRIED = 5  # number of carriers, or of items passed on by carriers, that count as one graph operation

@@ -1,4 +1,4 @@
-"""Cache of results by content, settings and version. A problem with it never fails a run.
+"""Cache of results by content, settings and version. A problem with the cache never fails a run.
 
 One file contains the entries of the last run on the same paths with the same settings. The first line of the
 file is the digest of the rest, so a damaged file is not read. The file is written under another name and then

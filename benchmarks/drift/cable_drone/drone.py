@@ -6,7 +6,7 @@ from geometry_msgs.msg import PointStamped, Vector3
 from rclpy.node import Node
 from std_msgs.msg import Float32
 
-PLACE = (0.0, 2.0, 5.0)  # where to hold: m
+PLACE = (0.0, 2.0, 5.0)  # place to hold (m)
 STIFFNESS = {"x": 3.0, "y": 3.5, "z": 4.0}  # N/m
 DAMPING = {"x": 3.5, "y": 3.5, "z": 4.0}  # N s/m
 MOST = 12.0  # N

@@ -5,8 +5,8 @@ import rospy
 from std_msgs.msg import Float32
 
 PLAN = {
-    "travel": 2.0,  # from gate to pusher: s
-    "hold": 0.35,  # how long to push: s
+    "travel": 2.0,  # time from gate to pusher (s)
+    "hold": 0.35,  # duration of a push (s)
     "push": 0.7,  # share of full force
     "heavy": 4.0,  # weight from which parcels are pushed with full force, kg
 }

@@ -9,9 +9,9 @@ class Knife:
     """Store the arrival times of loaves and cut each loaf in turn."""
 
     def __init__(self):
-        self.way = rospy.get_param("~way", 0.6)  # from light barrier to knife: m
+        self.way = rospy.get_param("~way", 0.6)  # distance from light barrier to knife (m)
         self.belt = rospy.get_param("~belt", 0.5)  # m/s
-        self.loaf = rospy.get_param("~loaf", 0.24)  # length: m
+        self.loaf = rospy.get_param("~loaf", 0.24)  # length of a loaf (m)
         self.lead = rospy.get_param("~lead", 0.05)  # time that the knife takes to fall, s
         self.blocked = False
         self.due = []

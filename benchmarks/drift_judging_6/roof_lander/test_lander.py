@@ -77,7 +77,7 @@ class Roof:
         if self.off > FENCE:
             self.failure = "beyond the parapet"
         elif self.landed and self.off > PAD:
-            self.failure = f"landed {self.off:.1f} m off"
+            self.failure = f"landed {self.off:.1f} m away from the marker"
         elif self.time > TIME_BOUND:
             self.failure = "out of battery"
         if self.failure:

@@ -10,8 +10,8 @@ from std_msgs.msg import Bool, Float32, String
 class PeopleMover(object):
     def __init__(self):
         self.cruise = rospy.get_param("~cruise", 9.0)  # m/s
-        self.accel = rospy.get_param("~accel", 1.0)  # m/s^2, passengers stand
-        self.brake = rospy.get_param("~brake", 1.05)  # m/s^2 of the braking curve
+        self.accel = rospy.get_param("~accel", 1.0)  # acceleration at which passengers can stand (m/s^2)
+        self.brake = rospy.get_param("~brake", 1.05)  # deceleration of the braking curve (m/s^2)
         self.creep = rospy.get_param("~creep", 0.25)  # speed in the last metre (m/s)
         self.creep_from = rospy.get_param("~creep_from", 0.8)  # m
         self.tolerance = rospy.get_param("~tolerance", 0.12)  # allowed offset of the doors (m)
