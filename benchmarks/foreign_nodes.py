@@ -84,7 +84,7 @@ class Outcome:
         if not self.starts:
             return "does not start"
         if self.fails:
-            return "fails when it receives"
+            return "fails when messages arrive"
         return " and ".join(
             ["starts", *["receives"] * bool(self.hears), *["publishes"] * bool(self.publishes)]
         )

@@ -23,10 +23,10 @@ CALLED = "()"  # suffix of `field` in files if `field` is a function, which is s
 class Sensor:
     """A declared input and its binning.
 
-    With `topic` and `field` (dotted, or a function of the message), TARL reads it from the messages delivered to the
-    node. Without them, the test sets it by `tarl.observe(name=value)`. The condition of a repair (its guard) can test a
-    sensor that has a dotted field, or whose `expr` names a variable of the node with its value, such as `self.heading`.
-    Other sensors only serve for diagnosis.
+    With `topic` and `field` (dotted, or a function of the message), TARL reads the sensor from the messages
+    delivered to the node. Without a topic, the test sets the sensor by `tarl.observe(name=value)`. The
+    condition of a repair (its guard) can test a sensor that has a dotted field, or whose `expr` names a
+    variable of the node with its value, such as `self.heading`. Other sensors only serve for diagnosis.
 
     `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside.
     `edges` gives bins of unequal width. With `bins` alone, the edges are learned from recorded episodes, so that all

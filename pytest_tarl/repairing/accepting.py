@@ -105,7 +105,7 @@ class Examiner:
             if operands(examined.candidate) == operands(candidate):
                 candidate = replace(
                     candidate, mutations=examined.candidate.changes
-                )  # so that it is not centred again
+                )  # so that the candidate is not centred again
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # this guard is as wide as the guard of the search, so narrower guards cannot gain more

@@ -1,4 +1,7 @@
-"""A barn robot keeps its distance to the fence. A cow has permanently bent the bracket of its sonar inwards."""
+"""A barn robot keeps its distance to the fence.
+
+A cow has permanently bent the bracket of the sonar inwards.
+"""
 
 import math
 

@@ -169,7 +169,7 @@ def test_the_bound_of_a_loss_in_a_declared_range_adds_the_bounds_of_both_worlds(
     assert 0.6 < found.low < 0.8 <= found.high
 
 
-def test_two_episodes_give_no_bound_and_constant_totals_an_exact_one() -> None:
+def test_two_episodes_give_no_bound_and_constant_totals_give_an_exact_bound() -> None:
     assert loss_between([1.0, 2.0], [1.0, 2.0], 0.95).low == -math.inf
     never = loss_between([3.0] * 20, [3.0] * 8, 0.95)
     assert never.low == never.high == 0.0

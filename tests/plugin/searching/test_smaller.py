@@ -69,7 +69,7 @@ def test_a_sixth_less_of_another_constant_comes_before_a_doubled_one() -> None:
     assert order(searched((HOTTEST, TAU, TARGET), windows), 2) == [TARGET, HOTTEST]  # not tried before
 
 
-def test_a_small_change_with_which_missions_go_less_as_designed_does_not_come_first() -> None:
+def test_a_small_change_does_not_come_first_if_missions_then_differ_more_from_the_design() -> None:
     windows = {HOTTEST: (2.0, 2.4), TARGET: (0.8, 0.85)}
     assert order(searched((TARGET, TAU, HOTTEST), windows, {TARGET: LATE}), 1) == [HOTTEST]
 
