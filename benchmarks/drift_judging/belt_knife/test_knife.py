@@ -22,7 +22,7 @@ class Belt:
         self.rng = rng
         self.programme = "normal" if speed == 0.5 else "gentle"
         self.speed = speed * rng.uniform(0.98, 1.02)
-        self.middles = [-LOAF / 2 - rng.uniform(0.05, 0.2)]  # from the light barrier, m
+        self.middles = [-LOAF / 2 - rng.uniform(0.05, 0.2)]  # distance from the light barrier (m)
         self.middles.append(self.middles[0] - LOAF - rng.uniform(0.2, 0.6))
         self.cuts, self.counted = 0, 0
         self.failure = ""
