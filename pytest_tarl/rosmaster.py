@@ -21,7 +21,10 @@ _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 class Master:
-    """A process `rosmaster --core`, and the environment in which nodes find it. It ends with `close` or this one."""
+    """A process `rosmaster --core`, and the environment in which nodes find it.
+
+    The master ends with `close` or with this process.
+    """
 
     def __init__(self) -> None:
         self._open = ExitStack()

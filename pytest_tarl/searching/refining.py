@@ -12,7 +12,8 @@ FINEST = 1.1  # ratio of two factors below which no factor between them is tried
 # minimum gain of a factor that is refined down to the ratio `NARROWEST`, as a share of the wanted gain
 ALMOST = 0.9
 NARROWEST = 1.02  # smallest ratio between factors around a narrow peak
-# the same at a sharp peak (see SHARP)
+# minimum gain of a factor at a sharp peak (see SHARP) that is refined as finely, as a share of the wanted
+# gain
 PROMISING = 0.4
 SHARP = 0.5  # a peak is sharp if both neighbouring factors gain at most this share of its gain
 

@@ -16,7 +16,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
 MAX_TURNS = 4  # maximum number of known elements over which a loop is unrolled
-MAX_EXACT_TURNS = 8  # the same, in a run for one launched node
+MAX_EXACT_TURNS = 8  # this maximum in a run for one launched node
 # a loop whose body has at most this many plain statements is unrolled over up to MAX_KNOWN elements
 SHORT = 3
 # maximum number of passes over a loop's body; only a safety limit, since the value domain is finite

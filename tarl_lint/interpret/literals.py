@@ -13,7 +13,7 @@ from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
 MAX_EACH = 4  # maximum number of known elements over which a comprehension is unrolled
-MAX_ENTRIES = 32  # the same, in a thorough analysis: enough for all parameters of a node
+MAX_ENTRIES = 32  # this maximum in a thorough analysis; it suffices for all parameters of a node
 
 READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 

@@ -11,7 +11,7 @@ PoseStamped = message_type("geometry_msgs/PoseStamped")
 Float64 = message_type("std_msgs/Float64")
 
 DT = 0.5
-FASTEST = 1.6  # through the air: m/s
+FASTEST = 1.6  # largest speed through the air (m/s)
 TIME_BOUND = 60.0
 
 
