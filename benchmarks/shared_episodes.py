@@ -4,9 +4,9 @@
 
 Totals of episodes are normal with standard deviation 1; a drift of size d lowers their mean by d. All drifts of a world
 are compared with one recording. The looks, the choice of the comparison that continues, and the permutation test are
-those of the plugin; regions of sensor space are left out, so a loss is found as soon as it is significant. The row
-"even, as many run" has the smallest even share with which comparisons that end early run, on average, as many episodes
-as with the shared total; a user cannot know this share beforehand.
+those of the plugin; regions of sensor space are left out, so a loss is found as soon as it is significant.
+The row "even, as many run" shows the smallest even share for which the comparisons, which may end early, run
+on average the same number of episodes as with the shared total. A user cannot know this share beforehand.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Find the nearest failing drift in four directions, by a stress run and by other searches with as many episodes.
+"""Find the nearest failing drift in four directions, by a stress run and by other searches of equal cost.
 
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures

@@ -172,7 +172,7 @@ def detectable(totals: Floats) -> list[str]:
     if not np.ptp(totals):  # any loss is shown
         return []
     note = (
-        f"{totals.size} episodes: a comparison with as many shows a loss of {amount(loss)} per episode in "
+        f"{totals.size} episodes: a comparison with the same number shows a loss of {amount(loss)} per episode in "
         f"{100 * POWER:.0f} % of runs; for a loss half as large, record and compare {4 * totals.size}"
     )
     return [note]

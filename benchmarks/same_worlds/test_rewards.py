@@ -105,7 +105,7 @@ def test_a_single_step(tarl: Tarl) -> None:
 
 @pytest.mark.tarl(nodes=["mover.py"], sensors=[PLACE, LOADED])
 def test_equal_lengths(tarl: Tarl) -> None:
-    """All episodes have as many steps, and all steps cost the same."""
+    """All episodes have the same number of steps, and all steps cost the same."""
     way = Way(tarl)
     for _ in range(20):
         way.step()

@@ -97,8 +97,8 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 def binned(scale: Scale, sample: Sample) -> Ints:
     """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission lacks the score.
 
-    A mission without steps has no score but that of its success. A mission without rewards lacks the scores that need
-    rewards.
+    A mission without steps has only the score of its success. A mission without rewards lacks the scores that
+    need rewards.
     """
     return _binned(scale, _values(scale, sample))
 

@@ -45,7 +45,10 @@ def ended_words(stress: Stress) -> Iterator[str]:
     if stress.ended in ENDED:
         yield ENDED[stress.ended].format(budget=budget_words(stress), episodes=stress.episodes)
     if stress.seconds is not None:
-        yield f"A time limit is not reproducible; for as many episodes, use --tarl-stress-budget {stress.episodes}."
+        yield (
+            "A time limit is not reproducible; for the same number of episodes, use --tarl-stress-budget "
+            f"{stress.episodes}."
+        )
 
 
 def budget_words(stress: Stress) -> str:

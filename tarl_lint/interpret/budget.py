@@ -17,7 +17,8 @@ MAX_STATEMENTS = 25_000
 # number of statements in one run of a root after which the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000
 SEPARATE_CALLS = 8  # number of calls of a function in contexts of their own; its further calls share one
-# number of statements of a program after which only roots that never ran are run; after twice as many, none is run
+# after this number of statements of a program, only roots that never ran are run; after twice this number,
+# none
 PROGRAM_LIMIT = 80_000
 # maximum number of statements in one run of a root once its program has reached PROGRAM_LIMIT
 LATE_RUN_LIMIT = 400

@@ -52,7 +52,7 @@ class Store:
     layers: list[Delta] = field(default_factory=lambda: [{}])
     seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
-    merged: set[Key] = field(default_factory=set)  # the keys of `found` that nothing but joins has read
+    merged: set[Key] = field(default_factory=set)  # the keys of `found` that only joins have read
     exchanged: dict[Key, Value] = field(default_factory=dict)  # key → its value when this root last waited
     foreign: dict[Key, Value] = field(
         default_factory=dict

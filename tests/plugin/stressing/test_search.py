@@ -258,7 +258,7 @@ def test_a_time_limit_ends_the_search_and_says_how_to_repeat_it(monkeypatch: pyt
     assert (
         told[-2] == "  The budget of 20 s did not suffice for the whole search: raise --tarl-stress-budget."
     )
-    assert told[-1].endswith(f"for as many episodes, use --tarl-stress-budget {evaluator.spent}.")
+    assert told[-1].endswith(f"for the same number of episodes, use --tarl-stress-budget {evaluator.spent}.")
     document = json_result.document(found)
     jsonschema.validate(document, json_result.schema())
     assert (document["budget"], document["seconds"]) == (None, 20.0)

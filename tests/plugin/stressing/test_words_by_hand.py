@@ -235,7 +235,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
     assert len([*words.lines(stress(curve(FLAT, GOOD), ended="nominal"))]) == 3
     assert [*words.ended_words(stress(ended="interrupted", seconds=2.5))] == [
         "Interrupted after 150 episodes: these are the results so far.",
-        "A time limit is not reproducible; for as many episodes, use --tarl-stress-budget 150.",
+        "A time limit is not reproducible; for the same number of episodes, use --tarl-stress-budget 150.",
     ]
     assert words.budget_words(stress(seconds=2.5)) == "2.5 s"
 
