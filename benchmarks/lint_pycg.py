@@ -1,9 +1,9 @@
 """Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/vitsalis/PyCG. It contains small programs with their true calls. As in PyCG, a
-program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on the same programs,
-from the same checkout. For both tools, only calls between functions of the programs count; calls of builtins and
-libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
+CHECKOUT is a checkout of github/vitsalis/PyCG. This repository contains small programs with their true calls.
+As in PyCG, a program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on
+the same programs, from the same checkout. For both tools, only calls between functions of the programs count;
+calls of builtins and libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
 """
 
 from __future__ import annotations

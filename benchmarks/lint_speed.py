@@ -3,12 +3,12 @@
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
 For every tree, it prints the number of lines, and the CPU seconds of `ast.parse` over all .py files, of tarl-lint
-without a cache and with a warm cache, and of Semgrep with a taint rule from subscriber callbacks to publish. It also
-prints their ratios, and the peak memory of tarl-lint, including child processes. The last tree is copied under other
-package names and linted at once, twice and four times its size. CPU time includes all processes; each figure is the
-minimum of the repetitions. Suitable public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages
-unpacked with `dpkg -x`, wheels from PyPI, the standard library. Python writes bytecode, as it does for an installed
-package.
+without a cache and with a warm cache, and of Semgrep with a taint rule from subscriber callbacks to publish.
+The script also prints the ratios of these times, and the peak memory of tarl-lint, including child processes.
+The last tree is copied under other package names and linted at once, twice and four times its size. CPU time
+includes all processes; each figure is the minimum of the repetitions. Suitable public trees: checkouts of ROS
+repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from PyPI, the standard
+library. Python writes bytecode, as it does for an installed package.
 """
 
 from __future__ import annotations

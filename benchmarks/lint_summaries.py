@@ -2,8 +2,8 @@
 
 For each tree, it prints the CPU seconds of the interpretation and, within it, of executing function bodies (without
 nested calls), separately for the first run in a call context and for later runs. The script also prints how
-many of these seconds summaries would save if applying one cost nothing. It assumes that a summary holds for
-all runs of a function with the same key:
+many of these seconds summaries would save if applying one cost nothing. The script assumes that a summary
+holds for all runs of a function with the same key:
 
 - *arguments*: the kinds and classes of the arguments' objects, their constants, and whether they carry data. The
   result also depends on what the function reads elsewhere, so no correct summary reaches this bound.

@@ -3,9 +3,10 @@
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
 For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared
-in the unchanged world (40 episodes), and repaired. It is also recorded and compared in mud with two lines swapped,
-and with gain and wheels in other units (0.5 instead of 5, which gives the same motion). The true extent of the mud
-comes from the world, not from a sensor. The line follower is also recorded, compared at dusk and repaired.
+in the unchanged world (40 episodes), and repaired. The transit is also recorded and compared in mud with two
+lines swapped, and with gain and wheels in other units (0.5 instead of 5, which gives the same motion). The
+true extent of the mud comes from the world, not from a sensor. The line follower is also recorded, compared
+at dusk and repaired.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Compute flows and findings from modules and settings.
 
-It is a pure function: the same files give the same result everywhere.
+The analysis is a pure function: the same files give the same result everywhere.
 """
 
 from __future__ import annotations

@@ -129,7 +129,7 @@ class Server(LanguageServer):
     def _publish_some(self, result: Result, settled: frozenset[str]) -> None:
         """Publish the diagnostics of some files.
 
-        Those of other files may be outdated, because their text may have changed.
+        The diagnostics of other files may be outdated, because the text of these files may have changed.
         """
         self.shown_in = Places(self.root, result.texts)
         found = findings.diagnostics(result, self.shown_in)

@@ -22,8 +22,9 @@ STEPS = (
 class Group:
     """A command in its own process group, so that all processes that it starts can be killed.
 
-    Its output goes to stderr. On Linux, this process adopts the group's orphans. It reaps them itself, because the init
-    process of a container may not do so. It also kills processes that left the group.
+    The output of the command goes to stderr. On Linux, this process adopts the group's orphans. This process
+    reaps the orphans itself, because the init process of a container may not do so, and it also kills
+    processes that left the group.
     """
 
     def __init__(self, command: Sequence[str], folder: str, environment: Mapping[str, str]) -> None:

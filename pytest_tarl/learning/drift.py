@@ -194,7 +194,7 @@ def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[n
     """Return the significant cells whose difference is at least MATERIAL times the largest one, shape (cells,).
 
     The designed mean per visit has an estimation error. Where deployed episodes visit a cell more or less often, this
-    error becomes significant with enough episodes. It stays small, so the limit removes such cells.
+    error becomes significant with enough episodes. The error stays small, so the limit removes such cells.
     """
     size = np.where(significant, np.abs(difference), 0.0)
     material: NDArray[np.bool_] = size >= MATERIAL * size.max(initial=0.0)

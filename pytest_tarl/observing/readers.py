@@ -1,7 +1,7 @@
 """Read and bin the values of a sensor quickly, because a node's control cycle waits for it.
 
-The functions return the same as `reading` and `Sensor.bin`. They have a fast path for messages with attributes and for
-values of the usual types; in all other cases, they use the general functions.
+The functions return the same as `reading` and `Sensor.bin`. These functions have a fast path for messages
+with attributes and for values of the usual types; in all other cases, they use the general functions.
 """
 
 from __future__ import annotations

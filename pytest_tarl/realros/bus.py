@@ -27,7 +27,7 @@ _SWITCH_INTERVAL = 0.0002
 
 
 class RealBus(Bus):
-    """The bus of the simulated world. It uses its own ROS node."""
+    """The bus of the simulated world. This bus uses its own ROS node."""
 
     kind: Kind
 

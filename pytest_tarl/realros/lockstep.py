@@ -19,7 +19,7 @@ PATIENCE = 10.0  # maximum wall time until a message has arrived (s)
 
 
 class Way(NamedTuple):
-    """A connection from a sender to a receiver. Its messages arrive in the order in which they were sent."""
+    """A connection from a sender to a receiver. Messages arrive in the order in which they were sent."""
 
     topic: str
     sender: str

@@ -169,7 +169,7 @@ class Jointly:
         """Run a combination; return its share of the wanted gain minus the deviation of its missions.
 
         A combination that would be the best so far also runs on a second seed, because its result on one seed may be
-        luck. Its gain is then the mean of both.
+        luck. The gain of such a combination is the mean of both seeds.
         """
         gain = yield from self.selection.gain(joint)
         if gain is None:

@@ -141,7 +141,7 @@ class Preferences:
     def _truer(self, found: Candidate, unit: Unit, factor: float, pair: int) -> Iterator[Candidate]:
         """Yield a rival constant first if its missions are much closer to the designed ones.
 
-        It is then more likely to be the cause.
+        Such a constant is more likely to be the cause.
         """
         seeds = self._compared_on(pair)
         if self._compared or self._deviation(found, seeds[:1]) <= EXACT:

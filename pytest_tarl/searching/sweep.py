@@ -53,10 +53,11 @@ class Sweep:
 
     If the first guard is `ALWAYS`, only this guard is used throughout, otherwise the first two are. The others are used
     only at the end. If `proposed` is true, the operands are parameters of a change that the program does not contain
-    yet. They are first tried with their own values. If the change has no effect, factors that make it `weaker` are
-    skipped. Only parameters of the same change are combined. The last steps of the sweep are tried on every operand. If
-    a search for structural changes follows, only the nearest of these steps are tried, on named constants.
-    `responding` contains the ids of statements whose constants increased the reward.
+    yet. Such parameters are first tried with their own values. If the change has no effect, factors that make
+    it `weaker` are skipped. Only parameters of the same change are combined. The last steps of the sweep are
+    tried on every operand. If a search for structural changes follows, only the nearest of these steps are
+    tried, on named constants. `responding` contains the ids of statements whose constants increased the
+    reward.
     """
 
     def __init__(

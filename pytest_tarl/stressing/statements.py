@@ -1,7 +1,7 @@
 """Find the statements that run in failing episodes and in no other episode.
 
 Episodes of the search are repeated to record their statements. The repetitions have the same drifts and seeds, so they
-are identical. They do not count towards the budget.
+are identical. Repetitions do not count towards the budget.
 """
 
 from __future__ import annotations

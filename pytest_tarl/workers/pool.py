@@ -158,7 +158,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process, by job. They start on demand. Several threads may use the pool."""
+    """The workers of this process, by job. Workers start on demand. Several threads may use the pool."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

@@ -51,7 +51,7 @@ def serve(requests: int, answers: int, config: Config | None, problem: str) -> N
 
 
 class Server:
-    """The pytest plugin of a worker. It answers requests instead of running tests."""
+    """The pytest plugin of a worker. The plugin answers requests instead of running tests."""
 
     def __init__(self, post: dict[str, Any], requests: BinaryIO, answers: BinaryIO) -> None:
         self.post = post

@@ -160,7 +160,7 @@ class Parameter:
 
 @dataclass(slots=True, eq=False)
 class Function:
-    """A function or lambda. Its body is lowered when it is first called."""
+    """A function or lambda. The body is lowered when the function is first called."""
 
     name: str
     qualname: str

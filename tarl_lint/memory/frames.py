@@ -32,7 +32,7 @@ class Escape:
 
 
 class Frame(Obj):
-    """A frame, identified by its chain of calls. Its fields are the local variables."""
+    """A frame, identified by its chain of calls. The fields of a frame are the local variables."""
 
     __slots__ = (
         "answer",

@@ -151,7 +151,7 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
 def _has_fields(qualified: str) -> bool:
     """Return whether keyword arguments become fields of the new object.
 
-    Those of a process do not: its `stdout` is a stream.
+    The keyword arguments of a process do not: `stdout` of a process is a stream.
     """
     return qualified.rpartition(".")[2][:1].isupper() and qualified not in containers.PROCESSES
 

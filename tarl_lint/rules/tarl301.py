@@ -1,10 +1,10 @@
 """TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
 
-The two ends were probably meant to be connected. Their types are equal, and their names differ only by a
-namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does not move.
-For this reason, the keyboard teleoperation of the Kobuki had no effect
-(https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace but
-the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
+The two ends were probably meant to be connected. The types of both ends are equal, and the names differ only
+by a namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does
+not move. For this reason, the keyboard teleoperation of the Kobuki had no effect
+(https://github.com/aliasrobotics/RVD/issues/581). Robots also stand still if they are launched in a namespace
+but their code publishes on `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
 
 The rule reports nothing if a node of the launch file was not read, or if it computes the names of its topics,
 because that node might be the other end. The rule also reports nothing if no publisher has a similar name,

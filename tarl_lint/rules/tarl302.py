@@ -1,9 +1,9 @@
 """TARL302: publisher and subscription of a topic have different types.
 
-ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. This happens where
-some nodes use `Twist` and others `TwistStamped` (https://github.com/ros-teleop/teleop_twist_keyboard/issues/39).
-The rule compares only the last part of the two type names, and only if the code names both types by
-constants.
+ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For
+example, some nodes use `Twist` and others `TwistStamped`
+(https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). The rule compares only the last part of the
+two type names, and only if the code names both types by constants.
 """
 
 from __future__ import annotations

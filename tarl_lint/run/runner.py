@@ -258,7 +258,7 @@ def _examine(
 
 
 def _accepted(options: Options, config: Config) -> Baseline:
-    """Load the baseline, if there is one. It may be missing if this run writes it."""
+    """Load the baseline, if there is one. The baseline may be missing if this run writes it."""
     path = config.baseline
     if path is None or (options.write_baseline and not path.exists()):
         return Baseline()

@@ -21,7 +21,7 @@ CODES = {
 
 
 class FieldError(Exception):
-    """A field's value does not fit its type. Its message is the end of a sentence."""
+    """A field's value does not fit its type. The message of the error is the end of a sentence."""
 
 
 def as_float(value: Any, field: str) -> float:

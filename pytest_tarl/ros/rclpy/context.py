@@ -11,7 +11,7 @@ from pytest_tarl.ros.rclpy.exceptions import NotInitializedException, RCLError
 
 
 class Context:
-    """The rclpy context of a process. It is a singleton, which `Context()` returns."""
+    """The rclpy context of a process. This context is a singleton, which `Context()` returns."""
 
     def __new__(cls, process: Process | None = None) -> Context:
         """Return the process's context; create it on first use."""
