@@ -64,8 +64,10 @@ class Store:
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
     )  # key → value that other roots may store while this one waits; None if they store none
-    hearing: dict[Key, Value] = field(default_factory=dict)
-    heeded: int = 0  # number of keys in the root's `heeds` when `hearing` was computed
+    hearing: dict[Key, Value] | None = None
+    unheard: list[Key] = field(
+        default_factory=list
+    )  # keys added to the root's `heeds` since `hearing` was computed
     waited: bool = False  # whether this root has waited, so that other roots may have stored since its start
     reads: Reads = field(default_factory=Reads)  # what the running call has read
     # function applied to each value that is stored to a field with weak updates
@@ -142,6 +144,7 @@ class Store:
     def _heed(self, key: Key, value: Value) -> None:
         """Take in stores of other roots at this key from now on; re-run this root if there are any."""
         self.root.heeds.add(key)
+        self.unheard.append(key)
         self.exchanged.pop(key, None)
         news = self.others(key)
         if news is not None and (value is ABSENT or join(value, news) is not value):
@@ -299,12 +302,17 @@ class Store:
     def heard(self) -> dict[Key, Value]:
         """Return the values that other roots may store at the keys in `heeds`; constant during this root's run.
 
-        Keys to which no other root stores are left out, so that adding one to `heeds` does not change the result.
+        Keys to which no other root stores are left out, so that adding one to `heeds` does not change the result. The
+        result is not modified later; if keys are added, the next result is another dictionary.
         """
-        if self.heeded != len(self.root.heeds):
-            self.heeded = len(self.root.heeds)
-            news = ((key, self.others(key)) for key in self.root.heeds)
-            self.hearing = {key: value for key, value in news if value is not None}
+        if self.hearing is None or self.unheard:
+            news = (
+                (key, self.others(key)) for key in (self.root.heeds if self.hearing is None else self.unheard)
+            )
+            added = {key: value for key, value in news if value is not None}
+            if added or self.hearing is None:
+                self.hearing = {**(self.hearing or {}), **added}
+            self.unheard = []
         return self.hearing
 
     def own(self) -> list[Key]:

@@ -156,8 +156,16 @@ def test_a_wait_ignores_keys_to_which_no_other_root_stores():
     store = Store(shared, root)
     root.heeds.add(mine)
     assert store.heard() == {}
-    root.heeds.add(theirs)
+    store.waited = True
+    for key in (mine, theirs):
+        store.put(key, Value())
+    before = store.heard()
+    store.get(mine)
+    assert store.heard() is before
+    store.get(theirs)
     assert store.heard() == {theirs: Value(DATA)}
+    assert before == {}
+    assert Store(shared, root).heard() == {theirs: Value(DATA)}
 
 
 def test_reads_that_do_not_depend_on_the_path_are_merged_once(obj):
