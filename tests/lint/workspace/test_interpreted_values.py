@@ -553,11 +553,23 @@ def test_large_integers_are_computed_up_to_a_size(tmp_path):
 
 
 def test_unknown_elements_of_a_list_are_one_unknown_value(tmp_path):
-    found = interpreted(
-        tmp_path, "l = [1]\nl.extend(absent)\nl += absent\nl.append(2)\nk = []\nk.extend({1: 2})"
-    )
+    text = "l = [1]\nl.extend(absent)\nl += absent\nl.append(2)\nk = []\nk.extend({1: 2})"
+    found = interpreted(tmp_path, f"{text}\nimport numpy\nk.extend(numpy.ones)")
     assert found["l"] == [1, Unknown(2, "absent"), Unknown(3, "absent"), 2]
-    assert found["k"] == [1]
+    assert found["k"] == [1, Unknown(0, "unknown elements")]
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [("", 0), ("pass\n" * 5, 5), ("x = 1", 2), ("x = 1 + 2", 4), ("for x in [1, 2]: pass", 8)],
+)
+def test_each_statement_and_expression_is_a_step(tmp_path, text, steps):
+    path = tmp_path / "read.py"
+    path.write_text(text)
+    file = Interpreter(path, {})
+    before = file.left[0]
+    file.run()
+    assert before - file.left[0] == steps
 
 
 PROBLEMS = {
