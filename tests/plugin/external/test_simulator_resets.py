@@ -1,0 +1,82 @@
+"""Simulators that serve several episodes, and the guardian that keeps them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import SimulatorError
+from pytest_tarl.external import simulator as module
+from pytest_tarl.external.arguments import Call, Setup
+from pytest_tarl.external.simulator import Simulator
+from pytest_tarl.ros import Ros, message_type
+from tests.plugin.external.conftest import FLOAT, SETUP, STARTED, Guardian, begun, clock, graph, message
+
+RESET = replace(SETUP, reset=Call("/reset"))
+
+
+def test_a_simulator_with_a_reset_serves_further_episodes(guardian: Guardian, ros: Ros) -> None:
+    made = begun(RESET, guardian, ros)
+    guardian.events.put(clock(3.0))
+    made.advance(1.0)
+    made.end()
+    assert module.KEPT.running == RESET
+    assert guardian.commands("stop") == []
+
+    def react(what: str, **arguments: Any) -> list[dict[str, Any]]:
+        answer = {"kind": "answer", "id": arguments.get("id"), "asked": 5}
+        after = [graph("/odom", "", "/odom"), message("/odom", 7.0), clock(0.5)]
+        return [message("/odom", 6.0), clock(0.1), answer, *after] if what == "call" else []
+
+    guardian.react = react
+    again = Simulator(RESET, ros, ())
+    again.begin()
+    assert (len(guardian.commands("start")), again.clock, again.latest("/odom").data) == (1, 0.5, 7.0)
+    assert guardian.commands("call")[-1]["service"] == "/reset"
+    other = Simulator(replace(RESET, command=("other",)), ros, ())
+    guardian.react = lambda what, **_: STARTED if what == "start" else []
+    other.begin()
+    assert len(guardian.commands("start")) == 2
+
+
+def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: Guardian, ros: Ros) -> None:
+    quick = replace(RESET, patience=0.05)
+    module.KEPT.running = quick
+    made = begun(quick, guardian, ros)
+    assert [what for what, _ in guardian.done if what != "subscribe"] == ["call", "start"]
+    assert made.clock == 2.0
+
+
+@pytest.mark.parametrize("setup", [SETUP, RESET])
+def test_a_simulator_stops_after_an_episode_without_reset_or_with_an_error(
+    guardian: Guardian, ros: Ros, setup: Setup, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = begun(setup, guardian, ros)
+    guardian.said = " warned \n"
+    made.end()  # RESET: no step ended without an error
+    assert len(guardian.commands("stop")) == 1
+    assert module.KEPT.running is None
+    assert capsys.readouterr().out == "output of sim --world 'a b':\nwarned\n"
+
+
+def test_in_ros1_each_simulator_gets_a_guardian_of_its_own(guardian: Guardian, ros: Ros) -> None:
+    made = Simulator(replace(SETUP, ros="ros1", timeout=0.05), ros, ())
+    with pytest.raises(SimulatorError, match="was not ready"):
+        made.begin()
+    assert guardian.closed
+    assert made._client is not guardian
+    package = made._theirs(message_type(FLOAT)(data=1.0))
+    assert (hasattr(type(package), "_slot_types"), package.data) == (True, 1.0)
+
+
+def test_a_guardian_that_has_ended_is_replaced(guardian: Guardian) -> None:
+    kept = module.KEPT
+    assert kept.opened() is guardian  # type: ignore[comparison-overlap]
+    guardian.alive = False
+    kept.running = SETUP
+    assert kept.opened() is not guardian  # type: ignore[comparison-overlap]
+    assert (guardian.closed, kept.running) == (True, None)
+    kept.close()
+    assert kept.client is None
