@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from math import sqrt
-from statistics import fmean, median
+from statistics import fmean
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from pytest_tarl.stressing.findings import Curve, MarginMap
 from pytest_tarl.stressing.generating import generate
 from pytest_tarl.stressing.guarantee import most_passed
 from pytest_tarl.stressing.mapping import margin_map
+from pytest_tarl.stressing.noise import cut_off, standard_error, typical_variance
 from pytest_tarl.stressing.prediction import Prediction, Sample, Shown
 from pytest_tarl.stressing.rays import distance
 from pytest_tarl.stressing.shrinking import shrunk
@@ -66,7 +67,6 @@ STANDARD = 4.1
 POWER, IMPOSSIBLE = 0.6, 0.99
 # limits of the excess loss that fresh episodes can show, in units of the tolerated loss
 SHALLOW, DEEP = 0.03, 1.2
-PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 # share of the distance below which components may be noise; they are dropped before confirmation
 TRIFLE = 0.15
 
@@ -249,16 +249,17 @@ class Nearest:
             unique = {tuple(point.values()): point for point in self._known() if coordinates.covers(point)}
             points = list(unique.values())
             measured = [evaluator.losses(point) for point in points]
-            typical = _typical([losses for losses, _ in measured])
+            within = [cut_off(losses) for losses, _ in measured]
+            typical = typical_variance(within)
             samples = [
                 Sample(
                     coordinates.vector(point),
                     fmean(losses),
-                    _spread(losses, typical),
+                    standard_error(cut, typical),
                     failed,
                     evaluator.rows(point, len(losses)),
                 )
-                for point, (losses, failed) in zip(points, measured, strict=True)
+                for point, (losses, failed), cut in zip(points, measured, within, strict=True)
             ]
             model = Prediction(coordinates, evaluator.guarantee, samples, self._shown(sqrt(typical)), typical)
             self._fitted = evaluator.spent, model
@@ -380,19 +381,6 @@ class Nearest:
                 coordinates.vector(best) if best is not None else 0.5 * (coordinates.high + coordinates.low)
             )
             evolve(start, SPREAD * (self._distance(best) if best is not None else 1.0), draws, margin)
-
-
-def _typical(every: Sequence[Sequence[float]]) -> float:
-    """Return the mean variance of losses over the drifts, with a cap so that noisy drifts do not dominate."""
-    found = [float(np.var(losses, ddof=1)) for losses in every if len(losses) > 1]
-    return max(fmean(min(one, 4.0 * median(found)) for one in found), 1e-6)
-
-
-def _spread(losses: Sequence[float], typical: float) -> float:
-    """Return the standard error of the mean loss; the variance is shrunk towards the typical one."""
-    count = len(losses)
-    squares = float(np.var(losses)) * count
-    return sqrt((squares + PRIOR * typical) / (count - 1 + PRIOR) / count)
 
 
 def _without_trifles(vector: Vector, model: Prediction, errors: float) -> Vector:
