@@ -91,10 +91,10 @@ def arguments_from(sources: Sequence[Source]) -> str:
 
 def _sentence(sources: Sequence[Source], stated: Callable[[Source], str]) -> str:
     """Return what the launch files give the node, and the calls that use them."""
-    giving = {(one.file, one.node): (one, stated(one)) for one in sources if stated(one)}
+    giving = {(one.file, stated(one)): (one, stated(one)) for one in reversed(sources) if stated(one)}
     if not giving:
         return ""
-    (first, text), *others = list(giving.values())[:SHOWN]
+    (first, text), *others = list(reversed(giving.values()))[:SHOWN]
     more = f" (and {len(giving) - SHOWN} more)" if len(giving) > SHOWN else ""
     further = "".join(f", and {one.file.name} with {text}" for one, text in others)
     calls = " or ".join(dict.fromkeys(one.call for one in (first, *(one for one, _ in others))))

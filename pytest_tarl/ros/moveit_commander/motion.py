@@ -19,6 +19,10 @@ _MODELLED: Final = (
     "moveit_commander: motions are straight lines in joint space at the speed limits of the joints, published on "
     f"{FAKE}, as by MoveIt's fake controllers; obstacles and accelerations are not considered."
 )
+UNDESCRIBED: Final = (
+    "robot_description and robot_description_semantic are not set: pass the texts of the URDF and the SRDF in "
+    "parameters"
+)
 
 
 class Motions:
@@ -46,10 +50,7 @@ class Motions:
             self._models[description] = described({one: get_param(one, None) for one in names}, description)
         model = self._models[description]
         self._tell(
-            _MODELLED
-            if model is not None
-            else f"moveit_commander: {description} and {description}_semantic are not set, so every plan fails: pass "
-            "the texts of the URDF and the SRDF in parameters."
+            _MODELLED if model is not None else f"moveit_commander: every plan fails, because {UNDESCRIBED}."
         )
         return model
 

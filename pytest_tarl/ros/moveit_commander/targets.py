@@ -12,7 +12,7 @@ from pytest_tarl.ros.kdl.vectors import Vector
 from pytest_tarl.ros.messages import class_of
 from pytest_tarl.ros.moveit_commander.conversions import list_to_pose, rpy_of
 from pytest_tarl.ros.moveit_commander.exception import MoveItCommanderException
-from pytest_tarl.ros.moveit_commander.motion import Motions
+from pytest_tarl.ros.moveit_commander.motion import UNDESCRIBED, Motions
 from pytest_tarl.ros.moveit_commander.robot_model import Group, RobotModel
 from pytest_tarl.ros.posemath import fromMsg
 
@@ -134,7 +134,8 @@ class Targets:
         elif isinstance(arg1, str):
             given = {arg1: float(arg2)}
         elif len(arg1) != len(self._group.joints):
-            raise MoveItCommanderException("Error setting joint target. Is the target within bounds?")
+            why = f" ({UNDESCRIBED})" if self._model is None else ""
+            raise MoveItCommanderException(f"Error setting joint target. Is the target within bounds?{why}")
         else:
             given = dict(zip(self._group.joints, map(float, arg1), strict=True))
         self._set_goal(
@@ -263,7 +264,8 @@ class Targets:
 
     def _link(self, named: str) -> str:
         if not named and not self._tip:
-            raise MoveItCommanderException("There is no end effector to get the pose of")
+            why = f" ({UNDESCRIBED})" if self._model is None else ""
+            raise MoveItCommanderException(f"There is no end effector to get the pose of{why}")
         return named or self._tip
 
     def _stamped(self, link: str, state: Mapping[str, float]) -> Any:

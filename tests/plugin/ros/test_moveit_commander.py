@@ -180,6 +180,11 @@ def test_without_descriptions_every_plan_fails_with_a_note(start: Start) -> None
     ros.step(1.0)
     assert found(ros) == [False, [], []]
     assert any("robot_description and robot_description_semantic are not set" in one for one in ros.notes)
+    for line in ("group.get_current_pose()", "group.set_joint_value_target([1.0])"):
+        with pytest.raises(
+            NodeError, match="robot_description_semantic are not set: pass the texts of the URDF"
+        ):
+            start(f"{BEGIN}    {line}")
 
 
 def test_objects_are_remembered_and_published(start: Start) -> None:

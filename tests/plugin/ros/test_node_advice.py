@@ -189,8 +189,8 @@ def test_a_missing_parameter_names_the_launch_files_that_set_it(start: Start, tm
 
 
 def test_a_missing_parameter_names_the_launch_arguments_that_it_needs(start: Start, tmp_path: Path) -> None:
-    text = """<arg name="port"/><arg name="rate" default="5"/>
-        <node pkg="saver" type="node.py" name="arm"><param name="port" value="$(arg port)"/></node>"""
+    node = '<node pkg="saver" type="node.py" name="{0}"><param name="port" value="$(arg port)"/></node>'
+    text = f'<arg name="port"/><arg name="rate" default="5"/>{node.format("arm")}{node.format("other_arm")}'
     found = in_package(tmp_path, bringup=text)
     message = failure(start, found, "import rospy\nrospy.init_node('saver')\nrospy.get_param('~port')")
     assert message.endswith(
