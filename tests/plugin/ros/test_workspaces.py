@@ -280,6 +280,33 @@ def test_start_accepts_a_launch_file_or_false(launches: Path, pytester: pytest.P
     result.stdout.fnmatch_lines(["*RATE 9*", "*RATE None*", "*RATE None*"])
 
 
+def test_arguments_of_ros2_come_from_the_launch_file_unless_the_test_has_some(
+    launches: Path, pytester: pytest.Pytester
+) -> None:
+    arguments = 'arguments=["--arm", "left", "--ros-args", "-r", "a:=b", "-p", "kp:=4.0"], '
+    (launches / "launch/one.launch").unlink()
+    node = "import sys\nprint('ARGV', sys.argv[1:])\n"
+    test = """
+        import pytest
+        from pytest_tarl import Sensor
+
+        @pytest.mark.parametrize("more", [{}, {"argv": ["right"]}, {"launch": False}])
+        @pytest.mark.tarl(nodes=["node.py"], sensors=[Sensor("x", low=0, high=1, bins=2)])
+        def test_it(tarl, more):
+            tarl.start("node.py", **more)
+        """
+    text = LAUNCH2.replace('name="drive",', f'name="drive", {arguments}')
+    write(launches, {"launch/one.launch.py": text, "node.py": node, "test_it.py": test})
+    workspace.forget()
+    found = given(launches / "node.py")
+    assert (found.argv, found.private["kp"]) == (("--arm", "left"), 2.5)
+    assert found.note == "parameters and arguments of drive come from one.launch.py (ros2.yaml)."
+    quiet = ("-p", "no:randomly", "-p", "no:asyncio", "-p", "no:rerunfailures")
+    result = pytester.runpytest("-q", "-s", *quiet, str(launches / "test_it.py"))
+    result.assert_outcomes(passed=3)
+    result.stdout.fnmatch_lines(["*ARGV [['--arm', 'left']*", "*ARGV [['right']*", "*ARGV [[]]*"])
+
+
 def test_every_cache_of_workspace_facts_is_emptied(packages: Path, start: Start) -> None:
     start(
         "import rospy\nfrom arm_base.cfg import ArmConfig\nfrom arm_base.msg import Reading\nimport smoothing\n"
