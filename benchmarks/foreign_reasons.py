@@ -14,7 +14,7 @@ KINDS = {  # pattern in the message of a failed test → name of the missing fea
     r"([\w.]+) is not in the in-process ROS": "ROS API {0}",
     r"Message type ([\w/]+) is unknown": "message {0}",
     r"KeyError: '?([~/\w]+)'? \(.*get_param": "parameter {0}",
-    r"exited with status (2)": "command line arguments",
+    r"exited with status 2|reads its command line|command line is incomplete": "command line arguments",
     r"(EOFError|termios.error|reading from stdin)": "keyboard",
     r"KeyError: '(?:TURTLEBOT3_MODEL|LDS_MODEL|[A-Z_]{5,})'": "environment variable",
     r"closed here: ([\w.]+)": "operating system ({0})",

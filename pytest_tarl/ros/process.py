@@ -20,6 +20,7 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 Part = TypeVar("Part")
 
 _PATIENCE = 1_000  # number of waits that return at once before a task counts as ignoring the shutdown
+_LONGEST = 100  # maximum length of a node's last words in a message
 _ROUNDS = 5  # number of rounds in which the tasks of an ending process may return before they are killed
 
 
@@ -184,7 +185,7 @@ class Process:
 
     def _ended_in(self, error: BaseException) -> NodeError:
         what = (
-            f"exited with status {error.code}"
+            f"exited with status {_status(error)}"
             if isinstance(error, SystemExit)
             else f"raised {type(error).__name__}: {error}"
         )
@@ -198,6 +199,14 @@ class Process:
             self.errors.append(error)
         elif self.scheduler.failure is None:
             self.scheduler.failure = error
+
+
+def _status(error: SystemExit) -> str:
+    """Return the status of an exit; a text, which Python prints before it exits with 1, in one line."""
+    if isinstance(error.code, int):
+        return str(error.code)
+    first = next((one.strip() for one in str(error.code).splitlines() if one.strip()), "")
+    return f"1: {first[:_LONGEST]}{'…' if len(first) > _LONGEST else ''}"
 
 
 def _of_pytest(error: BaseException) -> bool:

@@ -42,6 +42,7 @@ CASES = {
     "yaml.load('a: 1')": r"PyYAML 6 has no default for it: call yaml\.safe_load",
     "sys.argv[1]": r"The node reads its command line: pass argv=\[…\] to tarl\.start",
     "sys.exit('usage: node FILE') if len(sys.argv) < 2 else None": r"pass argv=\[…\]",
+    "sys.exit('\\n Drive.\\n\\nUsage: node FILE') if not sys.argv[1:] else 0": r"status 1: Drive\. \(.*pass argv=\[…\]",
     "argparse.ArgumentParser().parse_args(['--what'])": r"incomplete \(unrecognized arguments: --what\): pass argv=",
 }
 BLOCKS = {
