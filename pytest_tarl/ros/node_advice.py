@@ -6,8 +6,9 @@ import ast
 import linecache
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from types import FrameType, TracebackType
+from typing import Final, TypeGuard
 
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.launch_sources import Given, arguments_from, parameter_from
@@ -26,6 +27,7 @@ _INTEGER_NEEDED = re.compile(
     r"'float' object cannot be interpreted as an integer|can't multiply sequence by non-int of type 'float'|"
     r"^slice indices must be integers|indices must be integers or slices, not float|only integers, slices"
 )
+_ARGUMENTS: Final = re.compile(r"\bargv\b|\bmyargv\b|\bparse_(known_)?args\b")
 
 
 def advice(error: BaseException, given: Given) -> str:
@@ -130,8 +132,8 @@ def _of_program(error: BaseException) -> list[TracebackType]:
 
 def _checks_arguments(entry: TracebackType) -> bool:
     """Return whether the statement at which a frame stopped, or a condition around it, reads the arguments."""
-    code = entry.tb_frame.f_code
-    return any("argv" in text for text in _statement_and_conditions(code.co_filename, entry.tb_lineno))
+    texts = _statement_and_conditions(entry.tb_frame.f_code.co_filename, entry.tb_lineno)
+    return any(_ARGUMENTS.search(text) for text in texts)
 
 
 def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
@@ -145,7 +147,10 @@ def _indexes_arguments(innermost: Sequence[TracebackType]) -> bool:
 
 
 def _statement_and_conditions(file: str, line: int) -> Iterator[str]:
-    """Yield the line of a file, and the conditions of the `if` statements around it."""
+    """Yield the line of a file, and the conditions of the `if` statements around it.
+
+    After a condition, yield the values that the file assigns to its names.
+    """
     yield linecache.getline(file, line)
     try:
         tree = ast.parse("".join(linecache.getlines(file)))
@@ -154,6 +159,15 @@ def _statement_and_conditions(file: str, line: int) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.If) and node.lineno <= line <= (node.end_lineno or node.lineno):
             yield ast.unparse(node.test)
+            used = {one.id for one in ast.walk(node.test) if isinstance(one, ast.Name)}
+            yield from (ast.unparse(one.value) for one in ast.walk(tree) if _assigns(one, used))
+
+
+def _assigns(node: ast.AST, names: Collection[str]) -> TypeGuard[ast.Assign]:
+    """Return whether a statement assigns to one of these names."""
+    return isinstance(node, ast.Assign) and any(
+        isinstance(one, ast.Name) and one.id in names for target in node.targets for one in ast.walk(target)
+    )
 
 
 def _innermost(error: BaseException) -> FrameType | None:

@@ -50,6 +50,8 @@ BLOCKS = {
     "import sys\ndef main(args):\n    return args[1]\nmain(sys.argv)": "reads its command line",
     "import sys\ndef main(args):\n    return [][0]\nmain(sys.argv)": r"in main\)\.$",
     "import sys\nif sys.maxsize:\n    sys.exit(1)": r"line 3\)\.$",
+    "import sys\nfiles = [one for one in sys.argv[1:]]\nif not files:\n    sys.exit(1)": "reads its command line",
+    "import sys\nfiles = [1]\nif files:\n    sys.exit(1)": r"line 4\)\.$",
 }
 SILENT = [
     "range(2.0)",
