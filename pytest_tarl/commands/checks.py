@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pytest_tarl.commands.targets import Target
 from pytest_tarl.errors import RefusedError
+from pytest_tarl.files import read_regular
 from pytest_tarl.patching.changes import FilePatch
 from pytest_tarl.patching.reading import Patch
 
@@ -55,22 +56,22 @@ def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
         for told in patch.told("fixture"):
             digest, _, name = told.partition(" ")
             root = (patch.root or Path.cwd()).resolve()
-            path = root / name
-            if not _there(path, root):
+            content = _content(root / name, root)
+            if content is None:
                 yield f"note:  {name} is missing, so TARL could not check whether it was recorded again"
-            elif hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+            elif hashlib.sha256(content).hexdigest() != digest:
                 raise RefusedError(
                     f"{name} was recorded again since {patch.name} was accepted: search for the repair again, or "
                     "apply it with --force."
                 )
 
 
-def _there(path: Path, root: Path) -> bool:
-    """Return whether a path in a header is a file below a folder."""
+def _content(path: Path, root: Path) -> bytes | None:
+    """Return the content of a path in a header, or None if it is not a readable file below a folder."""
     try:
-        return path.is_file() and path.resolve().is_relative_to(root)
-    except (OSError, ValueError):  # an invalid file name
-        return False
+        return read_regular(path) if path.is_file() and path.resolve().is_relative_to(root) else None
+    except (OSError, ValueError):  # an unreadable file, or an invalid name
+        return None
 
 
 def whole(patches: Sequence[Patch]) -> None:

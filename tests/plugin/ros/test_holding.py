@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -60,13 +59,10 @@ def test_a_worker_that_stops_responding_is_killed_by_its_parent(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pool, "SILENCE", 2)
+    tank.makeconftest(BRIEF.replace("0.05", "1e6"))  # the worker's own timer does not end it
     changed(tank, "keeper", "            flow = GAIN * missing", HOLDS)
-    before = time.monotonic()
     told = tank.runpytest(*RECORD, "--tarl-workers=2")
     told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at *keeper.py, line 2*"])
-    assert (
-        time.monotonic() - before < 100
-    )  # with the system's timer, a limit of 10 s of CPU time would take 40 s
 
 
 def test_the_reported_place_is_in_user_code() -> None:
