@@ -15,6 +15,7 @@ from tests.plugin.tank import RECORD, fixture_file
 from tests.slow import SLOW
 
 TIMES = 40 if SLOW else 2
+PYTESTS_OWN = "assertions not in test modules:pytest.PytestConfigWarning"  # with -O
 PYTHON = (
     [],
     ["-O"],
@@ -52,7 +53,7 @@ def started(
 ) -> subprocess.Popen[bytes]:
     """Start a recording whose standard input is closed."""
     return subprocess.Popen(
-        [sys.executable, *flags, "-m", "pytest", "-q", *RECORD, *options],
+        [sys.executable, *flags, "-m", "pytest", "-q", *RECORD, *options, "-W", f"ignore:{PYTESTS_OWN}"],
         cwd=folder,
         env=variables,
         umask=umask,
