@@ -64,6 +64,25 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "rospy.get_param": Fact("parameter", "rospy.get_param", (0, "param_name"), extra=(1, "default")),
 }
 
+MARKER_SERVERS: Final = frozenset(
+    [
+        "interactive_markers.InteractiveMarkerServer",
+        "interactive_markers.interactive_marker_server.InteractiveMarkerServer",
+    ]
+)  # they receive what a user does with a marker
+MARKER_MENUS: Final = frozenset(
+    ["interactive_markers.MenuHandler", "interactive_markers.menu_handler.MenuHandler"]
+)
+FEEDBACK: Final = Fact("feedback", "interactive_markers.InteractiveMarkerServer", (0, ""))
+CLASS_METHODS: Final[Mapping[str, Fact]] = {
+    **{
+        f"{server}.{name}": FEEDBACK
+        for server in sorted(MARKER_SERVERS)
+        for name in ("insert", "setCallback")
+    },
+    **{f"{menu}.insert": FEEDBACK for menu in sorted(MARKER_MENUS)},
+}  # methods of library classes by qualified name; METHODS holds those that the name of the method identifies
+
 LOOKUPS: Final = frozenset(
     ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",
      "lookup_transform_core", "lookupTransform", "lookupTransformFull", "lookupTwist"]
@@ -158,6 +177,7 @@ SOURCE_WORDS: Final = (
     "create_service",
     "ActionServer",
     "SimpleActionServer",
+    "InteractiveMarkerServer",
 )  # a file that contains none of these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 CLIENT_WORDS: Final = (

@@ -45,7 +45,7 @@ from tarl_lint.models import (
 from tarl_lint.models.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.models.futures import READERS
 from tarl_lint.models.ros import senders
-from tarl_lint.models.ros.endpoints import Publisher
+from tarl_lint.models.ros.endpoints import NAMESPACE, Publisher
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
 from tarl_lint.settings.wrappers import facts
@@ -137,15 +137,28 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
     callables.hold(ctx, made.pts, held)
     if name[:1].isupper():
         senders.note(ctx, qualified, made, arguments, frame, call)
-    if (
-        qualified.startswith(containers.NAMED)
-        or qualified in catalog.RESERVING
-        or (ctx.config.named and name[:1].isupper())
-    ):
-        for obj in made.objects:
-            # the class name is needed for settings on methods, for arrays that are filled, and for ports and files
-            obj.name = qualified
+    _name_class(ctx, qualified, made, arguments)
     return made
+
+
+def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Arguments) -> None:
+    """Store the class of an object if it matters: for settings on methods, arrays that are filled, ports, files.
+
+    A server of markers also keeps the first text among its arguments, its namespace.
+    """
+    markers = qualified in catalog.MARKER_SERVERS or qualified in catalog.MARKER_MENUS
+    if not (
+        markers
+        or qualified.startswith(containers.NAMED)
+        or qualified in catalog.RESERVING
+        or (ctx.config.named and qualified.rpartition(".")[2][:1].isupper())
+    ):
+        return
+    texts = [one for one in (*arguments[0], *arguments[1].values()) if markers and one.names()]
+    for obj in made.objects:
+        obj.name = qualified
+        for given in texts[:1]:
+            ctx.store.put((obj, NAMESPACE), given)
 
 
 def _has_fields(qualified: str) -> bool:
@@ -196,6 +209,9 @@ def call_method(
         client = ctx.ops.launched_call(ctx, target, Invocation(name, base, arguments, frame, call))
         if client is not None:
             return client
+    known = catalog.CLASS_METHODS.get(f"{target.name}.{name}") if target is not None and target.name else None
+    if known is not None:
+        return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, known))
     if name == "split" and ctx.exact and (parts := strings.pieces(ctx, base, arguments, frame, call)):
         return parts
     return _call_method(ctx, base, target, name, arguments, frame, call)

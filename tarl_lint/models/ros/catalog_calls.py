@@ -241,6 +241,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "receive": subscriptions.receive,
     "configured": subscriptions.configured_source,
     "filter": subscriptions.message_filter,
+    "feedback": subscriptions.feedback,
     "synchronizer": subscriptions.synchronizer,
     "timer": _timer,
     "service": services.service,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Final
 
@@ -21,7 +22,7 @@ from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
 from tarl_lint.models import sizes
 from tarl_lint.models.ros import publications
-from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
+from tarl_lint.models.ros.endpoints import NAMESPACE, Kind, Publisher, SourceRecord
 from tarl_lint.models.ros.publications import type_names
 from tarl_lint.models.smach import LATER
 
@@ -97,6 +98,18 @@ def configured_source(ctx: Interpreter, it: Invocation) -> Value:
     if not callbacks:
         return receive(ctx, it)
     connect(ctx, source(ctx, it, callbacks[0]), callbacks[0], [])
+    return handle(ctx, it.frame, it.call)
+
+
+def feedback(ctx: Interpreter, it: Invocation) -> Value:
+    """Subscribe the callbacks of a marker or of a menu entry to the feedback topic of the server, if it is known."""
+    spaces = [heap.read_field(ctx, obj, NAMESPACE) for obj in it.base.objects if obj.kind == "lib"]
+    topics = frozenset(f"{name}/feedback" for space in spaces for name in space.names())
+    for given in (*it.arguments[0], *it.arguments[1].values()):
+        if any(one.kind in ("closure", "bound", "partial") for one in given.pts):
+            record = source(ctx, replace(it, arguments=([Value(consts=topics)], {})), given)
+            record.types.add("InteractiveMarkerFeedback")
+            connect(ctx, record, given, [])
     return handle(ctx, it.frame, it.call)
 
 
