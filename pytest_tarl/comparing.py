@@ -96,7 +96,13 @@ def run_online(
     ranked = localize.prior((one.slices for one in lists), changeable)
     again = EpisodePlan(side.seeds[0], drift, record=True)
     spread = repeated(side.rollout, again, recorded) if recorded.simulator else ()
-    notes = (*side.notes, *recorded.notes, *spread, *remarks.early(recorded.sample, count))
+    notes = (
+        *remarks.failing(offline, online, difference.verdict, options),
+        *side.notes,
+        *recorded.notes,
+        *spread,
+        *remarks.early(recorded.sample, count),
+    )
     comparison = Comparison(
         test=fixture.test,
         drift=drift,
@@ -109,7 +115,7 @@ def run_online(
         paper_region=near_half,
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
-        notes=(*notes, *remarks.of_comparison(fixture, plan, offline, online, difference, options)),
+        notes=(*notes, *remarks.of_comparison(fixture, plan, offline, online, difference)),
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,

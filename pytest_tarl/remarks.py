@@ -24,13 +24,12 @@ MOST_NAMED = 3  # maximum number of lost sites named in a note
 
 
 def of_comparison(
-    fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference, options: Options
+    fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference
 ) -> tuple[str, ...]:
-    """Return all remarks on a comparison; both samples must have the same cells."""
+    """Return the remarks on a comparison except `failing`, which comes first; both samples must have the same cells."""
     return (
         *unheard_of(offline, online, difference, fixture.sensors),
         *lost_sites(fixture, plan),
-        *failing(offline, online, difference.verdict, options),
         *other_formulas(offline, online),
     )
 

@@ -66,3 +66,11 @@ def test_a_recording_under_a_drift_still_needs_a_node_that_publishes(careful: py
     ran = careful.runpytest(*RECORD, "--tarl-drift=offset")
     ran.assert_outcomes(failed=1, deselected=1)
     ran.stdout.fnmatch_lines(["*published nothing*/level*"])
+
+
+def test_missions_that_fail_without_a_loss_are_the_first_note(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(-1.0)")
+    tank.runpytest(*RECORD)
+    ran = tank.runpytest(*ONLINE)
+    ran.assert_outcomes(passed=1, deselected=1)
+    ran.stdout.fnmatch_lines(["  note     missions succeed in 0 % of the deployed episodes*"])
