@@ -93,7 +93,7 @@ class Flow:
     """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source.
 
     `chain` has the indices in `steps` of the shortest path from the message's arrival to the publish call. The path
-    of an explicit flow follows data; that of an implicit flow follows data and conditions. The path is empty
+    of an explicit flow follows data; that of an implicit flow follows data and conditions. `chain` is empty
     if no single path was found.
     """
 
