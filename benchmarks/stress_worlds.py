@@ -22,7 +22,10 @@ from pytest_tarl.spaces import Space, Span
 Vector = NDArray[np.float64]
 World = Callable[[Vector, np.random.Generator], tuple[bool, float]]
 TOLERANCE = 0.5
-SHARED, NOISE = 0.2, 0.05  # standard deviations of the reward's noise: by seed, by seed and drift
+SHARED, NOISE = (
+    0.2,
+    0.05,
+)  # standard deviations of the two parts of the reward's noise: one depends on the seed, the other on seed and drift
 NAMES = ("a", "b", "c", "d")
 _NONE = np.zeros(0, np.int32)
 

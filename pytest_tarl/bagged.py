@@ -23,7 +23,7 @@ class BaggedMissions:
 
     rollout: Rollout
     bags: Mapping[int, Path]
-    notes: tuple[str, ...] = ()  # one per skipped bag, with the reason
+    notes: tuple[str, ...] = ()  # one note for each skipped bag, with the reason
 
     @property
     def workers(self) -> int:

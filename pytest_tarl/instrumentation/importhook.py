@@ -47,9 +47,9 @@ class NodeImports:
     """Compile and execute a node and its imports, for one episode.
 
     `plan` holds the sites of each file; `overlay` maps files to replacement texts, in which sites keep their lines
-    where possible. As a context manager, it handles imports of those files; on exit, it removes the project modules
-    that a node imported. `bind` (see `Recorder.bind`) gives code its hook and its buffer; without `bind`, code only
-    gets `hook`.
+    where possible. As a context manager, the class handles imports of the files in both mappings; on exit, it
+    removes the project modules that a node imported. `bind` (see `Recorder.bind`) gives code its hook and its
+    buffer; without `bind`, code only gets `hook`.
     """
 
     def __init__(

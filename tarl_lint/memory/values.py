@@ -66,8 +66,8 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # name of each field ever stored, in order → the objects in it whose `holders` or `inside` were updated last;
-        # storing the same objects again needs no update
+        # names of all fields stored so far, in order → the objects that were stored there last, whose
+        # `holders` and `inside` are up to date; storing the same objects again changes neither
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to this object

@@ -113,7 +113,7 @@ def test_there_is_a_slab_for_each_bin_of_each_sensor_and_one_for_all_cells() -> 
     assert [slab.tolist() for slab in slabs([(0,), (1,)])] == [[0, 1]]
 
 
-def test_sums_over_slabs_that_are_below_the_rounding_error_become_zero() -> None:
+def test_sums_of_residuals_below_the_rounding_error_become_zero() -> None:
     part = np.array([[1.0, -1.0, 3.0], [0.25, 0.0, 0.0]])
     error = np.full((2, 3), 0.25)
     cells = slabs([(0,), (1,), (2,)])

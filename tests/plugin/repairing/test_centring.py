@@ -39,7 +39,7 @@ def world(best: float, width: float) -> Trials:
 
 @settings(max_examples=40)
 @given(st.floats(0.3, 3.0), st.floats(0.85, 1.18), st.sampled_from([LITERAL, NAMED]))
-def test_a_value_moves_towards_the_middle_of_its_window_until_it_loses_little_of_the_margin(
+def test_a_value_moves_towards_the_middle_of_its_good_values_until_the_reward_is_nearly_as_designed(
     best: float, off: float, constant: object
 ) -> None:
     trials = world(best, 0.3)

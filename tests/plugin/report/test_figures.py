@@ -41,7 +41,7 @@ def test_each_value_is_at_its_site_and_position_and_gaps_are_null(shuttle):
     assert figure(shuttle)["rows"][0]["offline"][0][0] is None
 
 
-def test_regions_are_intervals_of_the_position_in_their_row(shuttle):
+def test_each_row_of_a_figure_shows_its_regions_as_intervals_of_the_position(shuttle):
     false, true = figure(shuttle)["rows"]
     assert (false["region"], true["region"]) == (
         [],
