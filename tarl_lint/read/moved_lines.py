@@ -99,7 +99,7 @@ class _Comparison:
     def _header(self, first: int, there: int, body: int) -> None:
         """Pair the first line of a header, and the following lines as far as they are equal.
 
-        The nodes in a header pair their own lines. Of the other lines, one may contain the header's colon.
+        The nodes in a header pair their own lines. One of the other lines may contain the colon of the header.
         """
         self._pair(first, there)
         for line in range(first + 1, body):

@@ -35,7 +35,7 @@ class _Analysis:
 class Analyses:
     """The last analyses of each program in an editor session, by the path of its last file, newest first.
 
-    Several are kept because edits are often undone: the restored text then equals that of an earlier
+    Several analyses are kept because edits are often undone: the restored text then equals that of an earlier
     analysis.
     """
 
@@ -113,7 +113,7 @@ def _named(end: Source | Sink, span: Span) -> str:
 
 
 def _span(span: Span, moves: Moves) -> Span:
-    """Return a range of text after the edit. Raises LineLostError if one of its lines has no known place."""
+    """Return a range of text after the edit. Raises LineLostError if a line of the report has no known place."""
     lines = moves.get(span.path)
     if lines is None:
         return span

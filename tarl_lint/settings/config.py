@@ -191,7 +191,7 @@ def find_settings(start: Path) -> Path | None:
 def _mentions_us(path: Path) -> bool:
     """Return whether the bytes mention the table.
 
-    Most files do not, and need no TOML parser, which is slow to import.
+    Most files do not mention the table, so they need no TOML parser, which is slow to import.
     """
     if not path.is_file():  # opening a named pipe would block
         return False

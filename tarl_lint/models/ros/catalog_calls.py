@@ -220,7 +220,10 @@ def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _parameter_object(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a parameter. If the code does not declare it, its value is the one that the launch gives the node."""
+    """Return a parameter.
+
+    If the code does not declare the parameter, its value is the one that the launch gives the node.
+    """
     name = it.argument(it.fact.topic)
     found = _parameters(ctx, it.base, name)
     for obj in found.objects if ctx.launched is not None and len(name.texts()) == 1 else ():

@@ -107,7 +107,7 @@ def _call_back(ctx: Interpreter, info: Publisher, it: Invocation, answer: Value)
 def _answer(ctx: Interpreter, info: Publisher, it: Invocation) -> Value:
     """Return the response of a service, or the result of an action.
 
-    Whether it depends on the request is found by the analysis of the server's node.
+    The analysis of the server's node finds whether the answer depends on the request.
     """
     record = _record(ctx, info, it, "")
     if record is None:

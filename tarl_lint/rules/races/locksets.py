@@ -26,8 +26,8 @@ State = tuple[object, str]  # (object, name of an attribute) or (module, name of
 class Spot:
     """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `tried` are those of the locks that were taken only because they were free. `asked` are the locks that the function
-    takes later; empty unless this access only decides on an early return.
+    `tried` contains the locks that were taken only because they were free. `asked` are the locks that the
+    function takes later; empty unless this access only decides on an early return.
     """
 
     path: str
@@ -155,8 +155,8 @@ class Locking:
 def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
     """Yield the accesses without a lock, each with the place where the lock is missing.
 
-    This place is the access itself. If other calls reach the access with a lock, it is the call that does not hold
-    the lock.
+    This place is the access itself. If other calls reach the access with a lock, the place is the call that
+    does not hold the lock.
     """
     held = {(s.path, s.pos) for use in uses for s in use.spots if s.locks}
     locks = frozenset(lock for use in uses for lock in use.locks)
