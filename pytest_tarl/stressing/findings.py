@@ -23,8 +23,8 @@ NEAR_RISK = 1.0 - CONFIDENCE - FAR_RISK
 class Curve:
     """The evidence along a ray, by the place t; the search adds to it.
 
-    `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which they showed
-    none.
+    `confirmed` is the nearest t at which fresh seeds showed a failure. `rejected` holds each t at which the
+    episodes showed no failure.
     """
 
     ray: Ray

@@ -99,7 +99,10 @@ class _Walk:
         self._search(directory, _ignores_above(directory))
 
     def take(self, path: str, real: str = "") -> None:
-        """Add a file, unless it was found under another name. `real` is its path without links, if known."""
+        """Add a file, unless it was found under another name.
+
+        `real` is the path of the file without links, if known.
+        """
         real = real or os.path.realpath(path)
         if real in self._files and self._files[real] != path:
             self._duplicates += 1

@@ -38,7 +38,7 @@ class Named(Protocol):
 
     @property
     def is_package(self) -> bool:
-        """Return whether it is a package's `__init__.py`."""
+        """Return whether the file is a package's `__init__.py`."""
 
     @property
     def started(self) -> tuple[str, ...]:

@@ -61,12 +61,13 @@ class Misfit:
 class Interface:
     """The topics, services and parameters of a program, by the names in its code.
 
-    `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code; "" if it is computed. `words`
-    are all strings of its code. `parameters` says whether `words` includes every parameter that the program reads.
-    `closed` says that the program imports nothing that could use topics on its own. `whole` says in addition that all
-    topics have constant names and that the analysis was complete. `in_names` are the parameters that names contain;
-    `deciding` are the parameters used in conditions. `stale` are publish calls that go on without new messages;
-    `misfits` are uses of fields that a message type lacks.
+    `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code; "" if it is computed.
+    `words` are all strings in the program. `parameters` says whether `words` includes every parameter that
+    the program reads. `closed` says that the program imports nothing that could use topics on its own.
+    `whole` says in addition that all topics have constant names and that the analysis was complete.
+    `in_names` are the parameters that names contain; `deciding` are the parameters used in conditions.
+    `stale` are publish calls that go on without new messages; `misfits` are uses of fields that a message
+    type lacks.
     """
 
     path: str

@@ -29,11 +29,11 @@ class Future:
         return self._done
 
     def pending(self) -> bool:
-        """Return whether it is neither done nor cancelled."""
+        """Return whether the future is neither done nor cancelled."""
         return not (self._done or self._cancelled)
 
     def cancelled(self) -> bool:
-        """Return whether it was cancelled."""
+        """Return whether the future was cancelled."""
         return self._cancelled
 
     def cancel(self) -> None:
@@ -118,11 +118,11 @@ class Task(Future):
         self.callback_group: Any = None
 
     def is_ready(self) -> bool:
-        """Return whether it can continue."""
+        """Return whether the task can continue."""
         return self.pending() and not (self._blocked or self._executing)
 
     def executing(self) -> bool:
-        """Return whether it is running now."""
+        """Return whether the task is running now."""
         return self._executing
 
     def cancel(self) -> None:

@@ -43,7 +43,7 @@ class Timer:
         return not self.canceled and self._clock.time >= self.due
 
     def is_canceled(self) -> bool:
-        """Return whether it was cancelled."""
+        """Return whether the timer was cancelled."""
         return self.canceled
 
     def cancel(self) -> None:

@@ -140,7 +140,7 @@ class Topic:
 
     @property
     def closed(self) -> bool:
-        """Return whether it was unregistered or its node has ended."""
+        """Return whether this object was unregistered or its node has ended."""
         return self._closed or (self._process.ending and not self._node.in_hooks)
 
     def get_num_connections(self) -> int:

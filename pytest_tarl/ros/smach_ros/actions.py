@@ -90,7 +90,10 @@ class SimpleActionState(State):
         return "aborted"
 
     def _wait_for_result(self) -> bool:
-        """Wait for the end of the goal; cancel it on request or at the time limit. Return whether it was requested."""
+        """Wait for the end of the goal; cancel it on request or at the time limit.
+
+        Return whether the end was requested.
+        """
         began, cancelled, requested = get_time(), None, False
         while not is_shutdown() and not self._client.wait_for_result(Duration(_LOOK)):
             now = get_time()

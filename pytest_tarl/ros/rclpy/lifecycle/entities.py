@@ -40,7 +40,7 @@ class SimpleManagedEntity(ManagedEntity):
 
     @property
     def is_activated(self) -> bool:
-        """Return whether it is enabled."""
+        """Return whether the entity is enabled."""
         return self._enabled
 
     @staticmethod
