@@ -89,6 +89,10 @@ class Evaluator:
         """Return an imported module that is interpreted too; None if it is not."""
         return None
 
+    def kept(self, container: Any, value: Any) -> Any:  # noqa: ARG002 - for subclasses
+        """Return the form in which a list or dict keeps a value that is stored in it."""
+        return value
+
     def bind(self, target: ast.expr, value: Any, names: Scope) -> None:
         """Assign a value to a name, an element, an attribute, or several of them."""
         if isinstance(target, ast.Name):
@@ -100,7 +104,7 @@ class Evaluator:
             if (isinstance(base, dict) and plain(key, 100)) or (
                 isinstance(base, list) and isinstance(key, int)
             ):
-                base[key] = value
+                base[key] = self.kept(base, value)
         elif isinstance(target, ast.Attribute):
             base = self.value(target.value, names)
             if isinstance(base, Made):

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
+from tarl_lint.workspace.launch_branches import BranchingInterpreter
 from tarl_lint.workspace.launch_run import Action, Condition, Quoted
 from tarl_lint.workspace.launch_values import (
     Anonymous,
@@ -25,7 +26,6 @@ from tarl_lint.workspace.launch_values import (
 )
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.python_values import FilePath, Function, Method, bounded
-from tarl_lint.workspace.statements import Interpreter
 
 _ACTIONS: Final = {
     "launch.LaunchDescription": ("group", "actions"),
@@ -59,7 +59,7 @@ class _File:
 
     def __init__(self, path: Path, workspace: Workspace) -> None:
         self.path, self.workspace = path, workspace
-        self.file = Interpreter(path, self._models(), self._module)
+        self.file = BranchingInterpreter(path, self._models(), self._module)
 
     def actions(self, problems: list[Problem]) -> Any:
         """Return the launch description.
@@ -149,6 +149,8 @@ class _File:
                     given.setdefault(new, given.pop(old))
             if kind == "group":  # a copy, since later additions to the list apply to this action only
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
+            if self.file.condition:
+                given["assumed"] = self.file.condition
             return Action(kind, self.file.line, given)
 
         return make

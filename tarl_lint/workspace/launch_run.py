@@ -93,6 +93,7 @@ class Runner:
     # the files that include the current action, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0
+    unsure: set[str] = field(default_factory=set)  # arguments declared under a condition, without a value
     events: int = 0  # number of event handlers that contain the current action
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:
@@ -106,7 +107,8 @@ class Runner:
             elif isinstance(action, Action):
                 holds, unsure = self._holds(action, context)
                 if holds:
-                    self._one(action, context, unsure or condition)
+                    own = combined(action.values.get("assumed", ""), unsure)
+                    self._one(action, context, combined(condition, own))
             elif isinstance(action, Unknown):
                 self._problem(context, action.line, f"`{action.text}` is not followed")
 
@@ -153,33 +155,51 @@ class Runner:
         elif action.kind == "unread":
             self._problem(context, action.line, str(values.get("reason")))
         else:
-            self._set(action, context)
+            self._set(action, context, condition)
 
-    def _set(self, action: Action, context: Context) -> None:
-        """Apply an action that changes the context of later actions."""
+    def _set(self, action: Action, context: Context, condition: str) -> None:
+        """Apply an action that changes the context of later actions; what it sets on a condition is symbolic."""
         values, kind = action.values, action.kind
         name = performed(values.get("name"), context)
+
+        def text(key: str) -> str:
+            found = performed(values.get(key), context)
+            return f"$({found} if {condition})" if condition else found
+
         if kind == "argument":
-            self.arguments.add(name)
-            if name not in context.configurations:
-                default = values.get("default_value")
-                self.required |= {name} if default is None else set()
-                text = f"$(var {name})" if default is None else performed(default, context)
-                context.configurations[name] = text
+            self._declare(name, values.get("default_value"), context, condition)
         elif kind == "set":
-            context.configurations[name] = performed(values.get("value"), context)
+            value = performed(values.get("value"), context)
+            same = not condition or context.configurations.get(name) == value
+            context.configurations[name] = value if same else f"$(var {name})"
         elif kind == "unset":
             context.configurations.pop(name, None)
         elif kind == "namespace":
-            context.namespace = joined(context.namespace, performed(values.get("namespace"), context))
+            context.namespace = joined(context.namespace, text("namespace"))
         elif kind == "remap":
-            context.remaps = (*context.remaps, *_pairs([(values.get("src"), values.get("dst"))], context))
+            pair = performed(values.get("src"), context), text("dst")
+            context.remaps = (*context.remaps, pair)
         elif kind == "parameter":
             stated = {values.get("name"): values.get("value")}
-            context.settings = (*context.settings, *self._stated(stated, context, action.line, ""))
+            given = self._stated(stated, context, action.line, "")
+            if condition:
+                given = (Setting(one.name, one.file, unknown=True) for one in given)
+            context.settings = (*context.settings, *given)
         elif kind == "parameter file":
             given = self._settings([values.get("filename")], context, action.line)
             context.settings = (*context.settings, *given)
+
+    def _declare(self, name: str, default: Any, context: Context, condition: str) -> None:
+        """Declare an argument. Its default is unknown if it has another one under another condition."""
+        self.arguments.add(name)
+        text = f"$(var {name})" if default is None else performed(default, context)
+        if name not in context.configurations:
+            self.required |= {name} if default is None else set()
+            context.configurations[name] = text
+            if condition:
+                self.unsure.add(name)
+        elif name in self.unsure and text != context.configurations[name]:
+            context.configurations[name] = f"$(var {name})"
 
     def _include(self, action: Action, context: Context, condition: str) -> None:
         name = performed(action.values.get("source"), context)
@@ -218,7 +238,8 @@ class Runner:
                 holds, unsure = self._holds(one, context)
                 if holds:
                     values = {**one.values, "executable": one.values.get("plugin")}
-                    self._started(values, context, one.line, "component", unsure or condition)
+                    own = combined(one.values.get("assumed", ""), unsure)
+                    self._started(values, context, one.line, "component", combined(condition, own))
             elif isinstance(one, Unknown):
                 self._problem(context, one.line, f"`{one.text}` is not followed")
 
@@ -332,6 +353,14 @@ def _command(values: Mapping[str, Any], context: Context) -> str:
         texts.append(shlex.quote(text) if listed and " " in text else text)
     more = [performed(one, context) for one in _listed(values.get("ros_arguments"))]
     return " ".join([*texts, *(["--ros-args", *more] if more else [])])
+
+
+def combined(outer: str, inner: str) -> str:
+    """Return the text of two conditions that both hold."""
+    for one, other in ((inner, outer), (outer, inner)):
+        if f" and {other} and " in f" and {one} and ":
+            return one
+    return f"{outer} and {inner}" if outer and inner else outer or inner
 
 
 def _anonymous(name: Any) -> bool:

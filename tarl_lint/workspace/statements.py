@@ -30,7 +30,7 @@ from tarl_lint.workspace.python_values import (
     items,
 )
 
-__all__ = ["Function", "Interpreter", "parsed"]
+__all__ = ["Function", "Interpreter", "Left", "Raised", "Returned", "parsed"]
 
 DEEPEST: Final = 30  # maximum nesting of calls of the file's own functions
 LARGEST: Final = 1_000_000  # maximum size of a file (bytes)
@@ -39,17 +39,23 @@ _OWN: Final = "__class__"  # name under which the class of a method is stored, f
 _PARTLY: Final = "it was read in part: it has too many statements, or nests too deeply"
 
 
-class _Returned(Exception):  # noqa: N818 - control flow, never an error
+class Returned(Exception):  # noqa: N818 - control flow, never an error
+    """A `return` of the file."""
+
     def __init__(self, value: Any) -> None:
         self.value = value
 
 
-class _Left(Exception):  # noqa: N818 - `break` or `continue`
+class Left(Exception):  # noqa: N818 - control flow, never an error
+    """A `break` of the file, or a `continue` if it is not `whole`."""
+
     def __init__(self, *, whole: bool) -> None:
         self.whole = whole
 
 
-class _Raised(Exception):  # noqa: N818 - a `raise` of the file
+class Raised(Exception):  # noqa: N818 - control flow of the file
+    """A `raise` of the file."""
+
     def __init__(self, line: int) -> None:
         self.line = line
 
@@ -94,9 +100,9 @@ class Interpreter(Evaluator):
     def _module(self, body: Iterable[ast.stmt], names: dict[str, Any]) -> None:
         try:
             self._body(body, Scope(names))
-        except _Raised as raised:
+        except Raised as raised:
             self.problem(raised.line, "it raises an exception here; what follows is not read")
-        except (_Returned, _Left, RecursionError, SpentError):
+        except (Returned, Left, RecursionError, SpentError):
             self.problem(0, _PARTLY)
 
     def called(self, name: str, *args: Any) -> Any:
@@ -132,7 +138,7 @@ class Interpreter(Evaluator):
         call = ast.Call(ast.Name(name or "a function", ast.Load()), [], [], lineno=line)
         try:
             return self.call(function, args, keywords, call)
-        except _Raised as raised:
+        except Raised as raised:
             self.problem(raised.line, f"{name or 'a function'} raises an exception here")
         except (RecursionError, SpentError):
             self.problem(line, _PARTLY)
@@ -191,9 +197,9 @@ class Interpreter(Evaluator):
         returned: Any = None
         try:
             self._body(function.node.body, inside)
-        except _Returned as found:
+        except Returned as found:
             returned = found.value
-        except _Left:
+        except Left:
             pass
         finally:
             self._depth -= 1
@@ -252,7 +258,7 @@ class Interpreter(Evaluator):
         before, added = self.value(_read(target), names), self.value(statement.value, names)
         try:
             if isinstance(before, list) and isinstance(statement.op, ast.Add):
-                more = items(added)
+                more = items(self.kept(before, added))
                 before += [unknown(statement.value)] if more is None else more
                 self.spend(len(more or ()) // 50)
                 return
@@ -322,15 +328,15 @@ class Interpreter(Evaluator):
         """Interpret the body of a loop once, and return whether it ends with `break`."""
         try:
             self._body(body, names)
-        except _Left as left:
+        except Left as left:
             return left.whole
         return False
 
     def _do_break(self, _: ast.Break, __: Scope) -> None:
-        raise _Left(whole=True)
+        raise Left(whole=True)
 
     def _do_continue(self, _: ast.Continue, __: Scope) -> None:
-        raise _Left(whole=False)
+        raise Left(whole=False)
 
     def _do_match(self, statement: ast.Match, names: Scope) -> None:
         subject = self.value(statement.subject, names)
@@ -374,7 +380,7 @@ class Interpreter(Evaluator):
         try:
             self._body(statement.body, names)
             self._body(statement.orelse, names)
-        except _Raised as raised:
+        except Raised as raised:
             if not statement.handlers:
                 raise
             handler = statement.handlers[0]
@@ -385,10 +391,10 @@ class Interpreter(Evaluator):
             self._body(statement.finalbody, names)
 
     def _do_raise(self, statement: ast.Raise, _: Scope) -> None:
-        raise _Raised(statement.lineno)
+        raise Raised(statement.lineno)
 
     def _do_return(self, statement: ast.Return, names: Scope) -> None:
-        raise _Returned(None if statement.value is None else self.value(statement.value, names))
+        raise Returned(None if statement.value is None else self.value(statement.value, names))
 
     def _do_functiondef(self, statement: ast.FunctionDef, names: Scope) -> None:
         names.store(statement.name, self._function(statement, names))

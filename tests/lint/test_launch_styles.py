@@ -314,21 +314,3 @@ def test_files_outside_the_workspace_are_not_read(tmp_path: Path) -> None:
     found = launched(tmp_path / "inside", text)
     assert "secret" not in repr(found.nodes)
     assert [one.reason for one in found.problems] == ["the parameter text is not constant"]
-
-
-def test_a_branch_that_is_not_read_is_reported(tmp_path: Path) -> None:
-    text = """
-        def generate_launch_description():
-            if not os.path.exists("/etc/robot"):
-                raise RuntimeError("no robot")
-            if "SIM" in os.environ:
-                return LaunchDescription([talker(name="sim")])
-            else:
-                return LaunchDescription([talker(name="real")])
-        """
-    found = launched(tmp_path, text)
-    assert [one.name for one in found.nodes] == ["sim"]
-    assert [one.reason.partition("is not constant")[2] for one in found.problems] == [
-        "",
-        "; its `else` is not read",
-    ]

@@ -1,0 +1,311 @@
+"""Interpret both branches of an `if` of a launch file whose condition is known only on the robot.
+
+`launch_alternatives` joins the values of both branches.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from tarl_lint.workspace.expressions import Library, Unknown
+from tarl_lint.workspace.launch_alternatives import (
+    ABSENT,
+    LONGEST,
+    closed,
+    conditional,
+    either,
+    negated,
+    one_of,
+)
+from tarl_lint.workspace.launch_run import Action, combined
+from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
+from tarl_lint.workspace.statements import Interpreter, Left, Raised, Returned
+
+_ADDING: Final = frozenset(["append", "extend", "insert", "add_action", "add_entity"])
+
+_Runs = tuple[Callable[[], None], Callable[[], None]]  # functions that interpret the two branches
+
+
+@dataclass
+class _Branch:
+    """A condition that statements run under. `old` are the containers that existed before it, by identity."""
+
+    condition: str
+    old: dict[int, Any]
+    whole: bool = True  # whether it holds until the end of the loop, and not only of the current iteration
+
+
+@dataclass
+class _Frame:
+    """A call of a function: its values returned so far, each under a condition, and the conditions around it."""
+
+    branches: int
+    returned: list[tuple[str, Any]] = field(default_factory=list)
+    last: str = ""  # the condition of the last `return`
+
+
+@dataclass
+class _Names:
+    """The names of a scope and of those around it."""
+
+    scopes: list[dict[str, Any]]
+    values: list[dict[str, Any]]
+
+    @classmethod
+    def of(cls, names: Scope) -> _Names:
+        """Return the current names."""
+        scopes: list[dict[str, Any]] = []
+        scope: Scope | None = names
+        while scope is not None:
+            scopes.append(scope.names)
+            scope = scope.around
+        return cls(scopes, [dict(one) for one in scopes])
+
+    def restore(self) -> None:
+        """Bind all names as they were."""
+        for scope, values in zip(self.scopes, self.values, strict=True):
+            scope.clear()
+            scope.update(values)
+
+
+class BranchingInterpreter(Interpreter):
+    """Interprets both branches of an `if` whose condition is not constant."""
+
+    _branches: list[_Branch]
+    _frames: list[_Frame]
+
+    def __init__(self, *args: Any, **keywords: Any) -> None:
+        super().__init__(*args, **keywords)
+        self._branches, self._frames = [], []
+
+    @property
+    def condition(self) -> str:
+        """Return the conditions that the current statement runs under; "" if there are none."""
+        found = ""
+        for one in self._branches:
+            found = combined(found, one.condition)
+        return found
+
+    def _do_if(self, statement: ast.If, names: Scope) -> None:
+        test = self.value(statement.test, names)
+        if not isinstance(test, Unknown | Library):
+            self._body(statement.body if test else statement.orelse, names)
+            return
+        text, line = ast.unparse(statement.test)[:LONGEST], statement.lineno
+        both = "; both branches are read" if statement.orelse else ""
+        for kept, left in ((statement.orelse, statement.body), (statement.body, statement.orelse)):
+            if left and isinstance(left[-1], ast.Raise):
+                self.problem(line, f"the condition `{text}` is not constant")
+                self._body(kept, names)
+                return
+        self.problem(line, f"the condition `{text}` is not constant{both}")
+        runs = (lambda: self._body(statement.body, names)), (lambda: self._body(statement.orelse, names))
+        self._alternatives(runs, text, line, names)
+
+    def _do_match(self, statement: ast.Match, names: Scope) -> None:
+        self._cases(statement, 0, self.value(statement.subject, names), names)
+
+    def _cases(self, statement: ast.Match, first: int, subject: Any, names: Scope) -> None:
+        """Interpret the cases of a `match` from one on."""
+        for index, case in enumerate(statement.cases[first:], first + 1):
+            fits = self._fits(case.pattern, subject, names)
+            if fits and case.guard is not None:
+                guard = self.value(case.guard, names)
+                fits = guard if fits is True or not guard else fits
+            if isinstance(fits, Unknown | Library):
+                pattern, line = ast.unparse(case.pattern)[:LONGEST], case.pattern.lineno
+                self.problem(line, f"the case `{pattern}` is not constant")
+                compared = "==" if isinstance(case.pattern, ast.MatchValue) else "matches"
+                text = f"{ast.unparse(statement.subject)[:LONGEST]} {compared} {pattern}"
+                runs = (
+                    lambda body=case.body: self._body(body, names),
+                    lambda rest=index: self._cases(statement, rest, subject, names),
+                )
+                self._alternatives(runs, text, line, names)
+                return
+            if fits:
+                self._body(case.body, names)
+                return
+
+    def _alternatives(self, runs: _Runs, text: str, line: int, names: Scope) -> None:
+        """Interpret both branches, and go on with the names of those that do not leave."""
+        text, other_text = closed(text), negated(text)
+        before = _Names.of(names)
+        old = self._containers(before)
+        left, rest = self._branch(runs[0], _Branch(text, old))
+        after = _Names.of(names)
+        before.restore()
+        other, other_rest = self._branch(runs[1], _Branch(other_text, old))
+        if left is not None and other is not None:
+            self._leave_both(left, other, text)
+        if left is None and other is None:
+            self._join(after, text, line)
+            if rest or other_rest:
+                self._go_on(
+                    f"({_all(text, rest)} or {_all(other_text, other_rest)})", old, [*rest, *other_rest]
+                )
+        elif other is None:
+            self._note(left, text)
+            self._go_on(_all(other_text, other_rest), old, other_rest, left)
+        else:
+            after.restore()
+            self._note(other, other_text)
+            self._go_on(_all(text, rest), old, rest, other)
+
+    def _branch(self, run: Callable[[], None], branch: _Branch) -> tuple[Exception | None, list[_Branch]]:
+        """Interpret one branch. Return how it leaves, or None, and the conditions under which it goes on."""
+        count = len(self._branches)
+        self._branches.append(branch)
+        try:
+            run()
+        except (Returned, Left, Raised) as left:
+            return left, []
+        else:
+            return None, self._branches[count + 1 :]
+        finally:
+            del self._branches[count:]
+
+    def _note(self, left: Exception | None, text: str) -> None:
+        """Note the value that one branch returns."""
+        if isinstance(left, Returned):
+            if not self._frames:
+                raise left
+            self._frames[-1].returned.append((combined(self.condition, text), left.value))
+
+    def _go_on(
+        self, text: str, old: dict[int, Any], within: list[_Branch], left: Exception | None = None
+    ) -> None:
+        """Let what follows run under a condition, until the end of what `left` leaves."""
+        whole = any(one.whole for one in within) if left is None else not isinstance(left, Left) or left.whole
+        self._branches.append(_Branch(text, old, whole))
+
+    def _leave_both(self, left: Exception, other: Exception, text: str) -> None:
+        """Raise how both branches leave."""
+        if isinstance(left, Raised):
+            raise other
+        if isinstance(other, Raised):
+            raise left
+        if isinstance(other, Returned):
+            self._note(left, text)
+            raise other
+        self._note(left, text)
+        raise other if isinstance(left, Returned) else left
+
+    def _join(self, after: _Names, text: str, line: int) -> None:
+        """Bind each name to the value of both branches; `after` are the names of the first one."""
+        for scope, first in zip(after.scopes, after.values, strict=True):
+            for name in [*first, *(one for one in scope if one not in first)]:
+                one, other = first.get(name, ABSENT), scope.get(name, ABSENT)
+                if one is not other:
+                    scope[name] = either(one, other, text, line)
+
+    def _do_return(self, statement: ast.Return, names: Scope) -> None:
+        if self._frames:
+            self._frames[-1].last = self.condition
+        super()._do_return(statement, names)
+
+    def _containers(self, names: _Names) -> dict[int, Any]:
+        """Return the lists, dicts and objects that names refer to, by identity."""
+        found: dict[int, Any] = {}
+        pending: list[Any] = [one for scope in names.values for one in scope.values()]
+        while pending:
+            one = pending.pop()
+            if isinstance(one, list | tuple | dict | Made | Action) and id(one) not in found:
+                found[id(one)] = one
+                pending += _inside(one)
+        self.spend(len(found) // 10)
+        return found
+
+    def kept(self, container: Any, value: Any) -> Any:
+        """Return the form in which a container keeps a value that is stored under the current conditions."""
+        condition = ""
+        for one in self._branches:
+            if id(container) in one.old:
+                condition = combined(condition, one.condition)
+        return conditional(value, condition, self.line) if condition else value
+
+    def call(self, called: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
+        """Return the value of a call; what it adds to a list under a condition is conditional."""
+        if self._branches and args:
+            bound = isinstance(called, Bound)
+            owner = called.of if bound else getattr(called, "__self__", None)
+            name = called.name if bound else getattr(called, "__name__", "")
+            if name in _ADDING and isinstance(owner, list | Action):
+                args = [*args[:-1], self.kept(owner, args[-1])]
+        return super().call(called, args, keywords, node)
+
+    def _ifexp(self, node: ast.IfExp, names: Scope) -> Any:
+        test = self.value(node.test, names)
+        if not isinstance(test, Unknown | Library):
+            return self.value(node.body if test else node.orelse, names)
+        text = closed(ast.unparse(node.test)[:LONGEST])
+        old = self._containers(_Names.of(names))
+        found = []
+        for expression, condition in ((node.body, text), (node.orelse, negated(text))):
+            self._branches.append(_Branch(condition, old))
+            try:
+                found.append(self.value(expression, names))
+            finally:
+                self._branches.pop()
+        return either(found[0], found[1], text, node.lineno)
+
+    def _enter(
+        self, function: Function, args: list[Any], keywords: dict[str, Any], owner: Class | None = None
+    ) -> Any:
+        frame = _Frame(len(self._branches))
+        self._frames.append(frame)
+        try:
+            returned = super()._enter(function, args, keywords, owner)
+        finally:
+            self._frames.pop()
+            del self._branches[frame.branches :]
+        if all(value is None for _, value in frame.returned):  # a generator returns its elements
+            return returned
+        return one_of([*frame.returned, (frame.last, returned)], function.node.lineno)
+
+    def _stops(self, body: list[ast.stmt], names: Scope) -> bool:
+        count = len(self._branches)
+        try:
+            return super()._stops(body, names)
+        finally:
+            self._branches[count:] = [one for one in self._branches[count:] if one.whole]
+
+    def _do_for(self, statement: ast.For, names: Scope) -> None:
+        count, returned = len(self._branches), self._returned()
+        super()._do_for(statement, names)
+        if self._returned() == returned:
+            del self._branches[count:]
+
+    def _do_while(self, statement: ast.While, names: Scope) -> None:
+        """Interpret a loop; one that an unknown condition may end is interpreted once."""
+        count, returned = len(self._branches), self._returned()
+        while True:
+            test = self.value(statement.test, names)
+            if isinstance(test, Unknown | Library):
+                super()._do_while(statement, names)
+                return
+            if not test or self._stops(statement.body, names) or len(self._branches) > count:
+                break
+        if self._returned() == returned:
+            del self._branches[count:]
+        if not test:
+            self._body(statement.orelse, names)
+
+    def _returned(self) -> int:
+        return len(self._frames[-1].returned) if self._frames else 0
+
+
+def _inside(value: Any) -> list[Any]:
+    if isinstance(value, Made):
+        return list(value.attributes.values())
+    held: Any = value.values if isinstance(value, Action) else value
+    return list(held.values()) if isinstance(held, Mapping) else list(held)
+
+
+def _all(text: str, rest: list[_Branch]) -> str:
+    for one in rest:
+        text = combined(text, one.condition)
+    return text
