@@ -1,4 +1,4 @@
-"""Fields of common messages, used to detect that all fields of a copy were replaced."""
+"""Fields of messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ NUMBERS: Final = (
     "Bool", "Byte", "Char", "Duration", "Float32", "Float64", "Int8", "Int16", "Int32", "Int64", "String", "Time",
     "UInt8", "UInt16", "UInt32", "UInt64",
 )  # fmt: skip
-STAMPED: Final = ("Point", "Vector3", "Quaternion", "Pose", "Twist", "Accel", "Wrench")
+STAMPED: Final = ("Point", "Quaternion", "Pose", "Twist", "Accel", "Wrench")
 
 
 def _fields(names: str, kind: str = "") -> dict[str, str]:
@@ -17,6 +17,7 @@ def _fields(names: str, kind: str = "") -> dict[str, str]:
 
 
 HEADED: Final = _fields("header", "Header")
+# types for which the analysis detects that all fields of a copy were replaced
 FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **{name: _fields("data") for name in NUMBERS},
     "ColorRGBA": _fields("r g b a"),
@@ -32,6 +33,7 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "Wrench": _fields("force torque", "Vector3"),
     "Transform": _fields("translation", "Vector3") | _fields("rotation", "Quaternion"),
     **{f"{name}Stamped": HEADED | _fields(name.lower(), name) for name in STAMPED},
+    "Vector3Stamped": HEADED | _fields("vector", "Vector3"),
     "TransformStamped": HEADED | _fields("child_frame_id") | _fields("transform", "Transform"),
     "PoseWithCovariance": _fields("pose", "Pose") | _fields("covariance"),
     "TwistWithCovariance": _fields("twist", "Twist") | _fields("covariance"),
@@ -53,3 +55,78 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
         "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
     ),
 }  # type → name of a field → type of the field, for field types that have fields themselves
+
+_ARRAYS: Final = (
+    "Byte",
+    "Float32",
+    "Float64",
+    "Int8",
+    "Int16",
+    "Int32",
+    "Int64",
+    "UInt8",
+    "UInt16",
+    "UInt32",
+    "UInt64",
+)
+_BEAMS: Final = HEADED | _fields(
+    "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
+)
+# all types of the standard packages; a field counts as known if any release of ROS 1 or ROS 2 has it
+ALL_FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
+    **FIELDS,
+    "Header": _fields("seq stamp frame_id"),
+    **{f"{name}MultiArray": _fields("layout", "MultiArrayLayout") | _fields("data") for name in _ARRAYS},
+    "MultiArrayLayout": _fields("dim data_offset"),
+    "MultiArrayDimension": _fields("label size stride"),
+    "AccelWithCovariance": _fields("accel", "Accel") | _fields("covariance"),
+    "AccelWithCovarianceStamped": HEADED | _fields("accel", "AccelWithCovariance"),
+    "TwistWithCovarianceStamped": HEADED | _fields("twist", "TwistWithCovariance"),
+    "VelocityStamped": HEADED | _fields("body_frame_id reference_frame_id") | _fields("velocity", "Twist"),
+    "Inertia": _fields("m ixx ixy ixz iyy iyz izz") | _fields("com", "Vector3"),
+    "InertiaStamped": HEADED | _fields("inertia", "Inertia"),
+    "Polygon": _fields("points"),
+    "PolygonInstance": _fields("polygon", "Polygon") | _fields("id"),
+    "PolygonInstanceStamped": HEADED | _fields("polygon", "PolygonInstance"),
+    "PolygonStamped": HEADED | _fields("polygon", "Polygon"),
+    "Goals": HEADED | _fields("goals"),
+    "Trajectory": HEADED | _fields("points"),
+    "TrajectoryPoint": HEADED
+    | _fields("pose", "Pose")
+    | _fields("velocity", "Twist")
+    | _fields("acceleration", "Accel")
+    | _fields("effort", "Wrench"),
+    "GridCells": HEADED | _fields("cell_width cell_height cells"),
+    "BatteryState": HEADED
+    | _fields("voltage temperature current charge capacity design_capacity percentage power_supply_status")
+    | _fields("power_supply_health power_supply_technology present cell_voltage cell_temperature location")
+    | _fields("serial_number"),
+    "CameraInfo": HEADED
+    | _fields("height width distortion_model d k r p D K R P binning_x binning_y")
+    | _fields("roi", "RegionOfInterest"),
+    "ChannelFloat32": _fields("name values"),
+    "FluidPressure": HEADED | _fields("fluid_pressure variance"),
+    "Illuminance": HEADED | _fields("illuminance variance"),
+    "Imu": HEADED
+    | _fields("orientation", "Quaternion")
+    | _fields("angular_velocity linear_acceleration", "Vector3")
+    | _fields("orientation_covariance angular_velocity_covariance linear_acceleration_covariance"),
+    "JoyFeedback": _fields("type id intensity"),
+    "JoyFeedbackArray": _fields("array"),
+    "LaserEcho": _fields("echoes"),
+    "MagneticField": HEADED | _fields("magnetic_field", "Vector3") | _fields("magnetic_field_covariance"),
+    "MultiDOFJointState": HEADED | _fields("joint_names transforms twist wrench"),
+    "MultiEchoLaserScan": _BEAMS,
+    "NavSatFix": HEADED
+    | _fields("status", "NavSatStatus")
+    | _fields("latitude longitude altitude position_covariance position_covariance_type"),
+    "NavSatStatus": _fields("status service"),
+    "PointCloud": HEADED | _fields("points channels"),
+    "PointCloud2": HEADED | _fields("height width fields is_bigendian point_step row_step data is_dense"),
+    "PointField": _fields("name offset datatype count"),
+    "Range": HEADED | _fields("radiation_type field_of_view min_range max_range range variance"),
+    "RegionOfInterest": _fields("x_offset y_offset height width do_rectify"),
+    "RelativeHumidity": HEADED | _fields("relative_humidity variance"),
+    "Temperature": HEADED | _fields("temperature variance"),
+    "TimeReference": HEADED | _fields("time_ref source"),
+}

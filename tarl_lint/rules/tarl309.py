@@ -4,8 +4,8 @@ The callback raises AttributeError at its first message. rospy logs the error an
 runs without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
 
 The rule covers messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs`, whose fields are known.
-The rule examines only variables that always hold a message: a message that a callback receives, or one that
-the function creates.
+The rule examines the arguments of new messages, and variables that always hold a message: a message that a callback
+receives, or one that the function creates.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from tarl_lint.message_fields import FIELDS
+from tarl_lint.message_fields import ALL_FIELDS
 from tarl_lint.model import Finding
 from tarl_lint.system.model import System
 
@@ -40,6 +40,25 @@ INVALID: Final = (
     rospy.Subscriber("accel", Accel, on_accel)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="heading.py" name="heading"/>
+    </launch>
+    --- scripts/heading.py
+    import rospy
+    from sensor_msgs.msg import Imu
+    from std_msgs.msg import Float64
+
+    rospy.init_node("heading")
+    pub = rospy.Publisher("rate", Float64, queue_size=1)
+
+    def on_imu(msg):
+        pub.publish(Float64(value=msg.angular_velocity.z))
+
+    rospy.Subscriber("imu", Imu, on_imu)
+    rospy.spin()
+    """,
 )
 
 VALID: Final = (
@@ -62,6 +81,26 @@ VALID: Final = (
     rospy.Subscriber("accel", Accel, on_accel)
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="tilt.py" name="tilt"/>
+    </launch>
+    --- scripts/tilt.py
+    import rospy
+    from geometry_msgs.msg import Vector3Stamped
+    from std_msgs.msg import Float64, Header
+
+    rospy.init_node("tilt")
+    pub = rospy.Publisher("tilt", Float64, queue_size=1)
+
+    def on_gravity(msg):
+        rospy.loginfo("%s %s", msg.header.seq, Header(seq=1))
+        pub.publish(Float64(data=msg.vector.x))
+
+    rospy.Subscriber("gravity", Vector3Stamped, on_gravity)
+    rospy.spin()
+    """,
 )
 
 
@@ -73,7 +112,7 @@ def findings(system: System) -> Iterator[Finding]:
         one.interface.path: one.interface for one in system.instances if one.interface
     }.values():
         for misfit in interface.misfits:
-            fields = list(FIELDS[misfit.type])
+            fields = list(ALL_FIELDS[misfit.type])
             near = get_close_matches(misfit.field, fields, 1)
             hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(fields)}"
             message = f"{misfit.type} has no field {misfit.field}: {hint}"

@@ -9,7 +9,7 @@ from typing import Final
 from tarl_lint.evidence import Outline
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.ir.lower_expressions import position
-from tarl_lint.message_fields import FIELDS
+from tarl_lint.message_fields import ALL_FIELDS
 from tarl_lint.read.source import Module
 from tarl_lint.system.model import Misfit
 from tarl_lint.trees import last_name
@@ -24,10 +24,13 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
-    """Yield the uses of absent fields, on messages that a callback receives or that a function creates."""
+    """Yield the uses of absent fields, of messages that a callback receives, and of new messages."""
     types = _imported(module.tree)
     if not types:
         return
+    for call, kind, name in _unknown_arguments(module.tree, types):
+        span = texts[module.path].stretch(position(call))
+        yield Misfit(kind, name, span, outline.qualname(call.lineno))
     functions = [
         one for one in outline.definitions if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)
     ]
@@ -44,6 +47,20 @@ def misfits(module: Module, outline: Outline, texts: Texts) -> Iterator[Misfit]:
                 yield Misfit(*found, span, outline.qualname(node.lineno))
 
 
+def _unknown_arguments(tree: ast.Module, types: Mapping[str, str]) -> Iterator[tuple[ast.Call, str, str]]:
+    """Yield the calls that create a message with an absent field, with message type and field."""
+    bound = {one.name for one in ast.walk(tree) if isinstance(one, ast.ClassDef | Function)} | {
+        one.id for one in ast.walk(tree) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    }
+    for call in (one for one in ast.walk(tree) if isinstance(one, ast.Call)):
+        name = call.func.id if isinstance(call.func, ast.Name) else ""
+        if name in types and name not in bound:
+            fields = ALL_FIELDS[types[name]]
+            for keyword in call.keywords:
+                if keyword.arg and keyword.arg not in fields and not keyword.arg.startswith("_"):
+                    yield call, types[name], keyword.arg
+
+
 def _imported(tree: ast.Module) -> dict[str, str]:
     """Return local name → type for messages of standard packages whose fields are known."""
     return {
@@ -51,7 +68,7 @@ def _imported(tree: ast.Module) -> dict[str, str]:
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in _STANDARD
         for alias in node.names
-        if alias.name in FIELDS
+        if alias.name in ALL_FIELDS
     }
 
 
@@ -97,7 +114,7 @@ def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
 def _absent(node: ast.Attribute, held: Mapping[str, str]) -> tuple[str, str] | None:
     """Return (message type, field name) of an attribute that is not a field of the message type."""
     kind = _kind(node.value, held)
-    fields = FIELDS.get(kind)
+    fields = ALL_FIELDS.get(kind)
     name = node.attr
     if not fields or name in fields or name in _METHODS or name.startswith("_") or name.upper() == name:
         return None
@@ -109,5 +126,5 @@ def _kind(expr: ast.expr, held: Mapping[str, str]) -> str:
     if isinstance(expr, ast.Name):
         return held.get(expr.id, "")
     if isinstance(expr, ast.Attribute):
-        return FIELDS.get(_kind(expr.value, held), {}).get(expr.attr, "")
+        return ALL_FIELDS.get(_kind(expr.value, held), {}).get(expr.attr, "")
     return ""

@@ -1,0 +1,44 @@
+"""The fields of standard messages that the linter knows, compared with the definitions of all releases of ROS."""
+
+from __future__ import annotations
+
+from rosbags.typesys import Stores, get_typestore
+
+from tarl_lint.message_fields import ALL_FIELDS, FIELDS
+
+PACKAGES = ("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs")
+EMPTY = "structure_needs_at_least_one_member"  # the field of a message without fields
+
+
+def defined(stores: list[Stores]) -> dict[str, dict[str, str]]:
+    """Return type → field → message type of the field, or "", as some of these releases define it."""
+    found: dict[str, dict[str, str]] = {}
+    for store in stores:
+        for full, (_, fields) in get_typestore(store).fielddefs.items():
+            package, _, name = full.split("/")
+            if package in PACKAGES and not name.startswith("GetMap"):  # an action
+                for field, (kind, described) in fields:
+                    inner = str(described).rpartition("/")[2] if kind.name == "NAME" else ""
+                    found.setdefault(name, {})[field] = inner
+    return {name: fields for name, fields in found.items() if EMPTY not in fields}
+
+
+def test_all_fields_of_all_releases_are_known() -> None:
+    expected = {name: set(fields) for name, fields in defined(list(Stores)).items()}
+    assert {name: set(fields) for name, fields in ALL_FIELDS.items()} == expected
+
+
+def test_the_types_of_fields_are_those_of_the_definitions() -> None:
+    expected = defined(list(Stores))
+    stated = {
+        (name, field): kind for name, fields in ALL_FIELDS.items() for field, kind in fields.items() if kind
+    }
+    assert stated == {(name, field): expected[name][field] for name, field in stated}
+
+
+def test_fields_of_copies_are_in_every_release() -> None:
+    for store in (Stores.ROS1_NOETIC, Stores.ROS2_JAZZY):
+        expected = {
+            name: set(fields) - {"seq"} for name, fields in defined([store]).items() if name in FIELDS
+        }
+        assert {name: set(FIELDS[name]) for name in expected} == expected
