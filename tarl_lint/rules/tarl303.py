@@ -62,6 +62,46 @@ INVALID: Final = (
         rclpy.init()
         rclpy.spin(Reader())
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="mapper.py" name="mapper"/>
+      <node pkg="robot" type="reader.py" name="reader"/>
+    </launch>
+    --- scripts/mapper.py
+    import rclpy
+    from nav_msgs.msg import OccupancyGrid
+    from rclpy.node import Node
+
+    class Mapper(Node):
+        def __init__(self):
+            super().__init__("mapper")
+            self.pub = self.create_publisher(OccupancyGrid, "map", 1)
+            self.create_timer(1.0, lambda: self.pub.publish(OccupancyGrid()))
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Mapper())
+    --- scripts/reader.py
+    import rclpy
+    from nav_msgs.msg import OccupancyGrid
+    from rclpy.node import Node
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    class Reader(Node):
+        def __init__(self):
+            super().__init__("reader")
+            profile = QoSProfile(depth=1)
+            profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
+            self.create_subscription(OccupancyGrid, "map", self.on_map, profile)
+
+        def on_map(self, grid):
+            print(grid.info.width)
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Reader())
+    """,
 )
 
 VALID: Final = (

@@ -6,9 +6,9 @@ continues with the last command. For this reason, a Pioneer robot collided with 
 (https://github.com/amor-ros-pkg/rosaria/pull/51). Store the time of the last message, and stop the robot when
 the message is too old.
 
-The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored.
-The rule also reports nothing if the program contains words such as `timeout`, `last_` and `counter`, because
-such words suggest that the program detects old messages in another way.
+The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored: to
+`None`, or to a constant in the function that publishes. The rule also reports nothing if the program contains words
+such as `timeout`, `last_` and `counter`, because such words suggest that the program detects old messages in another way.
 """
 
 from __future__ import annotations
@@ -84,6 +84,36 @@ VALID: Final = (
                 if rospy.get_time() - self.seen < 0.5:
                     cmd.linear.x = 0.3
                     cmd.angular.z = self.offset
+                self.pub.publish(cmd)
+                rate.sleep()
+
+    rospy.init_node("follower")
+    Follower().run()
+    """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="follower.py" name="follower"/>
+    </launch>
+    --- scripts/follower.py
+    import rospy
+    from geometry_msgs.msg import PointStamped, Twist
+
+    class Follower:
+        def __init__(self):
+            self.offset = 0.0
+            self.pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("person", PointStamped, self.on_person)
+
+        def on_person(self, person):
+            self.offset = person.point.y
+
+        def run(self):
+            rate = rospy.Rate(10)
+            while not rospy.is_shutdown():
+                cmd = Twist()
+                cmd.linear.x = self.offset
+                self.offset = 0.0
                 self.pub.publish(cmd)
                 rate.sleep()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from typing import Final
 
 from tarl_lint.evidence import Outline
@@ -18,7 +19,8 @@ _NAMED: Final = {
 _PLACES: Final = {"create_publisher": 2, "create_subscription": 3}
 _RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
 _DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}
-_FIELDS: Final = frozenset(["reliability", "durability"])
+# attribute of a profile, its values, and the part of `Qos`
+_POLICIES: Final = (("reliability", _RELIABILITY, "reliable"), ("durability", _DURABILITY, "latched"))
 
 
 def of_call(outline: Outline, pos: Pos) -> Qos | None:
@@ -45,8 +47,9 @@ def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
         return _profile(expr)
     if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
         values = outline.assigned.get(last, [])
-        if len(values) == 1 and not _changed(outline, last):
-            return _of(values[0], outline, depth + 1)
+        if len(values) == 1:
+            found = _of(values[0], outline, depth + 1)
+            return None if found is None else _changed(found, outline, last)
     return None
 
 
@@ -69,12 +72,17 @@ def _policy(expr: ast.expr | None, otherwise: str) -> str:
     return name
 
 
-def _changed(outline: Outline, name: str) -> bool:
-    """Return whether a profile's policy is changed after its creation."""
-    return any(
-        isinstance(node, ast.Attribute)
-        and node.attr in _FIELDS
-        and isinstance(node.ctx, ast.Store)
-        and last_name(node.value) == name
-        for node in ast.walk(outline.tree)
-    )
+def _changed(qos: Qos, outline: Outline, name: str) -> Qos:
+    """Return a profile whose policies are set after its creation; a policy that is set several times is unknown."""
+    stated: dict[str, list[ast.expr]] = {}
+    for node in ast.walk(outline.tree):
+        if isinstance(node, ast.Assign):
+            for target in node.targets:
+                if isinstance(target, ast.Attribute) and last_name(target.value) == name:
+                    stated.setdefault(target.attr, []).append(node.value)
+    for field, policies, part in _POLICIES:
+        values = stated.get(field)
+        if values:
+            policy = policies.get(_policy(values[0], "")) if len(values) == 1 else None
+            qos = replace(qos, **{part: policy})
+    return qos

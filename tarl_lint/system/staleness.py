@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Mapping, Sequence, Set
 from typing import Final
@@ -36,6 +37,7 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
     the program suggests that it checks the age of the message.
     """
     texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
+    trees = {module.path: module.tree for module in modules}
     if any(_TIMES.search(text) for text in texts.values()):
         return ()
     callbacks = {
@@ -44,7 +46,35 @@ def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Findi
         if one.flow is not None
         for name in one.flow.source.callback.split(",")
     }
-    return tuple(one for one in findings if one.flow is not None and _repeated(one.flow, texts, callbacks))
+    return tuple(
+        one
+        for one in findings
+        if one.flow is not None
+        and _repeated(one.flow, texts, callbacks)
+        and not _consumed(one.flow, trees.get(one.flow.sink.span.path))
+    )
+
+
+def _consumed(flow: Flow, tree: ast.Module | None) -> bool:
+    """Return whether the function that publishes sets an attribute that it publishes back to a constant."""
+    name = flow.sink.qualname.rpartition(".")[2]
+    used = " ".join(step.code for step in flow.steps if step.site.qualname == flow.sink.qualname)
+    return any(
+        re.search(rf"{re.escape(ast.unparse(target))}\b", used)
+        for function in (ast.walk(tree) if tree is not None else ())
+        if isinstance(function, ast.FunctionDef) and function.name == name
+        for node in ast.walk(function)
+        if isinstance(node, ast.Assign) and _reset(node.value)
+        for target in node.targets
+        if isinstance(target, ast.Attribute)
+    )
+
+
+def _reset(value: ast.expr) -> bool:
+    """Return whether a value is a constant, or a new object without arguments."""
+    if isinstance(value, ast.Call):
+        return not value.args and not value.keywords and isinstance(value.func, ast.Name)
+    return isinstance(value, ast.Constant)
 
 
 def _repeated(flow: Flow, texts: Mapping[str, str], every: Set[str]) -> bool:
