@@ -51,7 +51,7 @@ def workspace_root(path: Path) -> Path | None:
     """Return the root of the workspace around a file or folder; None without a package or repository.
 
     The root is the `src` of a colcon or catkin workspace if there is one, else the top of the git repository, else
-    the folder that contains the outermost package.
+    the folder that contains the outermost package. For a path beside `src`, it is the folder that contains `src`.
     """
     around = (path, *path.parents) if path.is_dir() else tuple(path.parents)
     for folder in around:
@@ -63,6 +63,11 @@ def workspace_root(path: Path) -> Path | None:
             return folder
     packages = [folder for folder in around if (folder / "package.xml").is_file()]
     if not packages:
-        return None
+        return next((folder for folder in around if _has_packages(folder / "src")), None)
     above = packages[-1].parent
     return above if above != Path(above.anchor) else packages[-1]
+
+
+def _has_packages(folder: Path) -> bool:
+    """Return whether a folder contains packages, directly or in repositories."""
+    return any(next(folder.glob(pattern), None) for pattern in ("*/package.xml", "*/*/package.xml"))
