@@ -8,7 +8,8 @@ the message is too old.
 
 The rule reports nothing if the program reads the time anywhere or resets the values that the callback stored: to
 `None`, or to a constant in the function that publishes. The rule also reports nothing if the program contains words
-such as `timeout`, `last_` and `counter`, because such words suggest that the program detects old messages in another way.
+such as `timeout`, `last_` and `counter`, because such words suggest that the program detects old messages in another
+way.
 """
 
 from __future__ import annotations

@@ -126,13 +126,13 @@ def test_classes_outside_the_files_and_packages_are_named():
     names = ("a.A", "a.B", "b.C", "c.D", "d.E", "e.F")
     (line,) = summary._beyond(Result(ended=names[:1]))
     assert plain(line) == (
-        'Not followed: data passed to classes outside the files: a.A (follow-installed = ["a"]).'
+        'Not followed: data that is passed to classes outside the linted files, a.A (follow-installed = ["a"]).'
     )
     (line,) = summary._beyond(Result(ended=names[:5]))
-    assert ": a.A, a.B, b.C, c.D, d.E (" in plain(line)
+    assert ", a.A, a.B, b.C, c.D, d.E (" in plain(line)
     first, last = summary._beyond(Result(followed=("a 1", "b"), ended=names))
     assert plain(first) == "Followed into installed packages: a 1, b."
-    assert ': a.A, a.B, b.C, c.D, d.E and 1 more (follow-installed = ["a", "b", "c", "d", "e"])' in plain(
+    assert ', a.A, a.B, b.C, c.D, d.E and 1 more (follow-installed = ["a", "b", "c", "d", "e"])' in plain(
         last
     )
 

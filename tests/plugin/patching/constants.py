@@ -284,7 +284,7 @@ FORMS: Final[Mapping[str, Mapping[str, str]]] = {
         "use": 'C["pid"]["gain"]',
         "data": "c.json",
     },
-    "environment": {"before": 'GAIN = float(os.environ.get("KEEPER_GAIN", "2.0"))', "use": "GAIN"},
+    "environment": {"before": f'GAIN = float(os.environ.get("KEEPER_GAIN", "2.0")){HERE}', "use": "GAIN"},
     "command line": {
         "before": (
             'parser = argparse.ArgumentParser()\n'

@@ -27,7 +27,6 @@ NOWHERE = {
     "choice",
     "parameter at its use",
     "parameters in a loop",
-    "environment",
     "command line",
 }
 
