@@ -107,6 +107,8 @@ PLACES = st.integers(0, len(PATCH) - 1)
 @example(
     [(PATCH.index(b"missing") + 3, ord("D"))], True, False
 )  # a former error: `misDing = …` was applied with exit code 0
+@example([(PATCH.index(b"2.4 * GAIN") + 2, ord("5"))], True, False)  # valid text that was never tested
+@example([(PATCH.index(b"2.4 * GAIN") + 2, ord("5"))], True, True)
 @example([(BODY, 0)], True, False)  # a former error: the file was taken for a part of the header
 @example([(PATCH.index(b"-    return") + 1, ord("\\"))], True, False)
 def test_patches_with_changed_bytes_are_refused_or_harmless(
@@ -176,6 +178,32 @@ def test_file_names_outside_the_project_are_refused(name: str) -> None:
         assert code == 0 if name == "node.py" else code in (1, 2) or inside
 
 
+@pytest.mark.parametrize("name", [".git/hooks/step.py", "lib/.git/step.py", ".git/../.git/step.py"])
+def test_files_of_git_are_refused(name: str, capsys: Printed) -> None:
+    with robot() as (root, place):
+        for folder in (".git/hooks", "lib/.git"):
+            (root / folder).mkdir(parents=True)
+        (root / name).write_text(NODE)
+        content = made(root, {"node.py": DONE})
+        place.write_bytes(sealed(content.replace(b"/node.py", b"/" + name.encode())))
+        before = texts(root.parent)
+        assert main(["apply", "--force", str(place)]) == 2
+        assert f"it changes {name!r}, which no repair does" in capsys.readouterr().err
+        assert texts(root.parent) == before
+
+
+def test_links_into_the_folder_of_git_are_refused(capsys: Printed) -> None:
+    with robot() as (root, place):
+        (root / ".git" / "hooks").mkdir(parents=True)
+        (root / "node.py").rename(root / ".git" / "hooks" / "step.py")
+        (root / "node.py").symlink_to(".git/hooks/step.py")
+        place.write_bytes(PATCH)
+        before = texts(root.parent)
+        assert main(["apply", "--force", str(place)]) == 1
+        assert f"leads out of {root}: node.py is" in capsys.readouterr().err
+        assert texts(root.parent) == before
+
+
 @pytest.mark.parametrize("base", ["..", "/abs", "../..", "sub/../..", "/"])
 def test_the_header_cannot_name_a_file_outside_the_project(base: str, capsys: Printed) -> None:
     with robot() as (root, place):
@@ -186,12 +214,18 @@ def test_the_header_cannot_name_a_file_outside_the_project(base: str, capsys: Pr
         assert texts(root.parent) == AS_IT_WAS
 
 
-def test_paths_cannot_leave_the_repository() -> None:
+def test_paths_may_leave_the_folder_but_not_the_repository(capsys: Printed) -> None:
     with robot() as (root, place):
         (root.parent / ".git").mkdir()
         place.write_bytes(made(root, {"../node.py": DONE}))
         assert main(["apply", "--force", str(place)]) == 0
         assert (root.parent / "node.py").read_text() == DONE
+    with robot() as (root, place):
+        (root / ".git").mkdir()
+        place.write_bytes(made(root, {"../node.py": DONE}))
+        assert main(["apply", "--force", str(place)]) == 1
+        assert f"leads out of {root}" in capsys.readouterr().err
+        assert (root.parent / "node.py").read_text() == NODE
 
 
 def test_the_folder_named_by_the_user_is_the_project() -> None:
