@@ -127,15 +127,19 @@ class Placing:
         return False
 
     def _given(self, name: str, operand: Operand) -> str:
-        """Explain that the test determines a parameter's value."""
+        """Explain that the test, or the launch file that it starts, determines a parameter's value."""
         test = self.order.root / self.order.fixture.test.partition("::")[0]
         text = test.read_text("utf-8", "replace") if test.is_file() else ""
-        key = name.rpartition("/")[2].removeprefix("~")
-        who = "the test itself passes it (parameters=…, argv=…)" if key in text else "this test sets it"
-        return (
-            f"`{operand.code}` is changed at its use. The parameter {name!r} has a default and possibly a value in "
-            f"the package, but {who}, and TARL never edits tests. Change the parameter where your robot sets it"
+        key = re.escape(name.rpartition("/")[2].removeprefix("~"))
+        start = (
+            f"`{operand.code}` is changed at its use. The parameter {name!r} has a default and possibly a value in the "
+            "package, but "
         )
+        passed = re.search(rf"""["'_]{key}\b""", text)
+        if passed is None and ".launch(" in text:
+            return f"{start}the launch file of the test sets it. Change the parameter there"
+        who = "the test itself passes it (parameters=…, argv=…)" if passed else "this test sets it"
+        return f"{start}{who}, and TARL never edits tests. Change the parameter where your robot sets it"
 
     def _users(self, place: Place, used: Sequence[Operand]) -> Iterator[str]:
         others = users(self.order.analysis, used)

@@ -239,6 +239,23 @@ def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pyt
     assert "the test itself passes it (parameters=…, argv=…), and TARL never edits tests" in told
 
 
+def test_a_parameter_of_a_launch_file_is_not_said_to_be_passed_by_the_test(worn: pytest.Pytester) -> None:
+    node(worn, gain='rospy.get_param("~gain", 0.7)')
+    files = {
+        "package.xml": "<package><name>water</name></package>",
+        "robot.launch": '<launch><arg name="half" default="1.0"/><node pkg="water" type="keeper.py" name="keeper">'
+        '<param name="gain" value="$(eval 2 * half)"/></node></launch>',
+    }
+    for name, text in files.items():
+        (worn.path / name).write_text(text)
+    (worn.path / "keeper.py").chmod(0o755)
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.launch("robot.launch")  # gains')
+    where, told, lines = repaired(worn)
+    assert where.startswith("keeper.py:")
+    assert "self.gain * missing" in lines
+    assert "the launch file of the test sets it: Change the parameter there" in told
+
+
 def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) -> None:
     node(worn, before="GAIN = 2.0\n", use="GAIN")
     changed(
