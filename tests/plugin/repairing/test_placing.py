@@ -253,7 +253,7 @@ def test_a_parameter_of_a_launch_file_is_not_said_to_be_passed_by_the_test(worn:
     where, told, lines = repaired(worn)
     assert where.startswith("keeper.py:")
     assert "self.gain * missing" in lines
-    assert "the launch file of the test sets it: Change the parameter there" in told
+    assert "the launch file of the test sets it. Change the parameter there" in told
 
 
 def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) -> None:
