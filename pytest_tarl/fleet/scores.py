@@ -23,8 +23,8 @@ PORTION = 25_000  # number of missions scored in one task
 class Scores:
     """Missions in some order: results, start in seconds since 1970, and bins of scores, shape (missions, scores).
 
-    `new_mission` and `new_cell` have one row for each visit of a mission to a cell that the recording lacks: the index
-    of the mission, ascending, and the index of the cell in `others`.
+    Each visit of a mission to a cell that is not in the recording has one entry in two arrays: `new_mission` holds the
+    index of the mission (ascending), `new_cell` the index of the cell in `others`.
     """
 
     passed: NDArray[np.bool_]

@@ -38,7 +38,7 @@ def gentler(
 ) -> list[tuple[Unit, Sequence[float]]]:
     """Return the named constants to try in place of `found`, each with its factors, best statement first.
 
-    Smaller steps are added if a constant of the same statement gained at least `promising`. Constants that were
+    The factors are closer to 1 if any constant of the same statement gained at least `promising`. Constants that were
     increased and decreased without any effect are left out.
     """
     tried = gains.under(guard)

@@ -100,7 +100,8 @@ class RateField:
             middle = identity + roots[:, None] * matrix * roots
             step = pull - roots * np.linalg.solve(middle, roots * (matrix @ pull)) - weights
             change = float(np.abs(matrix @ step).max())
-            # A first step from given logits is not shortened, since it also computes the weights that match them.
+            # The weights are still zero at the first step. If logits are given, this step computes the weights that
+            # match them, so it is not shortened.
             whole = start is not None and number == 0
             weights = weights + (1.0 if whole else min(1.0, LEAP / max(change, 1e-9))) * step
             logits = usual + matrix @ weights

@@ -12,7 +12,7 @@ Entrance = tuple[int, Frame, Frame, int]  # (condition, frame of the value, fram
 
 
 def made_alongside(graph: Graph) -> dict[int, list[int]]:
-    """Return node → nodes of which it uses the value but not the conditions, in the order of their copies."""
+    """Return, for each node, the nodes whose values it uses without their conditions, by the number of their copies."""
     found: dict[int, list[int]] = {}
     for node, formers in enumerate(graph.data):
         if not graph.stands_for.keys().isdisjoint(formers):

@@ -56,7 +56,7 @@ class WeldTractor(Node):
         if self.travelled is None:
             return
         wanted = self.memory.offset(self.travelled)
-        if wanted is None:  # the torch has not reached what the laser has seen first
+        if wanted is None:  # the torch has not yet reached the first point that the laser measured
             self.send(CREEP, 0.0, False)
             return
         error = wanted - self.slide

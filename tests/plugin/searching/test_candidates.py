@@ -128,7 +128,7 @@ def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
     assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
 
 
-def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
+def test_a_region_of_all_cells_gives_no_condition_of_its_own() -> None:
     everywhere = Region(tuple(ONLINE.cells))
     dry = drive(1, range(0))
     guards = candidate_guards(evidence(everywhere, worlds=(dry, drive(4, range(10)))))

@@ -111,7 +111,7 @@ def test_the_ray_through_a_combination_ends_where_the_first_of_its_ranges_ends()
     assert ray.point(0.5) == {"a": 0.5, "b": 0.5}
 
 
-def test_the_nearest_failures_are_repaired_two_along_directions_and_one_combination() -> None:
+def test_the_two_nearest_failures_of_one_direction_and_the_nearest_combination_are_repaired() -> None:
     space = space_of(**{name: Drift.range(0.0, 1.0, nominal=0.0) for name in "abc"})
     points = [{"a": 0.1}, {"a": 0.2, "b": 0.2}, {"b": 0.4}, {"c": 0.5}, {"a": 0.5, "c": 0.5}]
     failures = [failure(space, {**space.nominal, **one}) for one in points]
