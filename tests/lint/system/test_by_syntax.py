@@ -26,6 +26,7 @@ def module(text: str, path: str = "node.py") -> Module:
 
 
 RELIABLE, EFFORT = Qos(reliable=True, latched=False), Qos(reliable=False, latched=False)
+LATCHED = Qos(reliable=True, latched=True)
 SUBSCRIBED = "self.create_subscription(F, 'a', f, {})"
 PROFILES = [
     (SUBSCRIBED.format("10"), RELIABLE),
@@ -74,14 +75,14 @@ def test_the_quality_of_service_of_a_call_is_read_if_it_is_constant(call, found)
         ("a = 10\nb = a\nc = b\np = c", None),
         ("b = 10\np = b", RELIABLE),
         ("p = 10\np = qos_profile_sensor_data", None),
-        ("p = QoSProfile(depth=1)\np.reliability = R.BEST_EFFORT", None),
-        ("p = QoSProfile(depth=1)\nself.p.durability = D.TRANSIENT_LOCAL", None),
+        ("p = QoSProfile(depth=1)\np.reliability = R.BEST_EFFORT", EFFORT),
+        ("p = QoSProfile(depth=1)\nself.p.durability = D.TRANSIENT_LOCAL", LATCHED),
         ("p = QoSProfile(depth=1)\np.depth = 5", RELIABLE),
         ("p = QoSProfile(depth=1)\nq.reliability = R.BEST_EFFORT\nprint(p.reliability)", RELIABLE),
         ("p = p", None),
     ],
 )
-def test_a_profile_in_a_variable_is_followed_unless_it_changes(before, found):
+def test_a_profile_in_a_variable_is_followed_with_the_policies_assigned_to_it(before, found):
     assert quality(f"{before}\n{SUBSCRIBED.format('p')}") == found
     assert quality(f"{before}\n{SUBSCRIBED.format('self.p')}") == found
 

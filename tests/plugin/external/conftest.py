@@ -53,11 +53,15 @@ class Guardian:
         for event in self.react(what, **arguments):
             self.events.put(event)
 
+    def stop(self) -> None:
+        self.do("stop")
+
     def close(self) -> None:
         self.closed = True
 
     def output(self) -> str:
-        return self.said
+        said, self.said = self.said, ""  # as the client: what the simulator said since the last call
+        return said
 
     def last_words(self) -> str:
         return self.said

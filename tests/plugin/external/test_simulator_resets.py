@@ -45,7 +45,7 @@ def test_a_simulator_that_does_not_answer_its_reset_is_started_again(guardian: G
     quick = replace(RESET, patience=0.05)
     module.KEPT.running = quick
     made = begun(quick, guardian, ros)
-    assert [what for what, _ in guardian.done if what != "subscribe"] == ["call", "start"]
+    assert [what for what, _ in guardian.done if what != "subscribe"] == ["call", "stop", "start"]
     assert made.clock == 2.0
 
 
