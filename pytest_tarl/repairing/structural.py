@@ -44,9 +44,8 @@ CLAMPS = ("clamp", "clip", "saturate", "constrain")
 LEAST = 50
 KEPT = 0.6  # share of the episodes beyond a group's own that its candidates leave to the groups after it
 COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
-LEAST_EACH = (
-    4  # minimum number of episodes for each of these changes, but never more than a third of those left
-)
+# minimum number of episodes for each of these changes, but never more than a third of the episodes left
+LEAST_EACH = 4
 
 
 class Structures:

@@ -69,8 +69,10 @@ def onward(
     times the change found are left out.
     """
     gained = [(gains.of(unit, guard).get(step, 0.0), at) for at, (unit, step) in enumerate(tried)]
-    leading = [tried[at] for gain, at in sorted(gained, key=lambda one: -one[0]) if gain >= TRACE * wanted]
-    best = list({unit: (unit, step) for unit, step in reversed(leading)}.values())[::-1][:LEADING]
+    best: dict[Unit, float] = {}
+    for gain, at in sorted(gained, key=lambda one: -one[0]):
+        if gain >= TRACE * wanted and len(best) < LEADING:
+            best.setdefault(*tried[at])
     most = LESS * size(found, factor)
-    steps = [(unit, up if step > 1.0 else down) for down, up in ONWARD for unit, step in best]
+    steps = [(unit, up if step > 1.0 else down) for down, up in ONWARD for unit, step in best.items()]
     return [(unit, step) for unit, step in steps if size(unit, step) <= most]

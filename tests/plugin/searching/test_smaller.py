@@ -168,7 +168,7 @@ def test_larger_steps_follow_only_where_a_small_one_gained_and_stay_small() -> N
     found, *others = (Unit((one,)) for one in (HOTTEST, TARGET, TAU, *(named(at, f"A{at}") for at in (7, 8))))
     gains = Gains(0.1)
     small = [(unit, step) for unit in others for step in (0.82, 1.22)]
-    for (unit, step), gain in zip(small, (0.1, -1.0, 0.04, 0.3, 0.2, 0.0, 0.4, 0.41), strict=True):
+    for (unit, step), gain in zip(small, (0.04, -1.0, 0.04, 0.3, 0.2, 0.0, 0.1, 0.41), strict=True):
         gains.enter((unit, ALWAYS), step, gain)
     best = [(others[3], 1.22), (others[1], 1.22), (others[2], 0.82)]
     (down, up), (further_down, further_up) = ONWARD
