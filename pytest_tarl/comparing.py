@@ -49,9 +49,8 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    looks: tuple[
-        tuple[int, float], ...
-    ] = ()  # for each check of the verdict: number of episodes, uncorrected p-value of the loss
+    # for each check of the verdict: number of episodes, uncorrected p-value of the loss
+    looks: tuple[tuple[int, float], ...] = ()
     decided: bool = False  # whether the verdict is final at the last check
 
 

@@ -18,8 +18,7 @@ ENOUGH = 0.5  # minimum share of steps in recorded cells that must be reached by
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
     """Return the fewest sensors that must be left out for the worlds to overlap.
 
-    The result is empty if the worlds already overlap, or if they do not overlap without any choice of
-    sensors.
+    The result is empty if the worlds already overlap, or if no choice of sensors makes them overlap.
     """
     width = len(offline.cells[0]) if offline.cells else 0
     if _met(offline, online, tuple(range(width))) > FEW:

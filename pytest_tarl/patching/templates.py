@@ -32,11 +32,8 @@ SCALES = (  # units of a parameter's default
 )
 FIXED = "designed"  # parameters with this scale stay fixed in the search
 STRONGER = ("larger", "smaller")
-WITHOUT = (
-    "",
-    "factor",
-    "term",
-)  # constants that an expression must not have, since they can be changed instead
+# constants that an expression must not have at its top level, since they can be changed instead
+WITHOUT = ("", "factor", "term")
 # placeholders of comparisons: the operator, its form with or without equality, its reverse
 OPERATORS = ("op", "closed", "back")
 _KEYS = {"summary", "on", "without", "cost", "lines", "expression", "state", "parameters", "example"}

@@ -45,9 +45,8 @@ ENDS: dict[Reason, str] = {
 }
 
 NEARLY = 0.8  # share of the loss that a rejected candidate must restore to be worth a wider tolerance
-SPARE = (
-    1.5  # suggested tolerance, as a multiple of the loss that remains: a test needs some room to show less
-)
+# suggested tolerance, as a multiple of the loss that remains: a test needs some room to show less
+SPARE = 1.5
 
 
 def edit_words(edit: Edit) -> str:
