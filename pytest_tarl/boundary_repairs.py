@@ -209,8 +209,8 @@ def _searched(job: Job, region: Region) -> tuple[Repair | None, Mapping[Path, st
     online = run_online(
         rollout, request.fixture, marked, options, job.sites, drift, request.progress, job.changeable
     )
-    if online.comparison.verdict.result != "degraded":
-        return None, {}, "no loss was shown, so nothing is repaired."
+    if "reward" not in online.comparison.verdict.because:
+        return None, {}, "no loss of reward was shown, so nothing is repaired."
     order = Order(
         rollout,
         job.analysis,

@@ -49,7 +49,7 @@ class Online:
     comparison: Comparison
     recorded: Recorded
     sarsa: tuple[Floats, ...]
-    # for each check of the verdict: number of episodes, uncorrected p-value of the loss
+    # for each check of the verdict: number of episodes, uncorrected p-value of a decrease
     looks: tuple[tuple[int, float], ...] = ()
     decided: bool = False  # whether the verdict is final at the last check
 
@@ -96,7 +96,7 @@ def run_online(
     again = EpisodePlan(side.seeds[0], drift, record=True)
     spread = repeated(side.rollout, again, recorded) if recorded.simulator else ()
     notes = (
-        *remarks.failing(offline, online, difference.verdict, options),
+        *remarks.failing(difference.verdict),
         *side.notes,
         *recorded.notes,
         *spread,
@@ -124,7 +124,7 @@ def run_online(
         purpose=designation.purpose,
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
-    pairs = tuple((look.episodes, found.verdict.p_loss) for look, found in watch.seen)
+    pairs = tuple((look.episodes, found.verdict.p_worse) for look, found in watch.seen)
     return Online(comparison, recorded, learned, pairs, certain(watch.seen[-1][1]))
 
 

@@ -220,7 +220,7 @@ class Mission:
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
         interrupted = False
-        if self.options.mode == "repair" and comparison.verdict.result == "degraded":
+        if self.options.mode == "repair" and "reward" in comparison.verdict.because:
             order = Order(
                 rollout,
                 analysis,

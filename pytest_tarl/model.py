@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 Result = Literal["degraded", "drifted", "no difference"]
+Decreased = Literal["reward", "success"]
 Reason = Literal[
     "",
     "no operand helps",
@@ -149,7 +150,11 @@ class LossInterval(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """The verdict of a comparison. `loss` and `detectable_loss` are rewards per episode."""
+    """The verdict of a comparison. `loss` and `detectable_loss` are rewards per episode.
+
+    `success` holds the share of successful missions in the recording and in the deployed world, and `p_failures` the
+    p-value of its decrease. `because` says what is worse if the result is "degraded".
+    """
 
     result: Result
     p_drift: float
@@ -158,6 +163,19 @@ class Verdict:
     detectable_loss: float
     tolerance: float
     interval: LossInterval | None = None
+    p_failures: float = 1.0
+    success: tuple[float, float] = (1.0, 1.0)
+    because: tuple[Decreased, ...] = ()
+
+    @property
+    def p_worse(self) -> float:
+        """Return the p-value of the hypothesis that the deployed world is no worse, in reward and in success."""
+        return min(self.p_loss, self.p_failures)
+
+    @property
+    def failures_only(self) -> bool:
+        """Return whether more missions fail although no loss of reward was found."""
+        return self.because == ("success",)
 
 
 @dataclass(frozen=True, slots=True)

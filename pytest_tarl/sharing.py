@@ -70,5 +70,5 @@ def _standing(outcome: object) -> Standing:
     """Return the progress of a comparison; a test without a comparison counts as decided."""
     if not isinstance(outcome, Compared):
         return Standing(0, decided=True)
-    episodes, p_loss = outcome.online.looks[-1]
-    return Standing(episodes, p_loss, outcome.online.decided)
+    episodes, p_worse = outcome.online.looks[-1]
+    return Standing(episodes, p_worse, outcome.online.decided)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from pytest_tarl.learning.drift import outcomes, succeed_less
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.permutation import permuted_loss
+from pytest_tarl.learning.permutation import permuted_decreases
 from pytest_tarl.model import SitePlace
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.seeds import generator
@@ -22,7 +23,11 @@ class Moved:
 
 @dataclass(frozen=True)
 class FixtureDiff:
-    """The changes. `loss` is A's mean reward per episode minus B's, `p_loss` its permutation p-value."""
+    """The changes.
+
+    `loss` is A's mean reward per episode minus B's, with the p-value `p_loss`. `success` holds the share of successful
+    missions in A and in B, and `p_failures` the p-value of a decrease. Both p-values are corrected for two tests.
+    """
 
     loss: float
     p_loss: float
@@ -32,10 +37,16 @@ class FixtureDiff:
     moved: tuple[Moved, ...]
     cells: tuple[int, int, int]  # numbers of cells: only in A, in both, only in B
     same_sensors: bool
+    p_failures: float = 1.0
 
     def worse(self, alpha: float, most: float = 0.0) -> bool:
-        """Return whether B earns significantly less than A, by more than `most` per episode."""
-        return self.loss > most and self.p_loss < alpha
+        """Return whether B is significantly worse.
+
+        It is worse if it earns less than A by more than `most` per episode, or if the share of successful missions is
+        lower by more than PASS_RATE_LOSS.
+        """
+        fail_more = self.p_failures < alpha and succeed_less(self.success)
+        return (self.loss > most and self.p_loss < alpha) or fail_more
 
     @property
     def changed(self) -> bool:
@@ -52,9 +63,11 @@ def compared(first: Fixture, second: Fixture) -> FixtureDiff:
     before, after = _sites(first), _sites(second)
     mine, theirs = set(first.sample.cells), set(second.sample.cells)
     a, b = first.sample, second.sample
+    p_loss, p_failures = permuted_decreases(outcomes(a), outcomes(b), generator(0, "diff")).tolist()
     return FixtureDiff(
         loss=float(a.total.mean() - b.total.mean()),
-        p_loss=permuted_loss(a.total, b.total, generator(0, "diff")),
+        p_loss=p_loss,
+        p_failures=p_failures,
         success=(float(a.passed.mean()), float(b.passed.mean())),
         gone=tuple(place for site, place in before.items() if site not in after),
         new=tuple(place for site, place in after.items() if site not in before),
@@ -74,7 +87,8 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
     yield f"{first.test} → {second.test}" if first.test != second.test else first.test
     yield f"  episodes   {a.episodes} → {b.episodes}"
     yield f"  reward     {a.total.mean():.4g} → {b.total.mean():.4g} per episode (less: p = {found.p_loss:.2g})"
-    yield f"  success    {percent(found.success[0])} → {percent(found.success[1])}"
+    fewer = f" (less: p = {found.p_failures:.2g})" if found.success[1] < found.success[0] else ""
+    yield f"  success    {percent(found.success[0])} → {percent(found.success[1])}{fewer}"
     if found.same_sensors:
         yield f"  cells      {found.cells[1]} in both, {found.cells[0]} gone, {found.cells[2]} new"
     else:

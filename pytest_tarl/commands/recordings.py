@@ -47,8 +47,8 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
         "--fail-if-worse",
         action="store_true",
         help=(
-            "exit with 1 if the second recording earns significantly less, or if the second margins fail "
-            "significantly nearer to nominal"
+            "exit with 1 if the second recording earns significantly less or succeeds significantly less often, or "
+            "if the second margins fail significantly nearer to nominal"
         ),
     )
     diff.add_argument(

@@ -14,6 +14,7 @@ from pytest_tarl.commands import margins_diff
 from pytest_tarl.commands.margins_files import margins_in
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.files import read_regular
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.stressing.margin_changes import compared
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
@@ -79,12 +80,20 @@ def _row(document: Mapping[str, Any]) -> str:
         f"`{_plain(document['test'])}`",
         _plain(document["drift"]),
         f"{MARKS.get(result, '✅')} {result}",
-        f"{verdict['loss']:.3g} (p = {verdict['p_loss']:.2g})" if result == "degraded" else "",
+        _worse(verdict) if result == "degraded" else "",
         _plain("; ".join(_words(place) for place in document["region"])),
         f"`{_plain(first['path'])}:{first['line']}`" if first and result != "no difference" else "",
         _repair(document.get("repair")),
     )
     return f"| {' | '.join(cells)} |"
+
+
+def _worse(verdict: Mapping[str, Any]) -> str:
+    """Format what decreased; results of earlier versions hold only the loss."""
+    if verdict.get("because") == ["success"]:
+        before, after = (float(verdict["success"][world]) for world in ("offline", "online"))
+        return f"success {percent(after)} instead of {percent(before)} (p = {verdict['p_failures']:.2g})"
+    return f"{verdict['loss']:.3g} (p = {verdict['p_loss']:.2g})"
 
 
 def _words(place: Mapping[str, Sequence[float]]) -> str:

@@ -116,6 +116,8 @@ def _group(one: Group, watched: Robot) -> dict[str, Any]:
         "result": None if verdict is None else verdict.result,
         "loss": None if verdict is None else verdict.loss,
         "p_loss": None if verdict is None else verdict.p_loss,
+        "p_failures": None if verdict is None else verdict.p_failures,
+        "because": [] if verdict is None else list(verdict.because),
         "p_drift": None if verdict is None else verdict.p_drift,
         "cells": [list(cell) for cell in one.region.cells],
         "new": [list(cell) for cell in one.region.novel],

@@ -138,6 +138,9 @@ def verdict(one: Group) -> str:
     """Return the verdict on a group in words."""
     if one.verdict is None:
         return "too few missions"
+    if one.verdict.failures_only:
+        before, after = (f"{100 * share:.1f} %" for share in one.verdict.success)
+        return f"degraded: success {after} instead of {before} (p {one.verdict.p_failures:.2g})"
     if one.verdict.result == "degraded":
         return f"degraded by {one.verdict.loss:.3g} (p {one.verdict.p_loss:.2g})"
     return f"{one.verdict.result} (p {one.verdict.p_drift:.2g})"

@@ -21,13 +21,14 @@ from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.multiple_testing import holm
 from pytest_tarl.learning.packing import represented_chain
-from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
+from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_decreases
 from pytest_tarl.learning.tables import Floats, Ints, Sample
-from pytest_tarl.model import LossInterval, Region, Result, Verdict
+from pytest_tarl.model import Decreased, LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
 # a cell is in the region if its difference is at least this share of the largest significant one
 MATERIAL = 0.1
+PASS_RATE_LOSS = 0.05  # tolerated decrease of the share of successful missions
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def compare(
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
-    p_loss = permuted_loss(offline.total, online.total, generator, permutations)
+    p_loss, p_failures = permuted_decreases(outcomes(offline), outcomes(online), generator, permutations)
     loss = float(offline.total.mean() - online.total.mean())
     p_drift, region, changes = _drift(offline, online, alpha, generator, sensors, permutations)
     without = left_out(offline, online)
@@ -79,7 +80,21 @@ def compare(
     detectable = max(margin, detectable_loss(offline.total, online.total, alpha))
     bounds = loss_bounds(offline.total, online.total, alpha, declared)
     interval = LossInterval(*bounds, 1 - 2 * alpha, declared is not None)
-    verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
+    success = float(offline.passed.mean()), float(online.passed.mean())
+    verdict = judged(
+        Verdict(
+            "no difference",
+            p_drift,
+            float(p_loss),
+            loss,
+            detectable,
+            margin,
+            interval,
+            float(p_failures),
+            success,
+        ),
+        alpha,
+    )
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)
 
@@ -89,23 +104,43 @@ def as_compared(sample: Sample) -> Sample:
     return replace(sample, chain=represented_chain(sample.chain))
 
 
+def outcomes(sample: Sample) -> Floats:
+    """Return what should not decrease: the total and the success of each episode, shape (episodes, 2)."""
+    return np.stack([sample.total, sample.passed.astype(np.float64)], axis=1)
+
+
+def succeed_less(success: tuple[float, float]) -> bool:
+    """Return whether the second share of successful missions is lower by more than PASS_RATE_LOSS."""
+    before, after = success
+    return before - after > PASS_RATE_LOSS + 1e-9  # so that 1 - 0.95 is no more than 0.05
+
+
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with the result that its p-values and its loss imply."""
-    result: Result = "no difference"
+    """Return the verdict with the result that its p-values, its loss and its success imply."""
+    reasons: list[Decreased] = []
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
-        result = "degraded"
-    elif verdict.p_drift < alpha:
-        result = "drifted"
-    return replace(verdict, result=result)
+        reasons.append("reward")
+    if verdict.p_failures < alpha and succeed_less(verdict.success):
+        reasons.append("success")
+    result: Result = "degraded" if reasons else "drifted" if verdict.p_drift < alpha else "no difference"
+    return replace(verdict, result=result, because=tuple(reasons))
 
 
 def corrected(verdicts: Sequence[Verdict], alpha: float) -> list[Verdict]:
-    """Return the verdicts of several comparisons with p-values corrected by Holm's method, and results to match."""
-    p_drift, p_loss = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_loss"))
-    return [
-        judged(replace(one, p_drift=drift, p_loss=loss), alpha)
-        for one, drift, loss in zip(verdicts, p_drift, p_loss, strict=True)
-    ]
+    """Return the verdicts of several comparisons with p-values corrected by Holm's method, and results to match.
+
+    A comparison has one p-value for a drift and one for a worse world, which is the smaller one of loss and failures.
+    The larger one is multiplied by the same factor.
+    """
+    drifts, worse = (holm([getattr(one, name) for one in verdicts]) for name in ("p_drift", "p_worse"))
+    found = []
+    for one, drift, most in zip(verdicts, drifts, worse, strict=True):
+        p_loss, p_failures = (
+            most if value == one.p_worse else min(1.0, value * most / one.p_worse)
+            for value in (one.p_loss, one.p_failures)
+        )
+        found.append(judged(replace(one, p_drift=drift, p_loss=p_loss, p_failures=p_failures), alpha))
+    return found
 
 
 def loss_bounds(

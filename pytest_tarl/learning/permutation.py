@@ -58,20 +58,42 @@ def permuted_loss(
     return float(_p_values(reached, pooled, online.size, generator, permutations)[0])
 
 
+def permuted_decreases(
+    offline: Floats, online: Floats, generator: np.random.Generator, permutations: int = PERMUTATIONS
+) -> Floats:
+    """Return the one-sided p-value of each column for a lower deployed mean, corrected over all columns.
+
+    Inputs have shape (episodes, columns). A constant column does not affect the p-values of the others.
+    """
+    varied = np.flatnonzero(np.ptp(np.concatenate((online, offline)), axis=0) > 0)
+    p_values = np.ones(online.shape[1])
+    if varied.size == 1:
+        one = varied[0]
+        p_values[one] = permuted_loss(offline[:, one], online[:, one], generator, permutations)
+    elif varied.size:
+        columns = -np.concatenate((online, offline))
+        p_values = max_statistic(columns, len(online), generator, permutations, one_sided=True)
+    return p_values
+
+
 def max_statistic(
     columns: Floats,
     first: int,
     generator: np.random.Generator,
     permutations: int = PERMUTATIONS,
     error: float = ARITHMETIC,
+    *,
+    one_sided: bool = False,
 ) -> Floats:
     """Return the p-value of each column, corrected over all columns; shape (columns,).
 
     The first `first` rows form one group, the other rows the second. The statistic is the difference between the group
-    means in units of the column's standard deviation; it orders columns as the pooled t statistic does. Each column is
-    compared with the maximum over all columns whose difference is not larger (step-down). A column that varies by at
-    most `error` of its largest entry counts as constant and has the p-value 1.
+    means in units of the column's standard deviation; it orders columns as the pooled t statistic does. If `one_sided`,
+    only larger values in the first group count. Each column is compared with the maximum over all columns whose
+    difference is not larger (step-down). A column that varies by at most `error` of its largest entry counts as
+    constant and has the p-value 1.
     """
+    size = (lambda sums: sums) if one_sided else np.abs
     deviation = columns - columns.mean(axis=0)
     extent, largest = (np.abs(part).max(axis=0, initial=0.0) for part in (deviation, columns))
     alive = np.flatnonzero(extent > error * largest)
@@ -80,12 +102,12 @@ def max_statistic(
         return p_values
     relative = deviation[:, alive] / extent[alive]  # scaled so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
-    observed = np.abs(observed_sum(standard, first))
+    observed = size(observed_sum(standard, first))
     order = np.argsort(observed, kind="stable")
     limit = np.maximum.accumulate(observed[order]) - 1e-9
 
     def reached(shuffled: Floats) -> Ints:
-        largest = np.maximum.accumulate(np.abs(shuffled)[:, order], axis=1)
+        largest = np.maximum.accumulate(size(shuffled)[:, order], axis=1)
         return np.asarray(np.count_nonzero(largest >= limit, axis=0))
 
     stepped = _p_values(reached, standard, first, generator, permutations)

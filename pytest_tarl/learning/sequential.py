@@ -36,7 +36,7 @@ def spending(ends: Sequence[int]) -> tuple[Look, ...]:
 
 
 def certain(difference: Difference) -> bool:
-    """Return whether the verdict is final: both the loss and a region of cells are significant."""
+    """Return whether the verdict is final: both the decrease and a region of cells are significant."""
     region = difference.region
     return difference.verdict.result == "degraded" and bool(region.cells or region.novel)
 
@@ -48,12 +48,13 @@ def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Differen
     valid at whichever look the comparison ends.
     """
     last = seen[-1][1]
-    p_drift, p_loss = (
+    p_drift, p_loss, p_failures = (
         min(1.0, *(getattr(found.verdict, name) / look.share for look, found in seen))
-        for name in ("p_drift", "p_loss")
+        for name in ("p_drift", "p_loss", "p_failures")
     )
     interval = last.verdict.interval and last.verdict.interval._replace(confidence=1 - 2 * alpha)
-    verdict = judged(replace(last.verdict, p_drift=p_drift, p_loss=p_loss, interval=interval), alpha)
+    adjusted = replace(last.verdict, p_drift=p_drift, p_loss=p_loss, p_failures=p_failures, interval=interval)
+    verdict = judged(adjusted, alpha)
     return replace(
         last, verdict=verdict, region=last.region if verdict.result != "no difference" else Region()
     )

@@ -25,10 +25,13 @@ class Stage:
 
 @dataclass(frozen=True)
 class Standing:
-    """A comparison after a look: its number of episodes, its p-value for a loss, and whether it is decided."""
+    """A comparison after a look: its number of episodes, and whether it is decided.
+
+    `p_worse` is the p-value of a loss or, if smaller, of more failures.
+    """
 
     episodes: int
-    p_loss: float = 1.0
+    p_worse: float = 1.0
     decided: bool = False
 
 
@@ -54,7 +57,7 @@ def next_look(standing: Standing, looks: Sequence[Look]) -> Look | None:
 def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> int | None:
     """Return the index of the comparison that continues, or None if none can reach its next look.
 
-    `left` is the number of episodes left. The undecided comparison with the smallest p-value for a loss continues,
+    `left` is the number of episodes left. The undecided comparison with the smallest p-value continues,
     since it is nearest to a decision; if several have the same p-value, the first one.
     """
     able = [
@@ -62,4 +65,4 @@ def chosen(standings: Sequence[Standing], looks: Sequence[Look], left: int) -> i
         for number, one in enumerate(standings)
         if (look := next_look(one, looks)) is not None and look.episodes - one.episodes <= left
     ]
-    return min(able, key=lambda number: standings[number].p_loss, default=None)
+    return min(able, key=lambda number: standings[number].p_worse, default=None)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pytest_tarl.searching.accept import PASS_RATE_LOSS, Acceptance, Reference
+from pytest_tarl.learning.drift import PASS_RATE_LOSS
+from pytest_tarl.searching.accept import Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3

@@ -10,11 +10,12 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.learning import bounds
+from pytest_tarl.learning.drift import PASS_RATE_LOSS
 from pytest_tarl.model import Reason
 from pytest_tarl.repairing.accepting import Examiner
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
-from pytest_tarl.searching.accept import PASS_RATE_LOSS, Outcome
+from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
 MOST = 2  # maximum number of candidates that are tested

@@ -10,12 +10,13 @@ from statistics import fmean, stdev
 
 from pytest_tarl.comparing import Online
 from pytest_tarl.drifts import Drift, sizes
+from pytest_tarl.learning.drift import PASS_RATE_LOSS
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress
 from pytest_tarl.rollout import Rollout
-from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
+from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Goal, Pair
 from tarl_lint.api import Analysis
 

@@ -21,6 +21,7 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
         "tarl_p_drift": f"{verdict.p_drift:.3g}",
         "tarl_p_loss": f"{verdict.p_loss:.3g}",
         "tarl_loss": amounts.amount(verdict.loss),
+        "tarl_p_failures": f"{verdict.p_failures:.3g}" if "success" in verdict.because else "",
         "tarl_loss_interval": words.loss_interval(comparison),
         "tarl_region": words.region_words(comparison) if verdict.result != "no difference" else "",
         "tarl_culprit": _blamed(comparison.culprits[0]) if _guilty(comparison) else "",

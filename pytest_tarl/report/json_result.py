@@ -70,6 +70,9 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
             "p_drift": finite(verdict.p_drift),
             "p_loss": finite(verdict.p_loss),
             "loss": finite(verdict.loss),
+            "p_failures": finite(verdict.p_failures),
+            "success": {"offline": finite(verdict.success[0]), "online": finite(verdict.success[1])},
+            "because": list(verdict.because),
             "detectable_loss": finite(verdict.detectable_loss),
         },
         "bounds": {

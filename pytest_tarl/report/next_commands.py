@@ -42,8 +42,15 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
         yield shlex.join(["git", "apply", comparison.repair.patch])
         if comparison.permanent:
             yield recording(comparison)
-    elif comparison.verdict.result == "degraded" and comparison.repair is None and not _happened(comparison):
+    elif _repairable(comparison):
         yield command(comparison, "--tarl-repair")
+
+
+def _repairable(comparison: Comparison) -> bool:
+    """Return whether a repair can be searched, and has not been."""
+    verdict = comparison.verdict
+    lost = verdict.result == "degraded" and not verdict.failures_only
+    return lost and comparison.repair is None and not _happened(comparison)
 
 
 def _happened(comparison: Comparison) -> bool:

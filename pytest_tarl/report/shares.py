@@ -10,9 +10,9 @@ from dataclasses import dataclass
 class Share:
     """A comparison's share of `total` episodes, and why it ended.
 
-    `looks` holds the number of episodes and the uncorrected p-value of the loss at each look (test of the verdict).
-    `missing` is the number of further episodes that the next look needs, or None after the last look. `left` is the
-    number of episodes of the total that were not run.
+    `looks` holds the number of episodes and the uncorrected p-value at each look (test of the verdict): that of a loss
+    or, if smaller, of more failures. `missing` is the number of further episodes that the next look needs, or None
+    after the last look. `left` is the number of episodes of the total that were not run.
     """
 
     total: int
@@ -30,7 +30,7 @@ def sentence(share: Share) -> str:
     among = f"{share.comparisons} comparisons" if share.comparisons > 1 else "1 comparison"
     return (
         f"ran {got} of the {share.total} episodes for {among} (an even share is {even}): {_end(share)}. Uncorrected "
-        f"p-value of the loss: {seen} episodes."
+        f"p-value: {seen} episodes."
     )
 
 

@@ -77,7 +77,10 @@ def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
 
 
 def _wrapped(text: str, width: int) -> list[str]:
-    return wrap(text, width - LABEL - 2, break_on_hyphens=False, break_long_words=False) or [""]
+    """Wrap `text` between words, but not between a number and its percent sign."""
+    joined = text.replace(" %", "\0%")
+    told = wrap(joined, width - LABEL - 2, break_on_hyphens=False, break_long_words=False)
+    return [line.replace("\0", " ") for line in told] or [""]
 
 
 def _rewards(comparison: Comparison) -> str:

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from pytest_tarl.learning.effect_size import effect_size
-from pytest_tarl.model import Comparison, LossInterval
+from pytest_tarl.model import Comparison, LossInterval, Verdict
 from pytest_tarl.report.amounts import amount, deviations, p_value
 from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.regions import Vocabulary
@@ -29,9 +29,11 @@ def designed_world(comparison: Comparison) -> str:
 def verdict_sentence(comparison: Comparison) -> str:
     """Return the conclusion of the comparison in one sentence."""
     verdict, world = comparison.verdict, world_name(comparison)
+    if verdict.failures_only:
+        return f"In {world} {_successes(verdict)}."
     if verdict.result == "degraded":
-        loss = amount(verdict.loss)
-        return f"In {world} an episode earns {loss} less than designed ({p_value(verdict.p_loss)})."
+        lost = f"In {world} an episode earns {amount(verdict.loss)} less than designed ({p_value(verdict.p_loss)})"
+        return f"{lost}; {_successes(verdict)}." if "success" in verdict.because else f"{lost}."
     if verdict.result == "drifted":
         differs = f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)})"
         if verdict.loss > 0 and verdict.p_loss < SIGNIFICANT:
@@ -42,6 +44,12 @@ def verdict_sentence(comparison: Comparison) -> str:
     if not math.isfinite(verdict.detectable_loss):
         seen = "too few episodes were run to detect any loss"
     return f"No difference was found between {world} and the designed one; {seen}."
+
+
+def _successes(verdict: Verdict) -> str:
+    """Format the decrease of the share of successful missions."""
+    before, after = (percent(share) for share in verdict.success)
+    return f"missions succeed in {after} of the episodes, instead of {before} ({p_value(verdict.p_failures)})"
 
 
 def loss_words(comparison: Comparison) -> str:

@@ -21,6 +21,7 @@ from statistics import fmean
 
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.learning.betting import Bet, bet
+from pytest_tarl.learning.drift import PASS_RATE_LOSS
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
@@ -28,7 +29,6 @@ SCREEN = 8  # number of episodes before the test, from which the bet size is cho
 EARLY = (8, 16, 32)  # early looks: numbers of episodes after which the test can only refuse
 LOOKS = tuple(range(60, 201, 20))  # looks: numbers of episodes after which the test can refuse or accept
 SEEDS = SCREEN + LOOKS[-1]
-PASS_RATE_LOSS = 0.05
 # Reasons to refuse a candidate in the drifted world.
 TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
 # share of the risk α that the first test spends; each later test spends a third of the one before it

@@ -151,5 +151,5 @@ def test_failed_missions_that_earn_more_because_they_end_early_are_reported(tank
     changed(tank, "test_tank", "    for _ in range(25):", "    tarl.reward(0.0)\n    for _ in range(25):")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = tank.runpytest(*ONLINE)
-    told.assert_outcomes(passed=1, deselected=1)
-    assert "missions succeed in 0 % of the deployed episodes" in " ".join(told.stdout.str().split())
+    told.assert_outcomes(failed=1, deselected=1)
+    assert "missions succeed in 0 % of the episodes, instead of 100 %" in " ".join(told.stdout.str().split())

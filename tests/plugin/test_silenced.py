@@ -68,9 +68,18 @@ def test_a_recording_under_a_drift_still_needs_a_node_that_publishes(careful: py
     ran.stdout.fnmatch_lines(["*published nothing*/level*"])
 
 
-def test_missions_that_fail_without_a_loss_are_the_first_note(tank: pytest.Pytester) -> None:
+def test_missions_that_fail_without_a_loss_are_degraded_and_get_no_repair(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(-1.0)")
     tank.runpytest(*RECORD)
-    ran = tank.runpytest(*ONLINE)
-    ran.assert_outcomes(passed=1, deselected=1)
-    ran.stdout.fnmatch_lines(["  note     missions succeed in 0 % of the deployed episodes*"])
+    ran = tank.runpytest(*ONLINE, "--tarl-repair")
+    ran.assert_outcomes(failed=1, deselected=1)
+    ran.stdout.fnmatch_lines(
+        [
+            "*: degraded",
+            "  verdict  In * missions succeed in 0 % of the*",
+            "*episodes, instead of 100 % (p = 0.001).",
+            "  note     more missions fail, but no loss of reward was found*",
+        ]
+    )
+    ran.stdout.no_fnmatch_line("  repair *")
+    ran.stdout.no_fnmatch_line("  next *")

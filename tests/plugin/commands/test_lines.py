@@ -41,6 +41,22 @@ def test_a_recording_is_worse_if_its_loss_is_significant_and_above_the_tolerated
     assert difference(loss=loss, p_loss=p).worse(0.05, most) is expected
 
 
+@pytest.mark.parametrize(
+    ("success", "p", "expected"),
+    [
+        ((0.9, 0.75), 0.04, True),
+        ((0.9, 0.75), 0.05, False),
+        ((0.9, 0.85), 0.0, False),
+        ((0.75, 0.9), 0.0, False),
+    ],
+)
+def test_a_recording_is_worse_if_missions_succeed_significantly_less_often(
+    success: tuple[float, float], p: float, expected: bool
+) -> None:
+    found = difference(loss=-1.0, p_loss=0.9, success=success, p_failures=p)
+    assert found.worse(0.05) is expected
+
+
 def test_two_recordings_differ_if_their_sites_or_sensors_differ() -> None:
     assert not difference(moved=(Moved(SITE, MOVED),)).changed
     for one in ({"gone": (SITE,)}, {"new": (SITE,)}, {"same_sensors": False}):
@@ -73,7 +89,7 @@ def test_diff_prints_episodes_reward_cells_and_changed_sites_of_two_recordings()
         "t → u",
         "  episodes   4 → 2",
         "  reward     3 → 1 per episode (less: p = 0.04)",
-        "  success    90 % → 75 %",
+        "  success    90 % → 75 % (less: p = 1)",
         "  cells      2 in both, 1 gone, 3 new",
         "  gone       `f( 1)` of a.py:7: its slice is lost; verdict and region remain valid",
         "  new        `f( 1)` at b.py:9: it has no slice in the first recording",

@@ -73,10 +73,32 @@ def episodes(*visited: list[Cell], reward: float = 1.0, cells: tuple[Cell, ...] 
         ({"p_loss": 0.04, "loss": 0.1, "p_drift": 0.04}, "drifted"),
         ({"p_drift": 0.05}, "no difference"),
         ({"p_loss": 0.04, "loss": 0.2, "p_drift": 0.04}, "degraded"),
+        ({"p_failures": 0.04, "success": (1.0, 0.94)}, "degraded"),
+        ({"p_failures": 0.05, "success": (1.0, 0.94)}, "no difference"),
+        ({"p_failures": 0.04, "success": (1.0, 0.95)}, "no difference"),
+        ({"p_failures": 0.04, "success": (0.5, 0.9), "p_drift": 0.04}, "drifted"),
     ],
 )
 def test_a_verdict_follows_from_its_numbers(change: dict[str, float], expected: str) -> None:
     assert judged(replace(VERDICT, **change), 0.05).result == expected  # type: ignore[arg-type]
+
+
+def test_a_verdict_states_what_decreased() -> None:
+    lost = {"p_loss": 0.01, "loss": 0.2}
+    failed = {"p_failures": 0.01, "success": (1.0, 0.5)}
+    found = [judged(replace(VERDICT, **one), 0.05) for one in (lost, failed, lost | failed, {})]  # type: ignore[arg-type]
+    assert [one.because for one in found] == [("reward",), ("success",), ("reward", "success"), ()]
+    assert [one.failures_only for one in found] == [False, True, False, False]
+
+
+def test_loss_and_failures_of_a_comparison_are_corrected_by_the_same_factor() -> None:
+    one = replace(VERDICT, p_loss=0.03, p_failures=0.01, success=(1.0, 0.5), loss=0.2)
+    two = replace(VERDICT, p_loss=0.02, p_failures=0.9, loss=0.2)
+    first, second = corrected([one, two], 0.05)
+    assert (first.p_failures, first.because) == (0.02, ("success",))
+    assert first.p_loss == pytest.approx(0.06)
+    assert (second.p_loss, second.because) == (0.02, ("reward",))
+    assert second.p_failures == pytest.approx(0.9)
 
 
 def test_verdicts_of_several_comparisons_are_corrected_separately() -> None:
@@ -213,11 +235,12 @@ def difference(**changes: Any) -> Difference:
 def test_a_sequence_of_checks_adjusts_p_values_and_confidence() -> None:
     interval = LossInterval(0.1, 0.9, 0.98)
     seen = [
-        (Look(10, 0.25), difference(p_loss=0.01, p_drift=0.2)),
+        (Look(10, 0.25), difference(p_loss=0.01, p_drift=0.2, p_failures=0.02)),
         (Look(20, 0.75), difference(p_loss=0.045, p_drift=0.9, loss=0.5, interval=interval)),
     ]
     found = concluded(seen, 0.05)
     assert (found.verdict.p_loss, found.verdict.p_drift) == (pytest.approx(0.04), pytest.approx(0.8))
+    assert found.verdict.p_failures == pytest.approx(0.08)
     assert found.verdict.interval is not None
     assert (found.verdict.interval.low, found.verdict.interval.confidence) == (0.1, 0.9)
     assert (found.verdict.result, found.region) == ("degraded", Region(((1,),)))

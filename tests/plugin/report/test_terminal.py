@@ -138,3 +138,10 @@ def test_every_reason_for_a_refusal_has_its_own_text(varied, reason):
     text = told(varied(repair=Repair(False, "", (), reason=reason)))
     assert "none accepted: " in text
     assert f"none accepted: {reason}\n" not in text
+
+
+def test_a_percent_sign_stays_on_the_line_of_its_number(varied):
+    for length in range(40):
+        note = "x" * length + " 100 % of 12 % are 12 %."
+        found = lines(varied(notes=(note,)), width=60, root=ROOT)
+        assert not [line for line in found if line.strip().startswith("%")]

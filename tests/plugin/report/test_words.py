@@ -38,6 +38,13 @@ SENTENCES = {
     Verdict("degraded", 0.002, 0.01, 3.0, 0.4, 0.5): (
         "In the drift scenario 'mud' an episode earns 3.00 less than designed (p = 0.01)."
     ),
+    Verdict("degraded", 0.9, 0.6, -3.0, 0.4, 0.5, None, 0.0001, (1.0, 0.25), ("success",)): (
+        "In the drift scenario 'mud' missions succeed in 25 % of the episodes, instead of 100 % (p < 0.001)."
+    ),
+    Verdict("degraded", 0.9, 0.01, 3.0, 0.4, 0.5, None, 0.02, (0.9, 0.5), ("reward", "success")): (
+        "In the drift scenario 'mud' an episode earns 3.00 less than designed (p = 0.01); "
+        "missions succeed in 50 % of the episodes, instead of 90 % (p = 0.02)."
+    ),
     Verdict("drifted", 0.002, 0.3, 0.1, 0.4, 0.5): (
         "The drift scenario 'mud' differs from the designed one (p = 0.002), "
         "but no loss of reward was found (p = 0.3)."
