@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
-from unittest import TestCase
+from typing import TYPE_CHECKING
 
 import pytest
 
-from pytest_tarl.design import AS_WRITTEN
-from pytest_tarl.errors import FixtureError, SettingsError, TarlError
-from pytest_tarl.extras import missing_stress
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.finished_tests import FinishedTest, passed, started
 from pytest_tarl.options import Options
 from pytest_tarl.printable import printable
 from pytest_tarl.progress import ProgressLine
@@ -28,9 +26,9 @@ from pytest_tarl.repeating import (
     finish,
 )
 from pytest_tarl.scenarios import scenario, without_drift
+from pytest_tarl.selecting import check_drift, chosen, how_to_take, is_space, takes, with_space
 from pytest_tarl.sensors import Sensor
-from pytest_tarl.spaces import Space
-from pytest_tarl.summary import Summary, attach
+from pytest_tarl.summary import Summary
 
 if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
@@ -67,7 +65,7 @@ class TarlSession:
         self.config = config
         self.options = options
         self._summary = Summary()
-        self._ended: list[_Ended] = []  # finished tests that are not reported yet
+        self._ended: list[FinishedTest] = []  # finished tests that are not reported yet
         self._designated: tuple[pytest.Item, ...] = ()
         self._unmarked = False  # whether all collected tests lack the marker
         self._resumable: ResumableRun | None = None
@@ -87,7 +85,7 @@ class TarlSession:
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if self.options.mode == "stress":
-            names = [name for name in names if _is_space(drifts[name])]
+            names = [name for name in names if is_space(drifts[name])]
         if "tarl_drift" in metafunc.fixturenames:
             metafunc.parametrize("tarl_drift", names or [None], ids=names or ["online"], indirect=True)
 
@@ -97,10 +95,10 @@ class TarlSession:
         self._unmarked = bool(items) and not marked
         self._designated = tuple(marked)
         if self.options.drift is not None:
-            self._check_drift(marked)
-            marked = [item for item in marked if self._chosen(item)]
+            check_drift(marked, self.options)
+            marked = [item for item in marked if chosen(item, self.options)]
         if self.options.mode == "stress":
-            marked = self._spaced(marked)
+            marked = with_space(marked)
         if self.options.holm:
             self.options = replace(self.options, comparisons=max(len(marked), 1))
         if self.options.total is not None:
@@ -124,43 +122,6 @@ class TarlSession:
             raise pytest.UsageError(sentence)
         return SharedEpisodes(total, len(recorded), self.options.most_looks)
 
-    def _spaced(self, marked: Sequence[pytest.Item]) -> list[pytest.Item]:
-        """Return the items with a drift space.
-
-        Raise UsageError if no item has one, or if a needed package is missing.
-        """
-        sentence = missing_stress("--tarl-stress")
-        if sentence is not None:
-            raise pytest.UsageError(sentence)
-        found = [item for item in marked if _has_space(item)]
-        if marked and not found:
-            raise pytest.UsageError(
-                "No test declares a space of drifts, which --tarl-stress searches: declare one in the marker, such as "
-                'drifts={"world": Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0))}.'
-            )
-        return found
-
-    def _chosen(self, item: pytest.Item) -> bool:
-        """Return whether `--tarl-drift` selects an item.
-
-        When recording, it selects every item whose marker declares the drift. When comparing, it selects the items of
-        that scenario, and items that declare it but lack the fixture `tarl_drift`; their reports say so.
-        """
-        declared = self.options.drift in _drift_names(item)
-        if self.options.mode == "record":
-            return declared or self.options.drift == AS_WRITTEN
-        return scenario(item) == self.options.drift or (declared and not _takes(item, "tarl_drift"))
-
-    def _check_drift(self, marked: Sequence[pytest.Item]) -> None:
-        known = sorted({name for item in marked for name in _drift_names(item)})
-        backwards = self.options.mode == "record" and self.options.drift == AS_WRITTEN
-        if marked and self.options.drift not in known and not backwards:
-            names = ", ".join(known) or "none is declared"
-            raise pytest.UsageError(
-                f"No test declares the drift {self.options.drift!r} (declared: {names}). Declare it "
-                "in the marker: drifts={…}."
-            )
-
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
         """Run a designated test (one with the marker `tarl`) in the selected mode, with one report per phase.
@@ -171,10 +132,10 @@ class TarlSession:
             return None
         together = _of_all_tests(self.options)
         if not together:
-            _started(item)
+            started(item)
         stage = self._shared.first if self._shared is not None else None
         call = pytest.CallInfo.from_call(lambda: self._run(item, stage), when="call", reraise=INTERRUPTS)
-        self._ended.append(_Ended(item, call, _phase(item, "setup"), finish(item, nextitem)))
+        self._ended.append(FinishedTest(item, call, passed(item, "setup"), finish(item, nextitem)))
         if nextitem is None and self._shared is not None:
             self._share(self._shared)
         if nextitem is None or not together:
@@ -198,7 +159,7 @@ class TarlSession:
                 one.conclude(outcome.told)
         for one in ended:
             if _of_all_tests(self.options):
-                _started(one.item)
+                started(one.item)
             one.log()
 
     def _share(self, shared: SharedEpisodes) -> None:
@@ -208,8 +169,8 @@ class TarlSession:
         """
         from pytest_tarl.accounts import Compared
 
-        while (chosen := shared.following([one.outcome for one in self._ended])) is not None:
-            self._ended[chosen[0]].proceed(self._run, chosen[1])
+        while (following := shared.following([one.outcome for one in self._ended])) is not None:
+            self._ended[following[0]].proceed(self._run, following[1])
         notes = shared.notes([one.outcome for one in self._ended])
         for one, note in zip(self._ended, notes, strict=True):
             if isinstance(one.outcome, Compared):
@@ -261,10 +222,10 @@ class TarlSession:
         marked = designated(item)
         if marked is None:
             raise SettingsError(f"{item.nodeid} has no tarl marker.")
-        if not _takes(item, "tarl"):
-            raise SettingsError(f"The test does not use the fixture `tarl`: {_how_to_take(item)}.")
+        if not takes(item, "tarl"):
+            raise SettingsError(f"The test does not use the fixture `tarl`: {how_to_take(item)}.")
         drifted = self.options.mode != "record" or self.options.drift is not None
-        if marked.drifts and drifted and not _takes(item, "tarl_drift"):
+        if marked.drifts and drifted and not takes(item, "tarl_drift"):
             raise SettingsError(
                 "the marker declares drifts, but the test does not use the fixture `tarl_drift`, so they have no "
                 "effect: add the argument `tarl_drift` and build the world with it."
@@ -361,106 +322,6 @@ class TarlSession:
         return ProgressLine(item.nodeid, write)
 
 
-@dataclass
-class _Ended:
-    """A finished test: its result, and the reports of its setup and teardown."""
-
-    item: pytest.Function
-    call: pytest.CallInfo[Any]
-    setup: pytest.TestReport
-    teardown: pytest.TestReport
-
-    @property
-    def outcome(self) -> Any:
-        """Return the comparison of the test; None if it ended in an error."""
-        return self.call.result if self.call.excinfo is None else None
-
-    def proceed(self, run: Callable[[pytest.Function, Stage], object], stage: Stage) -> None:
-        """Run a further stage of the comparison; its result replaces the previous one."""
-        call = pytest.CallInfo.from_call(lambda: run(self.item, stage), when="call", reraise=INTERRUPTS)
-        call.start, call.duration = self.call.start, self.call.duration + call.duration
-        self.call = call
-        again = finish(self.item, None)
-        self.teardown = again if self.teardown.passed else self.teardown
-
-    def conclude(self, told: Callable[[], Account]) -> None:
-        """Replace the comparison by its report."""
-        call = pytest.CallInfo.from_call(told, when="call", reraise=INTERRUPTS)
-        call.start, call.stop, call.duration = self.call.start, self.call.stop, self.call.duration
-        self.call = call
-
-    def log(self) -> None:
-        """Report the test to pytest."""
-        item, report = self.item, self._report()
-        for one in (self.setup, report, self.teardown):
-            item.ihook.pytest_runtest_logreport(report=one)
-        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
-
-    def _report(self) -> pytest.TestReport:
-        from pytest_tarl.accounts import Account
-
-        report = pytest.TestReport.from_item_and_call(self.item, self.call)
-        account, error = self.outcome, self.call.excinfo.value if self.call.excinfo else None
-        if account is not None:
-            attach(report, account)
-            for one in (report, self.teardown):  # JUnit reads the properties of the last report
-                one.user_properties.extend(account.properties)
-            if account.problem:
-                report.outcome, report.longrepr = "failed", printable(account.problem)
-        elif isinstance(error, TarlError):
-            report.longrepr = printable(str(error))
-        elif error is not None and isinstance(error.__context__, FixtureError):
-            attach(
-                report, Account((str(error),), unrecorded=True)
-            )  # skipped: pytest shows reasons only with -rs
-        return report
-
-
 def _of_all_tests(options: Options) -> bool:
     """Return whether reports must wait until all tests have run."""
     return options.holm or options.total is not None
-
-
-def _started(item: pytest.Item) -> None:
-    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-
-
-def _drift_names(item: pytest.Item) -> list[str]:
-    try:
-        marked = designated(item)
-    except SettingsError as error:
-        raise pytest.UsageError(str(error)) from None
-    return list(marked.drifts) if marked else []
-
-
-def _is_space(drift: object) -> bool:
-    return isinstance(getattr(drift, "value", None), Space)
-
-
-def _has_space(item: pytest.Item) -> bool:
-    """Return whether an item's scenario is a space, or its marker declares one and the item lacks the fixture."""
-    marker = item.get_closest_marker("tarl")
-    drifts = marker.kwargs.get("drifts", {}) if marker is not None else {}
-    if not isinstance(drifts, Mapping):
-        return True  # an invalid marker is reported when the test runs
-    if _takes(item, "tarl_drift"):
-        return _is_space(drifts.get(scenario(item)))
-    return any(map(_is_space, drifts.values()))
-
-
-def _takes(item: pytest.Item, fixture: str) -> bool:
-    return fixture in getattr(item, "fixturenames", ())
-
-
-def _how_to_take(item: pytest.Function) -> str:
-    """Describe how a test requests the fixture; methods of unittest.TestCase cannot have fixture arguments."""
-    if item.cls is None or not issubclass(item.cls, TestCase):
-        return "take it as an argument"
-    return (
-        f"a method of unittest.TestCase cannot take it as an argument, so give {item.cls.__name__} a method with "
-        "@pytest.fixture(autouse=True) that takes it and stores it in self"
-    )
-
-
-def _phase(item: pytest.Item, when: Literal["setup"]) -> pytest.TestReport:
-    return pytest.TestReport.from_item_and_call(item, pytest.CallInfo.from_call(lambda: None, when=when))

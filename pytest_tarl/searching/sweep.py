@@ -16,17 +16,16 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.charts import Chart
 from pytest_tarl.searching import plateau
+from pytest_tarl.searching.combining import Combining
 from pytest_tarl.searching.families import families
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
 from pytest_tarl.searching.gains import Gains
-from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
 from pytest_tarl.searching.plainness import Oddness, named, writing
 from pytest_tarl.searching.preferring import Preferences
 from pytest_tarl.searching.refining import ALMOST, FURTHER, PROMISING, between
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
-from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units, whole_constants
-from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
+from pytest_tarl.searching.units import NEAR, Unit, best_effects, charted, units
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -97,8 +96,8 @@ class Sweep:
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self.refused: set[tuple[Unit, Guard]] = set()  # confirmed and yielded, then refused by the caller
         self.preferences = Preferences(self)
+        self.combining = Combining(self)
         self._adjusted: set[tuple[Unit, Guard, float]] = set()
-        self._unmasked_under: set[tuple[Unit, Guard]] = set()
         self._inside: set[Guard] = set()
         self._families: tuple[Unit, ...] = ()
         self._turn = 0
@@ -113,12 +112,12 @@ class Sweep:
         yield from self._in_large_steps(chief)
         gained = self.gains.anything()
         if gained:
-            yield from self._sharpened(chief)
-            yield from self._jointly(chief)
-            yield from self._together()
+            yield from self.combining.sharpened(chief)
+            yield from self.combining.jointly(chief)
+            yield from self.combining.best_with_others()
         yield from self._finely(chief)
         if not gained:
-            yield from self._together()
+            yield from self.combining.best_with_others()
         yield from self._late_ones((*self.aside, *self.late), chief)
         if self.structure_follows:
             for factor in BETWEEN:
@@ -141,7 +140,7 @@ class Sweep:
                 still = [unit for unit in self._families if unit not in leading]
                 yield from self._all(factor, guard, [*leading, *still])
                 yield from self._inside_far_gains(guard)
-                yield from self._leaders_together(guard)
+                yield from self.combining.leaders(guard)
         if not self.gains.anything():
             yield from self._late_ones(self.aside, chief)
             yield from self._across_a_plateau(chief)
@@ -189,8 +188,8 @@ class Sweep:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
         yield from self._inside_far_gains(guard)
-        yield from self._leaders_together(guard)
-        yield from self._unmasked(guard)
+        yield from self.combining.leaders(guard)
+        yield from self.combining.unmasked(guard)
 
     def _strengthened(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Make proposals stronger that were too weak to have an effect, most of all at statements that respond."""
@@ -352,68 +351,6 @@ class Sweep:
         for other in given:
             base = Joint(((unit, factor),), guard)
             yield from self.joining({}).climbed(base, Unit((other,)))
-
-    def _together(self) -> Iterator[Candidate]:
-        """Combine the best operand with others."""
-        every = [
-            (gain, *key, factor)
-            for key, gains in self.gains.items()
-            if key not in self.refused
-            for factor, gain in gains.items()
-        ]
-        gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
-        if unit is None or guard is None or gain <= self.slack:
-            return
-        among = [
-            one for one in self.units if not self.proposed or one.operands[0].span == unit.operands[0].span
-        ]
-        joining = self.joining(self.gains.under(guard), among)
-        yield from joining.candidates(Joint(((unit, factor),), guard))
-
-    def _jointly(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Jointly search the constants that change missions most, starting at the best points so far."""
-        if self.generator is None or self.proposed:
-            return
-        guard = max(chief, key=lambda one: max((gain for gain, _ in self.gains.leaders(one)), default=0.0))
-        united = whole_constants((*self.units, *self.late))
-        chosen, hidden = sensitive(united, self.gains, guard)
-        if len(chosen) < LEAST:
-            return
-        joining = self.joining({})
-        jointly = Jointly(chosen, joining, self.trials, self.goal, self.generator, hidden)
-        leaders = [part for _, part in self.gains.leaders(guard) if part[0] in chosen and part[1] > 0]
-        yield from jointly.candidates([Joint((part,), guard) for part in leaders[:LEADING]], guard)
-
-    def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
-        """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
-
-        Combinations are tried before refused operands are refined further, so they come before
-        near-duplicates.
-        """
-        self.refused -= {tried for tried in self.refused if tried[1] == guard}
-        leaders = self.gains.leaders(guard)
-        if leaders and leaders[0][0] > self.slack and not self.proposed:
-            hidden = [unit for unit in self.units if not self.gains.moves(unit)]
-            yield from self.joining({}).unions([part for _, part in leaders], guard, hidden)
-
-    def _sharpened(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Adjust the best unit under each guard in small steps, before it is combined with others."""
-        for guard in () if self.proposed else chief:
-            for _, (unit, factor) in self.gains.leaders(guard)[:1]:
-                yield from self.joining({}).sharpened(unit, factor, guard)
-
-    def _unmasked(self, guard: Guard) -> Iterator[Candidate]:
-        """Retry the units without an effect together with the best unit, if its missions last longer."""
-        leaders = self.gains.leaders(guard)
-        if self.proposed or not leaders or leaders[0][0] < GAINED * self.goal.wanted:
-            return
-        unit, factor = leaders[0][1]
-        base, joining = Joint(((unit, factor),), guard), self.joining({})
-        if (unit, guard) in self._unmasked_under or not longer(base, joining):
-            return
-        self._unmasked_under.add((unit, guard))
-        hidden = [one for one in self.units if not self.gains.moves(one) and one.operands != unit.operands]
-        yield from unmasked(base, hidden, joining)
 
     def joining(
         self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None

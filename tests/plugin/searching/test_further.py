@@ -111,5 +111,5 @@ def test_before_a_combination_under_a_guard_its_refused_constants_count_again() 
     search = Sweep(GAINS[:2], mutations, (ALWAYS, WET), world(lambda *_: 0.0), GOAL)
     first, second = search.units
     search.refused = {(first, ALWAYS), (second, ALWAYS), (first, WET)}
-    assert list(search._leaders_together(ALWAYS)) == []
+    assert list(search.combining.leaders(ALWAYS)) == []
     assert search.refused == {(first, WET)}

@@ -1,0 +1,112 @@
+"""Combine the constants that gained in a sweep, or adjust the best of them before it is combined.
+
+Each method yields confirmed candidates and decides itself whether there is anything to combine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
+from pytest_tarl.searching.search import Candidate, Goal, Trials
+from pytest_tarl.searching.units import Unit, whole_constants
+from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
+
+if TYPE_CHECKING:
+    import numpy as np
+
+STARTS = 3  # maximum number of best points at which the joint search starts
+
+
+class Search(Protocol):
+    """The parts of the sweep that `Combining` uses."""
+
+    units: tuple[Unit, ...]
+    late: tuple[Unit, ...]
+    trials: Trials
+    goal: Goal
+    generator: np.random.Generator | None
+    slack: float
+    proposed: bool
+    gains: Gains
+    refused: set[tuple[Unit, Guard]]
+
+    def joining(
+        self, gains: Mapping[Unit, Mapping[float, float]], among: Sequence[Unit] | None = None
+    ) -> ForwardSelection:
+        """Return a selection that combines units."""
+
+
+class Combining:
+    """Combine the units of one search."""
+
+    def __init__(self, search: Search) -> None:
+        self.search = search
+        self._unmasked_under: set[tuple[Unit, Guard]] = set()
+
+    def best_with_others(self) -> Iterator[Candidate]:
+        """Combine the best operand with others; a proposal only with parameters of the same change."""
+        search = self.search
+        every = [
+            (gain, *key, factor)
+            for key, gains in search.gains.items()
+            if key not in search.refused
+            for factor, gain in gains.items()
+        ]
+        gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
+        if unit is None or guard is None or gain <= search.slack:
+            return
+        span = unit.operands[0].span
+        among = [one for one in search.units if not search.proposed or one.operands[0].span == span]
+        joining = search.joining(search.gains.under(guard), among)
+        yield from joining.candidates(Joint(((unit, factor),), guard))
+
+    def jointly(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Jointly search the constants that change missions most, starting at the best points so far."""
+        search = self.search
+        if search.generator is None or search.proposed:
+            return
+        guard = max(guards, key=lambda one: max((gain for gain, _ in search.gains.leaders(one)), default=0.0))
+        united = whole_constants((*search.units, *search.late))
+        chosen, hidden = sensitive(united, search.gains, guard)
+        if len(chosen) < LEAST:
+            return
+        jointly = Jointly(chosen, search.joining({}), search.trials, search.goal, search.generator, hidden)
+        leaders = [part for _, part in search.gains.leaders(guard) if part[0] in chosen and part[1] > 0]
+        yield from jointly.candidates([Joint((part,), guard) for part in leaders[:STARTS]], guard)
+
+    def leaders(self, guard: Guard) -> Iterator[Candidate]:
+        """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
+
+        Combinations are tried before refused operands are refined further, so they come before near-duplicates.
+        """
+        search = self.search
+        search.refused -= {tried for tried in search.refused if tried[1] == guard}
+        leaders = search.gains.leaders(guard)
+        if leaders and leaders[0][0] > search.slack and not search.proposed:
+            hidden = [unit for unit in search.units if not search.gains.moves(unit)]
+            yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)
+
+    def sharpened(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Adjust the best unit under each guard in small steps, before it is combined with others."""
+        for guard in () if self.search.proposed else guards:
+            for _, (unit, factor) in self.search.gains.leaders(guard)[:1]:
+                yield from self.search.joining({}).sharpened(unit, factor, guard)
+
+    def unmasked(self, guard: Guard) -> Iterator[Candidate]:
+        """Retry the units without an effect together with the best unit, if its missions last longer."""
+        search = self.search
+        leaders = search.gains.leaders(guard)
+        if search.proposed or not leaders or leaders[0][0] < GAINED * search.goal.wanted:
+            return
+        unit, factor = leaders[0][1]
+        base, joining = Joint(((unit, factor),), guard), search.joining({})
+        if (unit, guard) in self._unmasked_under or not longer(base, joining):
+            return
+        self._unmasked_under.add((unit, guard))
+        still = [one for one in search.units if not search.gains.moves(one)]
+        yield from unmasked(base, [one for one in still if one.operands != unit.operands], joining)
