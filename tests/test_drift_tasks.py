@@ -27,6 +27,7 @@ JUDGING = (
     "drift_judging_10",
     "drift_judging_11",
     "drift_judging_12",
+    "drift_judging_13",
     "drift_structure",
 )
 TASKS = sorted(
@@ -208,6 +209,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "sparse reward",
         "two constants",
     ],
+    "drift_judging_13": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "sparse reward",
+        "structure",
+    ],
 }
 
 
@@ -258,6 +269,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_10",
         "drift_judging_11",
         "drift_judging_12",
+        "drift_judging_13",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
