@@ -210,8 +210,13 @@ class Structures:
 
 
 def _responding(effects: Mapping[str, Sequence[OperandEffect]], wanted: float) -> tuple[str, ...]:
-    """Return the IDs of the statements that respond (see RESPONDS), largest gain first."""
-    gains = {site: max((one.effect for one in each), default=0.0) for site, each in effects.items()}
+    """Return the IDs of the statements that respond (see RESPONDS), largest gain first.
+
+    Operands without a known value are left out: they stand for several constants, such as the parameters that a helper
+    function looks up, so that their gain does not say where to change the program.
+    """
+    known = {site: [one.effect for one in each if one.value is not None] for site, each in effects.items()}
+    gains = {site: max(gains, default=0.0) for site, gains in known.items()}
     found = [site for site, gain in gains.items() if gain > 0.0 and gain >= RESPONDS * wanted]
     return tuple(sorted(found, key=lambda site: -gains[site]))
 

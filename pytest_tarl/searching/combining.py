@@ -12,6 +12,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.jointly import LEAST, Jointly, sensitive
+from pytest_tarl.searching.refining import ALMOST
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 from pytest_tarl.searching.units import Unit, whole_constants
 from pytest_tarl.searching.unmasking import GAINED, longer, unmasked
@@ -87,7 +88,9 @@ class Combining:
         search = self.search
         search.refused -= {tried for tried in search.refused if tried[1] == guard}
         leaders = search.gains.leaders(guard)
-        if leaders and leaders[0][0] > search.slack and not search.proposed:
+        if search.proposed or not leaders or leaders[0][0] >= ALMOST * search.goal.wanted:
+            return  # a change that nearly suffices needs another value rather than another constant
+        if leaders[0][0] > search.slack:
             hidden = [unit for unit in search.units if not search.gains.moves(unit)]
             yield from search.joining({}).unions([part for _, part in leaders], guard, hidden)
 

@@ -12,40 +12,56 @@ the inward steps are tried on the constants that matter, as far as a fixed numbe
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import log
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.plainness import Oddness, kind, named
-from pytest_tarl.searching.units import Unit
+from pytest_tarl.searching.units import Unit, change_size
 
+Step = tuple[float, float | None]
 INWARD = None  # a placeholder for steps between the first two steps (2.2 and 0.4)
 # (step, smaller step that must not have reduced the reward), in the order in which they are tried. Neighbouring inward
 # steps differ by at most 10 %.
-STEPS: tuple[tuple[float, float | None], ...] = (
+STEPS: tuple[Step, ...] = (
     *((1.5, INWARD), (0.65, INWARD), (5.0, 2.2), (0.15, 0.4), (1.22, INWARD), (0.82, INWARD)),
     *((1.35, INWARD), (0.74, INWARD), (10.0, 5.0), (0.05, 0.15), (1.75, INWARD), (0.55, INWARD)),
     *((1.285, INWARD), (0.78, INWARD), (1.1, INWARD), (0.91, INWARD), (1.16, INWARD), (0.86, INWARD)),
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
-NEARBY = (0.4, 2.2)  # the smallest and the largest factor of a change that is not large
+NEARBY = 2.5  # the largest factor by which a change that is not large increases or decreases a constant
+WEAK = 0.5  # a gain of less than this share of the wanted gain is weak
 AROUND = 40  # maximum number of episodes for inward steps around large changes that gain
 AT_LEAST = 2  # minimum number of inward steps around large changes that gain
 
 
 def best_is_far(gains: Gains, guard: Guard) -> bool:
-    """Return whether a large change clearly gains most reward under a guard."""
+    """Return whether a large change clearly gains most reward under a guard.
+
+    Offsets are large if they change the constant by a large factor.
+    """
     near, far = [0.0], [0.0]
-    for by_factor in gains.under(guard).values():
+    for unit, by_factor in gains.under(guard).items():
         for factor, gain in by_factor.items():
-            (near if NEARBY[0] <= factor <= NEARBY[1] else far).append(gain)
+            (near if change_size(unit, factor) <= log(NEARBY) + 1e-9 else far).append(gain)
     return max(far) > max(near) + gains.slack
 
 
+def best_is_weak(gains: Gains, guard: Guard, wanted: float) -> bool:
+    """Return whether a change gains reward under a guard, but none gains much of what a repair needs."""
+    most = max((max(by_factor.values()) for by_factor in gains.under(guard).values()), default=0.0)
+    return gains.slack < most < WEAK * wanted
+
+
 def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:
-    """Return the constants that matter, except offsets of zero, and the inward steps that may be tried on them."""
+    """Return the constants that matter, except offsets of zero, and the inward steps that may be tried on them.
+
+    If named constants matter, the others are left out.
+    """
     matter = [
         unit for unit in units if unit.chart is None and gains.moves(unit) and kind(unit) < Oddness.OFFSET
     ]
+    matter = named(matter) or matter
     steps = [step for step, before in STEPS if before is INWARD]
     return matter, steps[: max(AT_LEAST, AROUND // max(len(matter), 1))]
 

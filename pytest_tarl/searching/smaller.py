@@ -9,16 +9,15 @@ the test does not contain.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, log
 
 from pytest_tarl.model import Guard
 from pytest_tarl.searching.gains import Gains, Part
 from pytest_tarl.searching.plainness import named
-from pytest_tarl.searching.units import Unit
+from pytest_tarl.searching.units import Unit, change_size
 
 STEPS = ((0.82, 1.22), (0.74, 1.33))  # factors: the first pair is tried on each constant, then the second
 BESIDE = (1.06, 0.94)  # factors by which a step that earns nearly enough is multiplied
-LESS = 0.5  # maximum size of a small change (see `size`), as a share of the size of the change found
+LESS = 0.5  # maximum size of a small change (see `change_size`), as a share of the size of the change found
 ONWARD = ((0.62, 1.61), (0.5, 1.9))  # larger steps in the direction in which a small one gained something
 LEADING = 3  # maximum number of constants that get these larger steps
 TRACE = 0.005  # minimum gain of their small step, as a share of the wanted gain
@@ -27,21 +26,12 @@ EARLY = 0.5  # share of the budget after which a repair is no longer compared
 WORSE = 0.02  # maximum additional deviation of the smaller change's missions from the designed ones
 
 
-def size(unit: Unit, factor: float) -> float:
-    """Return the size of a change: |log(new value / old value)|, infinite for a changed sign or an old value of 0."""
-    value = unit.operands[0].value
-    by: float | None = factor
-    if unit.chart is not None and value is not None:
-        by = unit.chart.factor(float(value), factor)
-    return abs(log(by)) if by is not None and by > 0.0 and value != 0 else inf
-
-
 def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, guard: Guard) -> list[Part]:
     """Return other named constants with small steps, the best gain so far first, then those not tried yet.
 
     Constants that never changed a mission are left out, and so are steps larger than `LESS` times the change found.
     """
-    most, tried = LESS * size(found, factor), gains.under(guard)
+    most, tried = LESS * change_size(found, factor), gains.under(guard)
     others = [
         unit
         for unit in named(units)
@@ -56,7 +46,7 @@ def smaller(found: Unit, factor: float, units: Sequence[Unit], gains: Gains, gua
         for steps in STEPS
         for unit in others
         for step in steps
-        if size(unit, step) <= most and step not in tried.get(unit, {})
+        if change_size(unit, step) <= most and step not in tried.get(unit, {})
     ]
 
 
@@ -73,6 +63,6 @@ def onward(
     for gain, at in sorted(gained, key=lambda one: -one[0]):
         if gain >= TRACE * wanted and len(best) < LEADING:
             best.setdefault(*tried[at])
-    most = LESS * size(found, factor)
+    most = LESS * change_size(found, factor)
     steps = [(unit, up if step > 1.0 else down) for down, up in ONWARD for unit, step in best.items()]
-    return [(unit, step) for unit, step in steps if size(unit, step) <= most]
+    return [(unit, step) for unit, step in steps if change_size(unit, step) <= most]

@@ -139,33 +139,36 @@ class Sweep:
                 leading = self._leading(before, guard, -self.slack)
                 still = [unit for unit in self._families if unit not in leading]
                 yield from self._all(factor, guard, [*leading, *still])
-                yield from self._inside_far_gains(guard)
+                yield from self._inward(guard)
                 yield from self.combining.leaders(guard)
         if not self.gains.anything():
             yield from self._late_ones(self.aside, chief)
-            yield from self._across_a_plateau(chief)
+            yield from self._across_a_plateau(chief[0], plateau.STEPS)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self.gains.moving(self.units))
 
-    def _across_a_plateau(self, chief: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try the steps of `plateau` under the first guard while no unit gains reward."""
-        guard = chief[0]
-        for factor, before in () if self.proposed else plateau.STEPS:
+    def _across_a_plateau(self, guard: Guard, steps: Sequence[plateau.Step]) -> Iterator[Candidate]:
+        """Try the steps of `plateau` under a guard while no unit gains reward."""
+        for factor, before in () if self.proposed else steps:
             if self.gains.anything():
                 return
             yield from self._all(factor, guard, plateau.among(before, self.units, self.gains, guard))
 
-    def _inside_far_gains(self, guard: Guard) -> Iterator[Candidate]:
-        """Try inward steps (see `plateau`) once under a guard while a large change gains most."""
-        if self.proposed or guard in self._inside or not plateau.best_is_far(self.gains, guard):
+    def _inward(self, guard: Guard) -> Iterator[Candidate]:
+        """Try inward steps (see `plateau`) once under a guard while only large or weak changes gain."""
+        if self.proposed or guard in self._inside or not self._only_far_or_weak(guard):
             return
         self._inside.add(guard)
         matter, steps = plateau.inward(self.units, self.gains)
         for factor in steps:
-            if not plateau.best_is_far(self.gains, guard):
+            if not self._only_far_or_weak(guard):
                 return
             yield from self._all(factor, guard, matter)
+
+    def _only_far_or_weak(self, guard: Guard) -> bool:
+        far = plateau.best_is_far(self.gains, guard)
+        return far or plateau.best_is_weak(self.gains, guard, self.goal.wanted)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
@@ -183,11 +186,12 @@ class Sweep:
             yield from self._strengthened(guard, moving)
         for factor in (FLIP, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
+        yield from self._across_a_plateau(guard, plateau.STEPS[:2])
         yield from self._narrow(guard, moving)
         for factor, before in () if self.gains.anything() else FURTHER:
             leading = self._leading(before, guard, self.goal.wanted * HINT)
             yield from self._all(factor, guard, leading[:LEADING])
-        yield from self._inside_far_gains(guard)
+        yield from self._inward(guard)
         yield from self.combining.leaders(guard)
         yield from self.combining.unmasked(guard)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf, log
 
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.patching.charts import Chart
@@ -52,6 +53,15 @@ def charted(plain: Sequence[Unit], charts: Mapping[Operand, Chart]) -> tuple[Uni
         if chart is not None and all(charts.get(one) == chart for one in unit.operands):
             found.append(Unit(unit.operands, chart))
     return tuple(found)
+
+
+def change_size(unit: Unit, factor: float) -> float:
+    """Return the size of a change: |log(new value / old value)|, infinite for a changed sign or an old value of 0."""
+    value = unit.operands[0].value
+    by: float | None = factor
+    if unit.chart is not None and value is not None:
+        by = unit.chart.factor(float(value), factor)
+    return abs(log(by)) if by is not None and by > 0.0 and value != 0 else inf
 
 
 def whole_constants(apart: Sequence[Unit]) -> tuple[Unit, ...]:

@@ -16,9 +16,9 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.gains import Gains
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
-from pytest_tarl.searching.smaller import EPISODES, ONWARD, onward, size, smaller
+from pytest_tarl.searching.smaller import EPISODES, ONWARD, onward, smaller
 from pytest_tarl.searching.sweep import Sweep
-from pytest_tarl.searching.units import Unit
+from pytest_tarl.searching.units import Unit, change_size
 from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
 
@@ -101,9 +101,9 @@ def test_only_named_constants_that_matter_are_changed_and_by_much_less() -> None
 
 def test_the_size_of_a_change_is_that_of_the_value() -> None:
     share = named(3, "SHARE", 0.95)
-    assert size(Unit((share,)), 0.5) == pytest.approx(math.log(2.0))
-    assert size(Unit((share,), SHARE), 5.0) == pytest.approx(math.log(0.99 / 0.95))
-    assert size(Unit((share,)), -1.0) == size(Unit((named(3, "START", 0.0),)), 2.2) == math.inf
+    assert change_size(Unit((share,)), 0.5) == pytest.approx(math.log(2.0))
+    assert change_size(Unit((share,), SHARE), 5.0) == pytest.approx(math.log(0.99 / 0.95))
+    assert change_size(Unit((share,)), -1.0) == change_size(Unit((named(3, "START", 0.0),)), 2.2) == math.inf
 
 
 def test_a_small_step_that_earns_nearly_enough_is_moved_a_little() -> None:
