@@ -88,8 +88,8 @@ def _confidence(where: str, arguments: Mapping[str, Any]) -> float | None:
     confidence = float(number_within(where, "confidence", value, float, 0.5, 1 - 1e-9))
     if arguments.get("min_success", 1.0) >= 1:
         raise SettingsError(
-            f"{where}: confidence={value!r} needs a min_success below 1, because no number of successful missions "
-            "shows that all succeed. Set for example min_success=0.99."
+            f"{where}: confidence={value!r} needs a min_success below 1, because no number of successful "
+            "missions proves that every mission succeeds. Set for example min_success=0.99."
         )
     return confidence
 

@@ -22,8 +22,8 @@ ROS_KINDS = ("embedded", "real", "auto")
 MOST_EPISODES = 10**6  # upper limit of --tarl-budget
 FEWEST_SHARED = 10  # lower limit of --tarl-total
 _NOT_SHARED = {
-    "episodes": "the first is the number for all comparisons together, the second for each",
-    "repair": "a repair is searched during its test. Compare first, then repair the degraded tests",
+    "episodes": "the first is the number for all comparisons together, the second for each one",
+    "repair": "the search for a repair runs during its test. Compare first, then repair the degraded tests",
     "holm": "Holm's method needs smaller p-values than those at which a comparison may end early",
     "log": "the number of recorded missions is fixed",
     "bag": "the number of recorded missions is fixed",
@@ -164,10 +164,11 @@ def _check_total(given: Mapping[str, Any]) -> None:
         raise SettingsError("--tarl-total needs --tarl-online: only comparisons share episodes.")
     for other, reason in _NOT_SHARED.items():
         if given[other]:
-            raise SettingsError(f"--tarl-total and --tarl-{other} exclude each other: {reason}.")
+            raise SettingsError(f"--tarl-total and --tarl-{other} cannot be used together: {reason}.")
     if given["looks"] == 1:
         raise SettingsError(
-            "--tarl-total needs at least two looks, since episodes are shared out again after each look: raise "
+            "--tarl-total needs at least two looks, since the remaining episodes are distributed anew "
+            "after each look: raise "
             "--tarl-looks, or remove it."
         )
 
@@ -196,7 +197,7 @@ def _check_modes(given: Mapping[str, Any]) -> None:
             "--tarl-resume."
         )
     if given["record"] and given["online"]:
-        raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
+        raise SettingsError("--tarl-record and --tarl-online need separate runs: record first, then compare.")
     if given["repair"] and not (given["online"] or given["stress"]):
         raise SettingsError(
             "--tarl-repair needs --tarl-online or --tarl-stress, which find the failures to repair."
@@ -205,8 +206,9 @@ def _check_modes(given: Mapping[str, Any]) -> None:
         raise SettingsError("--tarl-holm needs --tarl-online: only verdicts of comparisons are corrected.")
     if given["holm"] and given["repair"]:
         raise SettingsError(
-            "--tarl-holm and --tarl-repair are two runs: verdicts are corrected after all tests, but a repair is "
-            "searched during its test. Compare with --tarl-holm first, then repair the degraded tests."
+            "--tarl-holm and --tarl-repair need separate runs: verdicts are corrected after all tests, "
+            "but the search for a repair runs during its test. Compare with --tarl-holm first, then "
+            "repair the degraded tests."
         )
 
 
@@ -215,7 +217,7 @@ def _check_stress(given: Mapping[str, Any]) -> None:
     other = next((name for name in ("record", "online") if given[name]), None)
     if other is not None:
         raise SettingsError(
-            f"--tarl-stress and --tarl-{other} are two runs: stress the test in one of its own."
+            f"--tarl-stress and --tarl-{other} need separate runs: stress the test in a run of its own."
         )
     stray = next((name for name in ("search", "localize", "log", "bag", "holm") if given[name]), None)
     if stray is not None:
@@ -264,7 +266,8 @@ def _log(given: Mapping[str, Any]) -> Path | None:
     for other in ("repair", "drift", "episodes"):
         if given[other]:
             raise SettingsError(
-                f"--tarl-log and --tarl-{other} exclude each other: a log cannot be run again. Model its world as a "
+                f"--tarl-log and --tarl-{other} cannot be used together: a log cannot be run again. Model "
+                "its world as a "
                 "drift scenario of the marker, and use that."
             )
     return Path(given["log"]).absolute()
@@ -286,7 +289,8 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
     for other in ("repair", "drift", "episodes", "log"):
         if given[other]:
             raise SettingsError(
-                f"--tarl-bag and --tarl-{other} exclude each other: a bag cannot be run again. Model its world as a "
+                f"--tarl-bag and --tarl-{other} cannot be used together: a bag cannot be run again. Model "
+                "its world as a "
                 "drift scenario of the marker, and use that."
             )
     if given["ros"] == "real":

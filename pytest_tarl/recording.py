@@ -148,8 +148,9 @@ def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[st
     between = f"{recorded.sample.total.std(ddof=1):.3g}" if recorded.sample.episodes > 1 else "unknown"
     note = (
         f"the simulator is not reproducible: two episodes with the same seed earned {once:.4g} and {twice:.4g}, "
-        f"{abs(once - twice):.3g} apart; the standard deviation over all episodes is {between}. It contains this "
-        "noise, so verdicts and bounds hold, but a smaller loss needs more episodes."
+        f"{abs(once - twice):.3g} apart; the standard deviation over all episodes is {between}. This "
+        "standard deviation includes the noise, so verdicts and bounds remain valid, but a smaller loss "
+        "needs more episodes."
     )
     return [note]
 
@@ -173,7 +174,7 @@ def detectable(totals: Floats) -> list[str]:
         return []
     note = (
         f"{totals.size} episodes: a comparison with the same number shows a loss of {amount(loss)} per episode in "
-        f"{100 * POWER:.0f} % of runs; for a loss half as large, record and compare {4 * totals.size}"
+        f"{100 * POWER:.0f} % of runs; to show half that loss, record and compare {4 * totals.size}"
     )
     return [note]
 

@@ -59,7 +59,7 @@ class TarlSession:
         ):
             what = "--tarl-holm corrects" if options.holm else "--tarl-total shares episodes"
             raise pytest.UsageError(
-                f"{what} over all tests of a run, but with -n no process knows them all: remove -n, and use "
+                f"{what} over all tests of a run, but with -n no process sees them all: remove -n, and use "
                 "--tarl-workers to run episodes in parallel."
             )
         self.config = config

@@ -95,8 +95,9 @@ def within(sample: Sample, declared: tuple[float, float] | None) -> None:
     for seed, total in zip(sample.seeds, sample.total.tolist(), strict=True):
         if not declared[0] <= total <= declared[1]:
             raise RecordingError(
-                f"An episode (seed {seed}) earned {total:.6g}, outside the marker's total_range={declared}: bounds "
-                "on the mean need every total inside. Widen it to the worst and best possible total, or remove it."
+                f"An episode (seed {seed}) earned {total:.6g}, outside the marker's "
+                f"total_range={declared}: bounds on the mean are valid only if every total is inside. "
+                "Widen it to the worst and best possible total, or remove it."
             )
 
 

@@ -136,7 +136,7 @@ def choice(options: tuple[Any, ...], usual: Any) -> Choice:
         raise SettingsError(f"Drift.choice needs at least two options, got {len(options)}.")
     found = [index for index, option in enumerate(options) if option is usual or _equal(option, usual)]
     if not found:
-        raise SettingsError(f"Drift.choice: the nominal value {usual!r} is none of {options!r}.")
+        raise SettingsError(f"Drift.choice: the nominal value {usual!r} is not one of {options!r}.")
     return Choice(options, found[0])
 
 

@@ -138,7 +138,7 @@ class _Once(argparse.Action):
         """Store the value."""
         if getattr(namespace, self.dest) is not None:
             parser.error(
-                f"{option} is given twice: run tarl-lint for each launch file, or for all with {option} all"
+                f"{option} is given twice: run tarl-lint once for each launch file, or use {option} all"
             )
         setattr(namespace, self.dest, values)
 
@@ -148,7 +148,8 @@ def _add_system(group: argparse._ArgumentGroup) -> None:
         "--launch",
         action=_Once,
         metavar="FILE",
-        help="analyse the nodes of a launch file as one system, its arguments as NAME:=VALUE; all: each launch file",
+        help="analyse the nodes of a launch file as one system; give its arguments as NAME:=VALUE; all analyses "
+        "every launch file",
     )
     group.add_argument(
         "--from",
@@ -229,7 +230,7 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--fail-on",
         choices=FAIL_ON,
-        help="fail never, on new hazards, also on new explicit flows (default), or also on new implicit ones",
+        help="exit with 1 never, on new hazards, also on new explicit flows (default), or also on new implicit ones",
     )
     group.add_argument(
         "--exit-zero", action="store_true", help="exit with 0 even if there are findings; overrides --fail-on"

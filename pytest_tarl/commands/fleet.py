@@ -135,7 +135,7 @@ def _ingested(arguments: argparse.Namespace, replays: Replays | None) -> int:
             print(printable(f"tarl: {one.problem}"), file=sys.stderr)
             continue
         found += one.missions
-        known = f", {one.known} were there already" if one.known else ""
+        known = f", {one.known} were already in the data set" if one.known else ""
         unjudged = f", {one.unjudged} not judged by every formula" if one.unjudged else ""
         print(printable_line(f"  {one.log}: {one.missions} missions of {one.robot}{known}{unjudged}"))
         for note in one.notes:

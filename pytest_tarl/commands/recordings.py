@@ -39,8 +39,8 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
         "second",
         nargs="?",
         help=(
-            "the same for the second one; without it, .tarl/margins is compared with the margins at the revision "
-            "FIRST"
+            "the second recording, margins or revision; if omitted, .tarl/margins is compared with the "
+            "margins at the revision FIRST"
         ),
     )
     diff.add_argument(
@@ -48,7 +48,7 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
         action="store_true",
         help=(
             "exit with 1 if the second recording earns significantly less or succeeds significantly less often, or "
-            "if the second margins fail significantly nearer to nominal"
+            "if a failure boundary of the second margins is significantly nearer to the nominal point"
         ),
     )
     diff.add_argument(
@@ -70,7 +70,7 @@ def add_diff(commands: argparse._SubParsersAction[Parser]) -> None:
         "--format",
         choices=("text", "markdown"),
         default="text",
-        help="of margins: text (default) or Markdown",
+        help="format of a comparison of margins: text (default) or Markdown",
     )
     diff.set_defaults(run=_diff)
 

@@ -46,7 +46,7 @@ def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
         type=Path,
         help="the recording whose sensors are observed; found automatically if there is one",
     )
-    flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
+    flag("--module", type=Path, action="append", default=[], help="another file of the node; repeatable")
     flag(
         "--reward-topic",
         default="",

@@ -110,7 +110,7 @@ def repair_of(name: str) -> str:
         return name.strip()
     if not Path(name).is_file():
         raise SettingsError(
-            f"{name}: no such patch. Name a file of .tarl/patches, or the repair, with --repair."
+            f"{name}: no such patch. Give --repair a file of .tarl/patches or the name of a repair."
         )
     return Path(name).stem
 

@@ -135,7 +135,7 @@ def _stated(before: Guarantee | None, whole: Sample) -> Guarantee | None:
 def lines(to: Path, recording: Fixture, parts: Sequence[Part]) -> Iterator[str]:
     """Yield lines that say what was merged."""
     for one in parts:
-        known = f", {one.known} of them counted before" if one.known else ""
+        known = f", {one.known} of them already counted" if one.known else ""
         yield f"  {one.path}: {one.episodes} episodes{known}"
     sample = recording.sample
     yield f"{to}: {sample.episodes} episodes of {recording.test}, {len(sample.cells)} cells"

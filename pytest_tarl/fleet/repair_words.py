@@ -16,7 +16,8 @@ WHY = {
 def lines(effects: Sequence[Effect], accepted: Mapping[str, str]) -> Iterator[str]:
     """Yield a line for each repair and group: the difference between missions with and without the repair."""
     yield (
-        "Repairs, against missions without a repair at the same site in the same week (intervals hold together at "
+        "Repairs, against missions without a repair at the same site in the same week (simultaneous "
+        "intervals at "
         f"{100 * (1 - ALPHA):g} %)"
     )
     for one in effects:

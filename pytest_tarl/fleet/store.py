@@ -77,7 +77,8 @@ class Store:
 
 
 ADVICE = (
-    "check the address, the connection and your credentials, and run the command again; nothing counts twice."
+    "check the address, the connection and your credentials, and run the command again; no mission is "
+    "counted twice."
 )
 
 
@@ -89,7 +90,9 @@ def store(address: str) -> Store:
     try:
         fs, root = fsspec.core.url_to_fs(address)
     except ImportError as problem:
-        command = install_command("s3") if address.startswith("s3:") else "install the package that it names"
+        command = (
+            install_command("s3") if address.startswith("s3:") else "install the package that the error names"
+        )
         raise FleetError(f"{address} cannot be opened ({problem}): {command}.") from problem
     except Exception as problem:  # each store raises its own exceptions
         raise FleetError(f"{address} cannot be opened ({problem}): {ADVICE}") from problem

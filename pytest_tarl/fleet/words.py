@@ -34,7 +34,7 @@ def lines(answer: Answer) -> Iterator[str]:
     for one in found.drifted[:NAMED]:
         yield _robot(one, one.world, one.status.world if one.status else None, words)
     sure = " plus the risk that a recorded bound is wrong"
-    yield from _named(answer, found.below, "missions are below a recorded bound", sure)
+    yield from _named(answer, found.below, "missions fall below a recorded bound", sure)
     for one in found.below[:NAMED]:
         yield _robot(one, one.bound, lower(one.status) if one.status else None, words)
     yield from _clusters(answer, words)

@@ -85,7 +85,7 @@ def tree(text: str, names: Sequence[str]) -> Any:
     except (ValueError, KeyError, RecursionError) as problem:
         raise ReadingError(f"{problem}".strip("'") or "it is nested too deeply") from None
     if len(ast.specs) != 1:
-        raise ReadingError("it holds more than one formula: join them with and, or list them one by one")
+        raise ReadingError("it holds more than one formula: join them with `and`, or list them separately")
     return _connected(ast.specs[0])
 
 
@@ -127,7 +127,8 @@ def _connected(node: AbstractNode) -> Any:
     """Check a tree, and replace iff and xor by other connectives. Raise ReadingError."""
     if isinstance(node, COUNTING):
         raise ReadingError(
-            "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "
+            "next, prev, rise and fall count samples, but steps may differ in length: give a time in "
+            "seconds, such as "
             "eventually[0:0.1] (…)"
         )
     if isinstance(node, (Iff, Xor)):
@@ -154,7 +155,7 @@ def _check(node: Any) -> None:
 def _numeric(node: Any) -> Any:
     """Return the atom. Raise ReadingError if the atom compares formulas or names no signal."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
-        raise ReadingError("it compares or computes with a formula: only numbers can be compared")
+        raise ReadingError("it uses a formula as a number: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):
         raise ReadingError("a part of it names no signal, so its value could never change")
     return node

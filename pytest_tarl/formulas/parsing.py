@@ -52,7 +52,8 @@ def require_rtamt(where: str) -> None:
     if sys.version_info[:2] > NEWEST:
         raise SettingsError(
             f"{where}: formulas need rtamt, which runs on Python 3.10 to 3.12; this is Python "
-            f"{sys.version_info[0]}.{sys.version_info[1]}: run these tests there, or judge by tarl.reward and assert."
+            f"{sys.version_info[0]}.{sys.version_info[1]}: run these tests on one of these versions, or "
+            "use tarl.reward and assert in place of formulas."
         )
     if find_spec("rtamt") is None:
         raise SettingsError(
@@ -103,11 +104,12 @@ def _unknown(name: str, names: Sequence[str], said: Said) -> str:
     first = name.partition(".")[0]
     if said.computed:
         return (
-            f"{name!r}, which is not a signal ({told}): the test computes names of tarl.observe, so TARL cannot read "
-            f"them from its source; declare this one in the marker, signals=[{first!r}]."
+            f"{name!r}, which is not a signal ({told}): the test computes the names that it passes to "
+            "tarl.observe, so TARL cannot read them from its source; declare this one in the marker, "
+            f"signals=[{first!r}]."
         )
     return (
         f"{name!r}, which is not a signal ({told}): it is not a sensor, and no tarl.observe in the test's modules "
-        f"sets it. Give its value by tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, "
+        f"sets it. Set it with tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, "
         f"topic=…, field=…)]; if another module observes it, declare it, signals=[{first!r}]."
     )

@@ -112,7 +112,7 @@ def signal_value(name: str, value: Any) -> float:
     if number is None:
         raise SettingsError(
             f"The signal {name!r} got {value!r}, which is not a number: formulas compare numbers and booleans. "
-            "Convert it by a function of the message: Signal(…, field=lambda message: …)."
+            "Convert it with a function of the message: Signal(…, field=lambda message: …)."
         )
     return number
 

@@ -37,12 +37,13 @@ class Expected:
         if [*names] != [*self.sensors]:
             return (
                 f"{path} was written with the sensors {', '.join(map(str, names))}, but the recording of {self.test} "
-                f"has {', '.join(self.sensors)}: its missions are not counted. Name the one it was written for."
+                f"has {', '.join(self.sensors)}: its missions are not counted. Name the recording for "
+                "which it was written."
             )
         if start.get("test", self.test) != self.test:
             return (
                 f"{path} was written for the recording of {start['test']}, not of {self.test}: its missions are not "
-                "counted. Name the one it was written for."
+                "counted. Name the recording for which it was written."
             )
         if start.get("bins", self.digest) != self.digest:
             return (

@@ -210,9 +210,7 @@ def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str 
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:
             line = text.count("\n", 0, edit.start) + 1
-            raise RepairError(
-                f"{path}:{line}: two changes to this code exclude each other: choose one of them."
-            )
+            raise RepairError(f"{path}:{line}: two changes to this code conflict: choose one of them.")
         written = edit.text.replace("\r\n", "\n").replace("\n", newline)
         pieces += [text[position : edit.start], written]
         position = edit.end

@@ -49,7 +49,8 @@ def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
 def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
     if not path.is_relative_to(project) or ".git" in path.relative_to(project).parts:
         raise RefusedError(
-            f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if this is intended, name "
+            f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if "
+            "this is intended, name "
             "the folder with --directory."
         )
 

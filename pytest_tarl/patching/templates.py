@@ -92,7 +92,9 @@ def template(path: Path) -> Template:
     data = contents(path)
     unknown = sorted(data.keys() - _KEYS)
     if unknown:
-        raise SettingsError(f"{path}: a template has no {unknown[0]!r}; it has {', '.join(sorted(_KEYS))}.")
+        raise SettingsError(
+            f"{path}: a template has no key {unknown[0]!r}; its keys are {', '.join(sorted(_KEYS))}."
+        )
     try:
         parameters = tuple(
             Parameter(

@@ -99,7 +99,8 @@ class ServiceCalls:
             if not self._arrival.wait_for(lambda: len(self._arrived) >= self._on_wire, PATIENCE):
                 raise RecordingError(
                     f"A service call or its answer did not arrive within {PATIENCE:g} s: check that processes "
-                    "on this machine can communicate through 127.0.0.1, and that a node of the test serves it."
+                    "on this machine can communicate through 127.0.0.1, and that a node of the test "
+                    "offers the service."
                 )
             arrived, self._arrived = sorted(self._arrived, key=lambda one: one.order), []
         self._on_wire -= len(arrived)

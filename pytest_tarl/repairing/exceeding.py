@@ -29,8 +29,8 @@ def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> 
             earned, before = (sum(one) / len(one) for one in (totals[world], designed))
             told = (
                 f"{place} the repaired node earns {amount(earned)}, more than the {amount(before)} of the recording: "
-                "the repair does more than undo the drift. If it should not, add what it overdoes, such as speed or "
-                "force, to the reward."
+                "the repair does more than undo the drift. If this is not wanted, let the reward also "
+                "count what the repair exceeds, such as speed or force."
             )
             return [told]
     return []

@@ -28,9 +28,11 @@ def ranking_confidence(
     )
     held = len(accepted.acceptance.drifted) if accepted else 0
     if len(places) > 1:
-        first = f"the first {len(places)} were repaired together, which held on {held} fresh seeds"
+        first = (
+            f"the first {len(places)} were repaired together; the repair was confirmed on {held} fresh seeds"
+        )
     elif places:
-        first = f"the repair of the first held on {held} fresh seeds"
+        first = f"the repair of the first was confirmed on {held} fresh seeds"
     else:
         first = "no accepted repair confirms the first"
     if ranking is None:
@@ -45,7 +47,7 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     found = ranking.certainty(first) if len(places) < 2 else None
     if found is None:
         return f"{len(effects)} lines were simulated alone, with every factor"
-    told = f"{found.gaining} of {len(effects)} lines with constants gain anything alone"
+    told = f"{found.gaining} of {len(effects)} lines with constants gain reward when changed alone"
     if found.by is None:
         return told
     low, high = found.by

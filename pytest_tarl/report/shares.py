@@ -36,7 +36,7 @@ def sentence(share: Share) -> str:
 
 def _end(share: Share) -> str:
     if share.decided:
-        return "decided" if share.missing is None else "decided, so others can have the rest"
+        return "decided" if share.missing is None else "decided, so the rest go to the others"
     if share.missing is None:
         return "undecided after its last look"
     return f"undecided, but its next look needs {share.missing} more episodes, and only {share.left} are left"

@@ -148,8 +148,8 @@ class Bus:
     def _own_services(self, what: str) -> ServiceDirectory:
         if self._services is None:
             raise UnsupportedApiError(
-                f"tarl.bus.{what} works with --tarl-ros=embedded only: on a real ROS let a small node of the test "
-                "call or answer the service."
+                f"tarl.bus.{what} works with --tarl-ros=embedded only: on a real ROS, start a small node "
+                "in the test that calls or offers the service."
             )
         return self._services
 

@@ -77,7 +77,7 @@ class Ros(Network):
         if not running:
             which = "no node is running" if node is None else f"no running node is called {node!r}"
             raise SettingsError(
-                f"tarl.type: {which}. Start it first; the name is that of tarl.start or of the node."
+                f"tarl.type: {which}. Start it first; use the name given to tarl.start, or the node's own name."
             )
         for process in running:
             process.part(Terminal).type(text)
@@ -182,7 +182,8 @@ class Ros(Network):
         """Call a function that lets nodes run, under the watchdog; raise the nodes' errors."""
         if running_task() is not None:
             raise NodeError(
-                "A node called into the episode that runs it: step(), start() and close() belong to the test."
+                "A node called step(), start() or close() of the episode that runs it: only the test may "
+                "call them."
             )
         scheduler = self.scheduler
         WATCHDOG.arm(self.watchdog_limit)

@@ -122,7 +122,7 @@ def launch_path(file: str, folder: Path, where: str = "tarl.launch") -> Path:
         return path
     root = workspace_root(folder.resolve())
     if root is None:
-        raise SettingsError(f"{where}: {file}: no such file in {folder}, which is in no ROS workspace.")
+        raise SettingsError(f"{where}: {file}: no such file in {folder}, which is not in a ROS workspace.")
     search(folder)
     try:
         return launch_file(file, _around(folder.resolve()) or Workspace(root), str(root))

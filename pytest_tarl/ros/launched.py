@@ -155,8 +155,8 @@ def _of_setting(setting: Setting, full_name: str) -> Iterator[Stated]:
         yield from stated((setting,), full_name)
     except NoYamlError:
         raise SettingsError(
-            f"{setting.file} has parameters of the node, and reading them needs PyYAML: run pip install PyYAML, or "
-            "say tarl.start(…, launch=False)."
+            f"{setting.file} has parameters of the node, and reading them needs PyYAML: run pip install "
+            "PyYAML, or call tarl.start(…, launch=False)."
         ) from None
     except UnreadableError as reason:
         raise SettingsError(f"{setting.file}: {reason}") from None

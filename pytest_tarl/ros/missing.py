@@ -30,7 +30,8 @@ def _sentence(api: str) -> str:
         return f"{api} is not in the in-process ROS, {advice}"
     return (
         f"{api} is not in the in-process ROS yet: give the node a small stand-in for it in your test (monkeypatch "
-        "the call, or put a module of that name into sys.modules), or drive the node through the parts that are there."
+        "the call, or put a module of that name into sys.modules), or drive the node only through the "
+        "parts that exist."
     )
 
 

@@ -30,7 +30,7 @@ def absolute(name: str) -> str:
 def given_name(name: object) -> str:
     """Return the absolute form of a name that a test gives. Raise RecordingError if it is not a string."""
     if not isinstance(name, str):
-        raise RecordingError(f"The name of a topic or service must be a text, not {name!r}.")
+        raise RecordingError(f"The name of a topic or service must be a string, not {name!r}.")
     return absolute(name)
 
 

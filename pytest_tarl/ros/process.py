@@ -178,8 +178,9 @@ class Process:
     def spins(self, place: blame.Place | None) -> NodeError:
         """Return the error for a node that never waits."""
         return StuckNodeError(
-            f"Node {self.label!r} never waits: {WATCHDOG.hanging(self.ros.watchdog_limit)} went by while virtual "
-            f"time stood still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in "
+            f"Node {self.label!r} never waits: {WATCHDOG.hanging(self.ros.watchdog_limit)} passed while "
+            f"virtual time stood still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a "
+            "spin function in "
             "that loop."
         )
 
@@ -227,6 +228,7 @@ def current_process(api: str) -> Process:
         return process
     raise UnsupportedApiError(
         f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS "
-        "answers only to programs that were started with tarl.start(…), in their own thread. In the test itself use "
+        "serves only programs started by tarl.start(…), and each only in the thread in which it was "
+        "started. In the test itself use "
         "tarl.bus and tarl.step."
     )

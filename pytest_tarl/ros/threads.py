@@ -78,7 +78,8 @@ class Lock:
                 return False
             if task is None:
                 raise RuntimeError(
-                    "The test waits for a lock that a waiting node holds, which never ends: call tarl.step first."
+                    "The test waits for a lock held by a node that is itself waiting, so neither can "
+                    "continue: call tarl.step first."
                 )
             self._waiting.append(task)
             clock.wait(until)

@@ -37,7 +37,7 @@ def deliver(request: Request, root: Path) -> Delivered:
         before = _replayed(request, memory)
     except KeyboardInterrupt:
         return Delivered(
-            (f"{request.fixture.test}[{request.drift}]: interrupted, nothing is known.",), "", True
+            (f"{request.fixture.test}[{request.drift}]: interrupted before any result.",), "", True
         )
     found = stress(request)
     told = (

@@ -96,7 +96,7 @@ def together(stress: Stress) -> Iterator[str]:
         where = of_point(stress.space, stress.nearer.point)
         yield f"Probably already fails with {where} (distance {stress.nearer.distance:.2g}); this is not confirmed."
     elif not found and stress.tried:
-        yield f"No combination was found that fails although each direction alone holds ({stress.tried} tried)."
+        yield f"No combination was found that fails although each of its changes alone passes ({stress.tried} tried)."
 
 
 def _alone(stress: Stress, one: Failure) -> str:
@@ -191,7 +191,9 @@ def undecided_promises(stress: Stress) -> list[str]:
         places = [t for t in curve.failing if _promised(stress, failure(stress.space, curve.ray.point(t)))]
         if places and curve.confirmed is None:
             told = of_point(stress.space, curve.ray.point(places[0]))
-            found.append(f"Undecided: {told} is inside and suspicious, but no failure was confirmed.")
+            found.append(
+                f"Undecided: {told} is within must_hold and suspicious, but no failure was confirmed."
+            )
     return found
 
 
@@ -281,7 +283,7 @@ def _option(curve: Curve) -> str:
     if curve.confirmed is not None:
         return f"Fails with {name}={option!r}."
     if curve.failing:
-        return f"No failure confirmed with {name}={option!r}, which is suspicious."
+        return f"No failure confirmed with {name}={option!r}, but the option is suspicious."
     if curve.held is not None:
         return f"No failure found with {name}={option!r}; the guarantee holds ({SURE})."
     return f"{'No failure found' if curve.swept else 'Not examined'} with {name}={option!r}."

@@ -1,4 +1,4 @@
-"""TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
+"""TARL301: a subscription has no publisher, and a publisher with a similar name has no subscriber.
 
 The two ends were probably meant to be connected. The types of both ends are equal, and the names differ only
 by a namespace (`/cmd_vel` and `/robot/cmd_vel`) or by one letter. The robot starts without an error and does
@@ -22,7 +22,7 @@ from tarl_lint.system.hazards import at_end, single, spelled_alike
 from tarl_lint.system.model import System
 
 CODE: Final = "TARL301"
-SUMMARY: Final = "a subscription has no publisher, but a publisher with nearly its name has no subscriber"
+SUMMARY: Final = "a subscription has no publisher, and a publisher with a similar name has no subscriber"
 
 INVALID: Final = (
     """

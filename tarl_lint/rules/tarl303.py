@@ -1,4 +1,4 @@
-"""TARL303: the quality of service of a subscription asks for more than its publisher offers.
+"""TARL303: a subscription requests a stricter quality of service than its publisher offers.
 
 ROS 2 does not connect a subscription that asks for `RELIABLE` with a publisher that offers `BEST_EFFORT`, nor one
 that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. If the code gives a
@@ -20,7 +20,7 @@ from tarl_lint.system.hazards import at_end
 from tarl_lint.system.model import Endpoint, System
 
 CODE: Final = "TARL303"
-SUMMARY: Final = "the quality of service of a subscription asks for more than its publisher offers"
+SUMMARY: Final = "a subscription requests a stricter quality of service than its publisher offers"
 
 INVALID: Final = (
     """

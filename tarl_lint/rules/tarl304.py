@@ -1,4 +1,4 @@
-"""TARL304: a service that is called has no server, but a server with nearly its name is never called.
+"""TARL304: a service that is called has no server, and a server with a similar name is never called.
 
 The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
 service `~home` of the node `arm` is `/arm/home`, not `/home`. The rule reports nothing if a node of the launch file
@@ -17,7 +17,7 @@ from tarl_lint.system.hazards import at_end, single, spelled_alike
 from tarl_lint.system.model import System
 
 CODE: Final = "TARL304"
-SUMMARY: Final = "a service that is called has no server, but a server with nearly its name is never called"
+SUMMARY: Final = "a service that is called has no server, and a server with a similar name is never called"
 
 INVALID: Final = (
     """

@@ -1,4 +1,4 @@
-"""TARL306: a loop goes on publishing commands when its messages stop.
+"""TARL306: a loop continues to publish commands after its messages stop.
 
 A callback stores what it receives. A loop or timer computes a command from the stored value and publishes it
 again and again. If the messages stop because a sensor hangs, a cable breaks or a node crashes, the robot
@@ -22,7 +22,7 @@ from tarl_lint.model import Finding
 from tarl_lint.system.model import System
 
 CODE: Final = "TARL306"
-SUMMARY: Final = "a loop goes on publishing commands when its messages stop"
+SUMMARY: Final = "a loop continues to publish commands after its messages stop"
 
 INVALID: Final = (
     """
@@ -132,7 +132,7 @@ def findings(system: System) -> Iterator[Finding]:
             if flow is None or not (flow.source.topics and flow.sink.topics):
                 continue
             source, sink = (", ".join(map(instance.resolve, end.topics)) for end in (flow.source, flow.sink))
-            message = f"{instance.name} goes on publishing {sink} ({flow.sink.type}) when {source} stops"
+            message = f"{instance.name} continues to publish {sink} ({flow.sink.type}) after {source} stops"
             about = f"{topic_text(flow.sink.topics)} after {topic_text(flow.source.topics)}"
             package = instance.interface.package if instance.interface is not None else ""
             yield Finding(

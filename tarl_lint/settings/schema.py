@@ -44,7 +44,7 @@ def check_pattern(pattern: str) -> str:
     """Return a pattern. Raises ValueError for a pattern with backslashes, which would match nothing."""
     if re.search(r"\\(\w|$)", pattern):
         meant = pattern.replace("\\", "/")
-        raise ValueError(f"{pattern!r} has backslashes: patterns are written as in .gitignore: {meant!r}.")
+        raise ValueError(f"{pattern!r} has backslashes: write it with slashes, as in .gitignore: {meant!r}.")
     return pattern
 
 
@@ -140,7 +140,10 @@ KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
     ),
     "follow-installed": (_packages, 'a list of packages that are installed, such as ["robot_base"]'),
     "python": (_text, 'the virtual environment that holds them, such as ".venv"'),
-    "remaps": (_remaps, 'a table of topics as written and as they are, such as {"scan" = "/front/scan"}'),
+    "remaps": (
+        _remaps,
+        'a table from topics in the code to topics on the robot, such as {"scan" = "/front/scan"}',
+    ),
     "tf2": (_switch, "true or false"),
     "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
 }

@@ -29,7 +29,7 @@ def _fact(wrapper: Wrapper) -> Fact:
     known = {name: fact for name, fact in every if fact.kind in KINDS}
     if wrapper.like not in known:
         raise ConfigError(
-            f"The wrapper {wrapper.name!r} is like {wrapper.like!r}, which cannot be wrapped"
+            f"The wrapper {wrapper.name!r} has like = {wrapper.like!r}, which cannot be wrapped"
             f"{suggestion(wrapper.like, known)} It can be like {', '.join(sorted(known))}."
         )
     fact = known[wrapper.like]

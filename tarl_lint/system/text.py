@@ -42,7 +42,7 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
         for chain in found:
             yield from _chain(chain, view)
         if more:
-            yield (("  … and more: name their ends with --from and --to.", "quiet"),)
+            yield (("  … and more: select them with --from and --to.", "quiet"),)
     else:
         yield ((_nothing(system, origin, target), ""),)
     yield from _findings(system)

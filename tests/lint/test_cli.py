@@ -132,7 +132,7 @@ def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys
         (["--explain", "TARL10"], "TARL10 stands for TARL101, TARL102, TARL103: name one of them."),
         (["--explain", "TARL1O1"], "There is no rule 'TARL1O1': did you mean 'TARL101'?"),
         (["--jobs", "0"], "--jobs: '0' is not a number of processes: write 1 or more, or auto."),
-        (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: patterns are written as in"),
+        (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: write it with slashes, as in"),
     ],
 )
 def test_unusable_input_is_reported_in_one_sentence_with_exit_code_2(node, capsys, arguments, sentence):

@@ -72,7 +72,7 @@ def test_a_wrapper_names_an_unknown_key():
 
 @pytest.mark.parametrize(("pattern", "meant"), [("a\\b", "a/b"), ("a\\b\\", "a/b/"), ("\\", "/")])
 def test_a_pattern_with_backslashes_is_refused(pattern, meant):
-    with pytest.raises(ValueError, match=f"patterns are written as in .gitignore: '{meant}'"):
+    with pytest.raises(ValueError, match=f"write it with slashes, as in .gitignore: '{meant}'"):
         check_pattern(pattern)
     with pytest.raises(ValueError, match="has backslashes"):
         KEYS["per-file-ignores"][0]({pattern: ["TARL1"]})

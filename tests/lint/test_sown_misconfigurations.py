@@ -97,7 +97,7 @@ SOWN: dict[str, tuple[str, str, list[Edit]]] = {
         [(BRINGUP, PLANNED, PLANNED + SECOND + PLANNED)],
     ),
     "a planner drives on when it hears nothing": (
-        "TARL306", "/scout/planner goes on publishing /scout/cmd_vel_raw (Twist) when /scout/obstacles stops",
+        "TARL306", "/scout/planner continues to publish /scout/cmd_vel_raw (Twist) after /scout/obstacles stops",
         [(PLANNER, "        self.heard = self.get_clock().now()\n", ""),
          (PLANNER, "        age = (self.get_clock().now() - self.heard).nanoseconds / 1e9\n", ""),
          (PLANNER, " and age < 0.5", "")],

@@ -137,7 +137,7 @@ def test_many_comparisons_get_as_many_permutations_as_holm_needs(drifting: pytes
 
 @pytest.mark.parametrize(
     ("other", "said"),
-    [("--tarl-repair", "--tarl-repair are two runs"), ("-n2", "with -n no process knows them all")],
+    [("--tarl-repair", "--tarl-repair need separate runs"), ("-n2", "with -n no process sees them all")],
 )
 def test_a_run_that_cannot_be_corrected_says_so(drifting: pytest.Pytester, other: str, said: str) -> None:
     told = drifting.runpytest("--tarl-online", "--tarl-holm", other)

@@ -10,7 +10,7 @@ def test_few_episodes_show_only_large_losses() -> None:
     totals = np.random.default_rng(1).normal(0.0, 1.0, 20)
     (note,) = detectable(totals)
     assert note.startswith("20 episodes: a comparison with the same number shows a loss of 0.")
-    assert note.endswith("for a loss half as large, record and compare 80")
+    assert note.endswith("to show half that loss, record and compare 80")
     (scaled,) = detectable(1000.0 * totals)
     assert scaled != note
 

@@ -59,7 +59,7 @@ def test_an_undecided_comparison_gets_the_episodes_that_a_decided_one_did_not_ne
     told.stdout.fnmatch_lines(
         [
             f"*ran {episodes['clogged']} of the 80 episodes for 2 comparisons (an even share is 40):",
-            "*decided, so others can have the rest*",
+            "*decided, so the rest go to the others*",
             f"*ran {episodes['fine']} of the 80 episodes for 2 comparisons (an even share is 40):",
             "*undecided after its last look*",
         ]
@@ -105,7 +105,7 @@ def test_no_episode_runs_twice_and_no_finished_episodes_are_kept(sharing: pytest
     ("more", "words"),
     [
         ({"online": False}, "needs --tarl-online"),
-        ({"episodes": 30}, "exclude each other: the first is the number for all comparisons"),
+        ({"episodes": 30}, "cannot be used together: the first is the number for all comparisons"),
         ({"repair": True}, "Compare first, then repair"),
         ({"holm": True}, "Holm's method"),
         ({"log": "a.tarl"}, "number of recorded missions is fixed"),

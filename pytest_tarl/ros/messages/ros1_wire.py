@@ -41,7 +41,7 @@ def deserialize(kind: Any, data: bytes, find: Find) -> Any:
     try:
         message, end = _read_message(kind, data, 0, find)
     except (struct.error, UnicodeDecodeError) as problem:
-        raise WireError(f"the bytes are no {kind._type}: {problem}") from problem
+        raise WireError(f"the bytes are not a valid {kind._type}: {problem}") from problem
     if end != len(data):
         raise WireError(f"{len(data) - end} bytes are left after a {kind._type}")
     return message

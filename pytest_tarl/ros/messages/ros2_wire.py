@@ -58,11 +58,11 @@ def serialize(message: Any) -> bytes:
 def deserialize(data: bytes, kind: type[Any]) -> Any:
     """Return the message of class `kind` that the bytes encode. Raise ValueError unless they are little-endian CDR."""
     if bytes(data[:2]) != _HEADER[:2]:
-        raise ValueError("the bytes are no message in little-endian CDR")
+        raise ValueError("the bytes are not a message in little-endian CDR")
     try:
         return _Reader(memoryview(data)[4:]).message(kind)
     except (struct.error, IndexError, UnicodeDecodeError) as error:
-        raise ValueError(f"the bytes are no {kind.__name__}: {error}") from None
+        raise ValueError(f"the bytes are not a valid {kind.__name__}: {error}") from None
 
 
 def _write_message(out: bytearray, message: Any) -> None:
@@ -134,7 +134,7 @@ class _Reader:
             numbers = self._numbers(code, count)
             return [bytes([one]) for one in numbers] if base == "octet" else numbers
         if count > len(self._data):
-            raise IndexError(f"{count} elements in {len(self._data)} bytes")
+            raise IndexError(f"{count} elements do not fit {len(self._data)} bytes")
         return [self._one(base) for _ in range(count)]
 
     def _one(self, base: str) -> Any:
@@ -156,6 +156,6 @@ class _Reader:
 
     def _take(self, size: int) -> bytes:
         if self._at + size > len(self._data):
-            raise IndexError(f"{self._at + size} bytes wanted, {len(self._data)} there")
+            raise IndexError(f"expected {self._at + size} bytes, got {len(self._data)}")
         self._at += size
         return bytes(self._data[self._at - size : self._at])

@@ -23,7 +23,7 @@ def snapshot(message: Any, wanted: type | None = None) -> Any:
     own = type(message)
     if wanted is not None and wanted is not own:
         if type_name(wanted) != type_name(own):
-            raise FieldError(f"{type_name(own)} is another type than {type_name(wanted)}")
+            raise FieldError(f"its type is {type_name(own)}, not {type_name(wanted)}")
         return translate(message, wanted)
     copier = _COPIERS.get(own)
     if copier is None:

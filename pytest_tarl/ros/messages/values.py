@@ -67,7 +67,7 @@ def as_bool(value: Any, field: str) -> bool:
 def as_text(value: Any, field: str) -> str:
     """Return a string. Raise FieldError for other values."""
     if not isinstance(value, str):
-        raise FieldError(f"field {field!r} must be a text, not {value!r}")
+        raise FieldError(f"field {field!r} must be a string, not {value!r}")
     return value
 
 

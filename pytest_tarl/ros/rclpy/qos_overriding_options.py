@@ -116,4 +116,4 @@ def _read(field: str, value: Any) -> Any:
         return _ENUMS[field][str(value).upper()]
     except KeyError:
         known = ", ".join(one.lower() for one in _ENUMS[field].__members__ if not one.startswith("RMW"))
-        raise InvalidQosOverridesError(f"{value!r} is no {field}: it is one of {known}") from None
+        raise InvalidQosOverridesError(f"{value!r} is not a valid {field}: use one of {known}") from None

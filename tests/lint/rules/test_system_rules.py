@@ -204,7 +204,7 @@ def test_a_stale_command_names_both_ends_as_launched(example):
     unnamed = replace(stale, flow=replace(stale.flow, source=replace(example.source(), topics=())))
     made = Interface("n.py", stale=(stale, unnamed, replace(stale, flow=None)))
     assert messages(306, node("/n/a", interface=made, remaps=(("odom", "/o"),)), node("/b", unread=True)) == [
-        "/n/a goes on publishing /n/progress (Twist) when /o stops"
+        "/n/a continues to publish /n/progress (Twist) after /o stops"
     ]
 
 

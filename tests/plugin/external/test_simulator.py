@@ -127,7 +127,7 @@ def test_a_simulator_without_progress_hangs(guardian: Guardian, ros: Ros) -> Non
     made = begun(replace(SETUP, patience=0.05), guardian, ros)
     guardian.events.put(clock(2.5))
     with pytest.raises(
-        SimulatorLostError, match=r"hung at 2.5 s of its time: nothing new came within 0.05 s\."
+        SimulatorLostError, match=r"hung at 2.5 s of simulated time: nothing new came within 0.05 s\."
     ):
         made.advance(1.0)
 

@@ -146,7 +146,7 @@ def test_the_command_writes_a_recording_that_can_be_compared_and_merged(
     to = tmp_path / "fleet.npz"
     assert main(["merge", str(first), str(second), "--to", str(to)]) == 0
     out = capsys.readouterr().out
-    assert f"{second}: 2 episodes, 1 of them counted before" in out
+    assert f"{second}: 2 episodes, 1 of them already counted" in out
     assert out.endswith("4 episodes of test_node.py::test_it, 8 cells\n")
     assert load(to).sample.episodes == 4
 

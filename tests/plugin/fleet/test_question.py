@@ -239,7 +239,7 @@ def test_the_command_prints_its_report_and_has_the_documented_exit_status(
     data, result = str(folder / "data"), tmp_path / "fleet.json"
     assert main(["fleet", data, "--json", str(result), "--fail-if", "degraded"]) == 1
     out = capsys.readouterr().out
-    assert "1 of 4 robots: missions are below a recorded bound (false discovery rate at most 5 %" in out
+    assert "1 of 4 robots: missions fall below a recorded bound (false discovery rate at most 5 %" in out
     assert "r3: " in out
     told = json.loads(result.read_text())
     jsonschema.Draft202012Validator.check_schema(document.schema())

@@ -42,8 +42,8 @@ def test_a_fleet_without_alarms_is_reported_in_a_table_and_three_sentences() -> 
         "",
         "0 of 1 robot: missions differ from the recording (false discovery rate at most 10 %)",
         (
-            "0 of 1 robot: missions are below a recorded bound (false discovery rate at most 10 % plus the risk that a "
-            "recorded bound is wrong)"
+            "0 of 1 robot: missions fall below a recorded bound (false discovery rate at most 10 % plus the risk that "
+            "a recorded bound is wrong)"
         ),
         "",
         "note: ranges are one-sided bounds, each at 95 %; p is corrected for 1 group (Holm).",

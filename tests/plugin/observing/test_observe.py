@@ -136,7 +136,7 @@ def test_a_log_needs_online_mode(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("def test_nothing(): pass")
     for flags, says in (
         (["--tarl-log=x"], "*--tarl-log needs --tarl-online*"),
-        (["--tarl-online", "--tarl-repair", "--tarl-log=x"], "*exclude each other*"),
+        (["--tarl-online", "--tarl-repair", "--tarl-log=x"], "*cannot be used together*"),
     ):
         pytester.runpytest_inprocess(*flags).stderr.fnmatch_lines([says])
 

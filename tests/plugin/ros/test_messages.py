@@ -167,7 +167,7 @@ def test_ros1_arrays_arrive_as_tuples_and_bytes() -> None:
         ("std_msgs/Float64", {"data": "1.0"}, "must be a number"),
         ("std_msgs/Int8", {"data": 128}, "must lie within int8"),
         ("std_msgs/Int8", {"data": 1.0}, "must be an integer"),
-        ("std_msgs/String", {"data": 5}, "must be a text"),
+        ("std_msgs/String", {"data": 5}, "must be a string"),
         ("std_msgs/Bool", {"data": 0.5}, "must be a bool"),
         ("geometry_msgs/Twist", {"linear": 1.0}, "must be of type geometry_msgs/Vector3, not float"),
         ("geometry_msgs/PoseWithCovariance", {"covariance": [0.0]}, "must hold 36 values, not 1"),

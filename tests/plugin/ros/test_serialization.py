@@ -58,7 +58,7 @@ def test_the_bytes_are_those_of_rclpy() -> None:
 
 @pytest.mark.parametrize("data", ["", "00010000ffffffff", "000100000900000061", "00000000"])
 def test_bytes_that_are_no_message_are_refused(data: str) -> None:
-    with pytest.raises(ValueError, match="the bytes are no"):
+    with pytest.raises(ValueError, match="the bytes are not a"):
         deserialize(bytes.fromhex(data), message_type("std_msgs/msg/String"))
 
 

@@ -153,7 +153,7 @@ def test_a_name_that_is_no_text_and_a_listener_that_cannot_be_called_are_refused
         lambda: bus.call(None, TRIGGER.Request()),
         lambda: bus.serve(None, TRIGGER, print),
     ):
-        with pytest.raises(RecordingError, match=r"^The name of a topic or service must be a text, not "):
+        with pytest.raises(RecordingError, match=r"^The name of a topic or service must be a string, not "):
             call()
     with pytest.raises(RecordingError, match=r"^tarl\.bus\.subscribe\('odom', …\): None is not callable"):
         bus.subscribe("odom", None)

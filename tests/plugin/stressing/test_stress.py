@@ -130,8 +130,8 @@ def test_without_a_recording_or_a_space_the_message_gives_the_next_step(tank: py
 @pytest.mark.parametrize(
     ("flags", "told"),
     [
-        (("--tarl-stress", "--tarl-online"), "are two runs"),
-        (("--tarl-stress", "--tarl-record"), "are two runs"),
+        (("--tarl-stress", "--tarl-online"), "need separate runs"),
+        (("--tarl-stress", "--tarl-record"), "need separate runs"),
         (("--tarl-stress", "--tarl-holm"), "--tarl-holm needs --tarl-online"),
         (("--tarl-stress", "--tarl-ros=real"), "needs the embedded ROS"),
         (("--tarl-stress", "--tarl-stress-budget=3"), "--tarl-stress-budget"),

@@ -129,7 +129,7 @@ def test_a_range_without_failures_is_not_affected() -> None:
     ("one", "expected"),
     [
         (curve(DOWN, {1.0: -1.0}, confirmed=1.0), "Fails with camera='down'."),
-        (curve(DOWN, {1.0: -1.0}), "No failure confirmed with camera='down', which is suspicious."),
+        (curve(DOWN, {1.0: -1.0}), "No failure confirmed with camera='down', but the option is suspicious."),
         (
             curve(LEFT, {1.0: 1.0}, held=1.0),
             "No failure found with camera='left'; the guarantee holds (90 %).",
@@ -154,7 +154,7 @@ def test_combinations_are_printed_with_the_nearest_first() -> None:
         "Fails with mud=3 and camera='down' (distance 1), although each alone holds.",
     ]
     assert [*words.together(stress(*whole, tried=3))] == [
-        "No combination was found that fails although each direction alone holds (3 tried)."
+        "No combination was found that fails although each of its changes alone passes (3 tried)."
     ]
     assert [*words.together(stress(*whole))] == []
     many = tuple(combined(mud=3.9 - n / 10, slope=0.1) for n in range(6))
@@ -229,7 +229,7 @@ def test_the_lines_of_a_run_have_one_label_each() -> None:
         "  guarantee  At least 90 % of the episodes pass, and the mean reward is at most 0.5 below the recorded one.",
         "  slope      No failure confirmed while slope ≥ -1; suspicious from slope = -0.75 on.",
         "             No failure confirmed while slope ≤ 1; suspicious from slope = 0.75 on.",
-        "  together   No combination was found that fails although each direction alone holds (1 tried).",
+        "  together   No combination was found that fails although each of its changes alone passes (1 tried).",
         "  The budget of 200 episodes did not suffice for the whole search: raise --tarl-stress-budget.",
     ]
     assert len([*words.lines(stress(curve(FLAT, GOOD), ended="nominal"))]) == 3
@@ -262,7 +262,7 @@ def test_a_failure_inside_a_must_hold_range_violates_it_and_one_outside_does_not
 def test_a_suspicious_value_inside_must_hold_is_named_as_undecided() -> None:
     found = stress(curve(MUD, GOOD), must_hold={"mud": (1.0, 4.0)})
     assert words.undecided_promises(found) == [
-        "Undecided: mud=1 is inside and suspicious, but no failure was confirmed."
+        "Undecided: mud=1 is within must_hold and suspicious, but no failure was confirmed."
     ]
     assert [line for line in words.lines(found) if line.startswith("  must_hold  Undecided: mud=1")]
     assert words.undecided_promises(replace(found, must_hold={"mud": (1.1, 4.0)})) == []
