@@ -69,7 +69,7 @@ MARKER_SERVERS: Final = frozenset(
         "interactive_markers.InteractiveMarkerServer",
         "interactive_markers.interactive_marker_server.InteractiveMarkerServer",
     ]
-)  # they receive what a user does with a marker
+)  # their callbacks receive a user's actions on a marker
 MARKER_MENUS: Final = frozenset(
     ["interactive_markers.MenuHandler", "interactive_markers.menu_handler.MenuHandler"]
 )

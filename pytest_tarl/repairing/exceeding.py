@@ -24,7 +24,7 @@ def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> 
         "repaired": f"in {world_name(comparison)}",
     }
     for world, place in places.items():
-        low = loss_between(totals[world], designed, CONFIDENCE).low  # what the designed program earns less
+        low = loss_between(totals[world], designed, CONFIDENCE).low  # by how much the designed program earns less
         if low > comparison.verdict.tolerance:
             earned, before = (sum(one) / len(one) for one in (totals[world], designed))
             told = (

@@ -74,7 +74,7 @@ class Process:
         self._closing = False
         self._refused = 0
         self.launched = NOTHING  # parameters from a launch file
-        self.label = name  # name in messages; once the node has a name, this name
+        self.label = name  # name shown in messages; the node's own name once the node has one
         self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []

@@ -18,11 +18,11 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.stressing.guarantee import Evidence
 
 HOPE = 0.8  # minimum expected probability that a test at a chosen value succeeds
-# number of standard errors between a loss and the tolerated loss at which a bound with 4 % risk shows in 4 of
-# 5 cases that the loss is tolerated
+# how far a loss must lie below the tolerated loss, in standard errors, for a bound with 4 % risk to show this in 4 of
+# 5 cases
 HOLDING = 3.0
-# number of standard errors between a loss and the tolerated loss at which a bound with 0.4 % risk shows in 4
-# of 5 cases that the loss is too large
+# how far a loss must lie above the tolerated loss, in standard errors, for a bound with 0.4 % risk to show this in 4
+# of 5 cases
 FAILING = 4.0
 PLACES = tuple(step / 100 for step in range(1, 101))  # values of t to choose from
 CENTRES = np.linspace(0.0, 1.25, 251)  # possible values of t at which half of the episodes fail

@@ -11,7 +11,7 @@ import numpy as np
 from pytest_tarl.stressing.coordinates import Vector
 from pytest_tarl.stressing.guarantee import LOWEST
 
-HIGHEST = 1.0 - LOWEST  # losses beyond this count as this, because margins below LOWEST do
+HIGHEST = 1.0 - LOWEST  # larger losses count as this loss, because margins below LOWEST count as LOWEST
 PRIOR = 4  # weight, in episodes, of the variance that is common to all drifts
 
 

@@ -66,8 +66,8 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # names of all fields stored so far, in order → the objects that were stored there last, whose
-        # `holders` and `inside` are up to date; storing the same objects again changes neither
+        # field → objects that were stored there last, in the order of the first stores; the `holders` and `inside` of
+        # these objects are up to date, so storing the same objects again changes nothing
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # keys that ever held a pointer to this object

@@ -28,7 +28,7 @@ from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
 
 UNKNOWN: Final = "?"
-# put before the name of a service, to name the node that answers it and was not read
+# prefix before the name of a service; together they name the unread node that answers the service
 SERVER: Final = "server of "
 # ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(

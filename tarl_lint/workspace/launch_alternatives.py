@@ -14,7 +14,7 @@ from tarl_lint.workspace.python_values import plain
 LONGEST: Final = 60  # maximum length of a condition, and of a value, in a symbolic text (characters)
 ABSENT: Final = Unknown(
     0, "nothing"
-)  # in place of a name that is not bound, or an element that does not exist
+)  # stands for a name that is not bound, or an element that does not exist
 _OPPOSITE: Final[Mapping[type[ast.cmpop], type[ast.cmpop]]] = {
     ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot,
     ast.IsNot: ast.Is,

@@ -89,7 +89,7 @@ class Runner:
     nodes: list[LaunchedNode] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names of the declared arguments
-    required: set[str] = field(default_factory=set)  # those of them that have no value
+    required: set[str] = field(default_factory=set)  # names of the declared arguments without a value
     # the files that include the current action, with their arguments
     including: list[object] = field(default_factory=list)
     seen: int = 0

@@ -42,7 +42,7 @@ class _Reader:
     settings: list[Setting] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     arguments: set[str] = field(default_factory=set)  # names of the arguments of the outermost file
-    required: set[str] = field(default_factory=set)  # those of them that have no value
+    required: set[str] = field(default_factory=set)  # names of the outermost file's arguments without a value
     seen: int = 0
     visits: int = 0  # number of files included so far
 

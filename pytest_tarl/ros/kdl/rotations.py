@@ -8,7 +8,7 @@ from typing import Any, Final, overload
 
 from pytest_tarl.ros.kdl.vectors import Twist, Vector, Wrench, equal, shown
 
-_TINY: Final = 1e-12  # below it, KDL treats an angle as singular
+_TINY: Final = 1e-12  # below this angle (rad), KDL treats a rotation as singular
 _IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Final, TypeVar
 
 EPSILON: Final = 1e-6  # default tolerance of KDL
-WIDTH: Final = 12  # of a number in a text
+WIDTH: Final = 12  # width of a number in a printed text (characters)
 Six = TypeVar("Six", bound="_Six")
 
 

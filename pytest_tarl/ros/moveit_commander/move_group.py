@@ -46,7 +46,7 @@ class MoveGroupCommander(Targets):
         self._settings: dict[str, Any] = dict(_SETTINGS)
         kind = class_of("ros1", "moveit_msgs/AttachedCollisionObject")
         self._attached = Publisher("attached_collision_object", kind, queue_size=1)
-        self._share = 1.0  # of the speed limits of the joints
+        self._share = 1.0  # share of the joints' speed limits at which motions run
         self._constraints: Any = class_of("ros1", "moveit_msgs/Constraints")()
 
     def plan(self, joints: Any = None) -> tuple[bool, Any, float, Any]:
