@@ -91,5 +91,5 @@ def test_feedback_on_a_menu_entry_has_no_known_topic() -> None:
 
 
 @pytest.mark.parametrize("registration", ["self.server.insert(marker)", "[].insert(0, self.on_feedback)"])
-def test_without_a_callback_of_a_marker_there_is_no_flow(registration: str) -> None:
+def test_a_marker_without_a_callback_gives_no_flow(registration: str) -> None:
     assert flows(ROS_2.replace("{registration}", registration)) == []

@@ -502,7 +502,7 @@ def test_the_content_of_a_file_is_known(tmp_path: Path) -> None:
     assert [one.reason for one in found.problems] == ["the parameter other is not constant"]
 
 
-def test_names_that_are_made_unique_and_nodes_of_events_are_marked(tmp_path: Path) -> None:
+def test_anonymous_names_and_nodes_started_by_events_are_marked(tmp_path: Path) -> None:
     python = """
         from launch import LaunchDescription
         from launch.actions import RegisterEventHandler

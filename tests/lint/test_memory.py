@@ -117,7 +117,7 @@ def test_parts_without_data_add_nothing_to_the_data_of_their_message(ctx):
 
 
 @pytest.mark.parametrize("name", [heap.ANY, heap.LENGTH, heap.KEYS, heap.HELD, heap.SENT])
-def test_a_summary_field_of_a_library_object_is_no_part_of_the_object(ctx, name):
+def test_a_summary_field_of_a_library_object_is_not_a_part_of_the_object(ctx, name):
     obj = recency.intern(ctx, "lib", "matrix")
     assert heap.read_field(ctx, obj, name) is BOTTOM
     assert not obj.subs

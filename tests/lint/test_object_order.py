@@ -23,7 +23,7 @@ def loops_over_sets(path: Path) -> list[str]:
     return [f"{path.name}:{loop.lineno}" for loop in alike]
 
 
-def test_loops_go_over_objects_in_order_of_creation() -> None:
+def test_loops_visit_objects_in_order_of_creation() -> None:
     home = Path(tarl_lint.__file__).parent
     found = [loop for room in ROOMS for path in (home / room).rglob("*.py") for loop in loops_over_sets(path)]
     assert found == []

@@ -92,7 +92,7 @@ def test_line_breaks_in_a_topic_are_escaped(tmp_path):
     [["no\x1b[2J.py"], ["--config", "no\x9b\u202e.toml"], ["--no\x1b[2J"], ["--launch", "no\x1b[2J.launch"]],
     ids=["file", "settings", "option", "launch file"],
 )
-def test_no_error_sends_control_characters_of_its_arguments(arguments, capsys):
+def test_no_error_message_passes_on_control_characters_of_its_arguments(arguments, capsys):
     assert main(arguments) == 2
     told = capsys.readouterr().err
     assert told.startswith("tarl-lint: ")

@@ -100,7 +100,7 @@ def test_silenced_findings_are_counted(example):
         (Notes(), (), 2, "2 files that are not readable as Python 3 (TARL001)"),
     ],
 )
-def test_what_was_not_analysed_is_named(notes, cut, errors, said):
+def test_files_and_programs_that_were_not_analysed_are_named(notes, cut, errors, said):
     broken = (SourceError("x.py", 1, "Broken."),) * errors
     result = Result(statistics=Statistics(3, 9, notes, cut), errors=broken)
     assert [plain(line) for line in summary.not_analysed(result)] == [f"Not analysed: {said}."]
@@ -114,7 +114,7 @@ def test_many_programs_that_were_cut_are_abbreviated():
     assert plain(line).endswith("18.py, 19.py).")
 
 
-def test_topics_that_are_computed_are_counted_once(example):
+def test_topics_with_computed_names_are_counted_once(example):
     unnamed = replace(example.flow(), source=replace(example.source(), topics=()))
     one = replace(example.finding(), flow=unnamed)
     assert summary.unknown_topics(of(one, one, example.finding())) == 1
@@ -164,7 +164,7 @@ def test_the_report_shows_a_single_new_flow_in_full(example):
     ]
 
 
-def test_accepted_findings_are_told_in_words():
+def test_accepted_findings_are_described_in_words():
     assert summary.in_words(Accepted(FLOW, 1, ()), "→") == (
         "odom → cmd_vel, explicit, received by on, published in run (arm)"
     )

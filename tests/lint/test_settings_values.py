@@ -54,16 +54,16 @@ REFUSED: list[tuple[str, Any]] = [
 
 
 @pytest.mark.parametrize(("key", "value", "found"), ACCEPTED)
-def test_a_setting_accepts_its_values(key, value, found):
+def test_a_setting_accepts_valid_values(key, value, found):
     assert KEYS[key][0](value) == found
 
 
 @pytest.mark.parametrize(("key", "value"), REFUSED)
-def test_a_setting_refuses_other_values(key, value):
+def test_a_setting_refuses_invalid_values(key, value):
     assert KEYS[key][0](value) is None
 
 
-def test_a_wrapper_names_an_unknown_key():
+def test_an_unknown_key_of_a_wrapper_is_refused_by_name():
     with pytest.raises(
         ValueError, match=r"the wrapper 'a.b' has no key 'topics': its keys are callback, extra, like, "
     ):

@@ -179,7 +179,9 @@ def test_bags_give_the_same_result_in_workers(deployed: pytest.Pytester) -> None
 @pytest.mark.parametrize(
     "flag", ["--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=5", "--tarl-ros=real"]
 )
-def test_options_that_run_the_world_exclude_bags(deployed: pytest.Pytester, flag: str) -> None:
+def test_options_that_run_the_world_cannot_be_combined_with_bags(
+    deployed: pytest.Pytester, flag: str
+) -> None:
     told = online(deployed, deployed.path / "m.bag", also=[flag])
     told.stderr.fnmatch_lines([f"*--tarl-bag*{flag.partition('=')[0]}*"])
 

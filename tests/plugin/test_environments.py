@@ -85,7 +85,7 @@ def test_a_recording_is_the_same_in_any_environment(
     assert fixture_file(tank).read_bytes() == reference, shown
 
 
-def test_runs_at_the_same_time_in_one_folder_write_the_recording_of_one(
+def test_simultaneous_runs_in_one_folder_write_the_recording_of_a_single_run(
     tank: pytest.Pytester, reference: bytes
 ) -> None:
     runs = [started(tank.path, [], [], os.environ) for _ in range(3)]

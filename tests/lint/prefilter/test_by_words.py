@@ -34,7 +34,7 @@ PUBLISHER = "import rospy\npub = rospy.Publisher('a', F)\n"
         ("x = '\\\n# kept'", "x = '\\\n# kept'"),
     ],
 )
-def test_comments_and_prose_are_no_code(text, kept):
+def test_comments_and_prose_do_not_count_as_code(text, kept):
     assert code(text) == kept
 
 
@@ -83,7 +83,7 @@ def grouped(**texts: str) -> list[list[str]]:
     return [[one.name for one in group] for group in groups(scripts(**texts), Config())]
 
 
-def test_a_group_has_what_its_modules_import_and_a_module_comes_after_its_imports():
+def test_a_group_includes_imported_modules_and_orders_them_before_their_importers():
     assert grouped(a=PUBLISHER + "import b\n", b="import c\n", c="x = 1\n", d="import e\n", e="x = 1\n") == [
         ["c", "b", "a"]
     ]

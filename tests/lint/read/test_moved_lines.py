@@ -84,11 +84,11 @@ def test_a_constant_of_another_type_is_another_constant():
     assert moved("x = 1\n", "x = 1\n", unread=()) == {1: 1}
 
 
-def test_an_indented_copy_is_no_move():
+def test_an_indented_copy_does_not_count_as_a_move():
     assert moved("if 1:\n  x = 1\n", "if 1:\n    x = 1\n", unread=()) is None
 
 
-def test_the_order_of_the_lines_must_stay():
+def test_the_order_of_the_lines_must_stay_the_same():
     assert moved("y = 2\nx = 1\n", "x = 1\ny = 2\n", unread=()) is None
 
 
@@ -113,7 +113,7 @@ def test_changed_functions_of_equal_names_need_another_run():
     assert moved(other.replace("2", "3"), other, unread=[(1, 0), (4, 0)]) == {1: 1, 4: 4}
 
 
-def test_an_answer_about_the_text_must_stay():
+def test_an_answer_about_the_text_must_stay_the_same():
     asked = (lambda text: "unread" in text, True)
     new = OLD.replace("return 1", "return 3")
     assert moved(new, answers=[asked]) is not None

@@ -79,7 +79,7 @@ def test_the_locks_around_a_place_are_held_there(body, held, tried):
     assert locks_around(node, outline) is locks_around(node, outline), "the answer is kept"
 
 
-def test_at_the_level_of_the_module_no_lock_is_only_tried():
+def test_a_with_statement_at_module_level_holds_its_lock():
     outline = Outline(ast.parse("import threading\nl = threading.Lock()\nwith l:\n    here"))
     node = next(n for n in ast.walk(outline.tree) if isinstance(n, ast.Name) and n.id == "here")
     assert (locks_around(node, outline), tried_around(node, outline)) == ({"l"}, set())
@@ -109,7 +109,7 @@ def test_a_lock_has_the_name_of_its_variable(text, name):
         ("while here:\n    pass\nwith self.a:\n    pass", set()),
     ],
 )
-def test_a_test_before_an_early_return_asks_for_the_locks_below(body, asked):
+def test_a_check_before_an_early_return_belongs_to_the_locks_taken_after_it(body, asked):
     node, outline = place(body)
     assert asked_before(node, outline) == asked
 
@@ -119,7 +119,7 @@ def test_a_test_before_an_early_return_asks_for_the_locks_below(body, asked):
     [("here", False), ("while x:\n    here", True), ("while here:\n    pass", True), ("for i in j:\n    here", False),
      ("while x:\n    def g():\n        here", False), ("while x:\n    pass\nhere", False)],
 )  # fmt: skip
-def test_a_while_repeats_what_is_inside_it(body, loops):
+def test_code_inside_a_while_loop_is_recognised(body, loops):
     node, outline = place(body)
     assert in_loop(node, outline) is loops
 

@@ -57,7 +57,7 @@ def test_values_assigned_to_a_name_are_listed_by_its_last_part():
     ("line", "name"), [(1, ""), (2, ""), (4, "C"), (7, "C.__init__"), (14, "C.run.inner"), (15, "C.run.inner"),
      (16, "C.run"), (17, "")]
 )  # fmt: skip
-def test_a_line_has_the_name_of_its_function(line, name):
+def test_a_line_is_named_after_its_function(line, name):
     assert outline().qualname(line) == name
 
 
@@ -101,5 +101,5 @@ def test_a_call_is_found_by_its_whole_position():
         ("f(name)", False),
     ],
 )
-def test_code_may_look_up_names_by_text(text, by_text):
+def test_look_ups_of_names_by_computed_text_are_detected(text, by_text):
     assert outline(text).by_text is by_text

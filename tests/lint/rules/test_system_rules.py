@@ -65,7 +65,7 @@ def messages(rule: int, *instances: Instance, file: Path = FILE) -> list[str]:
         ("/lefts1", "/lefts", False),
     ],
 )
-def test_names_are_spelled_alike(one, other, alike):
+def test_similar_spellings_of_names_are_recognised(one, other, alike):
     assert spelled_alike(one, other) is alike
     assert spelled_alike(other, one) is alike
 
@@ -82,7 +82,7 @@ def test_an_end_has_a_single_type_if_it_is_known():
 HEARS, SAYS = end("subscribes", "cmd_vel"), end("publishes", "cmd_val")
 
 
-def test_a_subscription_without_a_publisher_names_the_one_that_may_be_meant():
+def test_the_report_of_a_subscription_without_a_publisher_names_a_similar_one():
     assert messages(301, node("/a", HEARS), node("/b", SAYS)) == [
         "/a subscribes to /cmd_vel (Twist), which no node publishes; /b publishes /cmd_val, to which no node subscribes"
     ]
@@ -142,7 +142,7 @@ def test_ends_of_a_topic_have_one_type():
         (Qos(reliable=True), None, []),
     ],
 )
-def test_a_subscription_may_ask_for_no_more_than_is_offered(asked, offered, refused):
+def test_a_subscription_that_requests_a_stricter_qos_than_offered_is_reported(asked, offered, refused):
     says = end("publishes", "cmd_vel", qos=offered)
     found = messages(
         303, node("/a", replace(HEARS, qos=asked)), node("/b", says), node("/c", end("publishes", "x"))
@@ -152,7 +152,7 @@ def test_a_subscription_may_ask_for_no_more_than_is_offered(asked, offered, refu
     ]
 
 
-def test_a_client_names_the_server_that_may_be_meant():
+def test_the_report_of_a_client_without_a_server_names_a_similar_one():
     calls, serves = end("calls", "home", "Trigger"), end("serves", "~home", "Trigger")
     assert messages(304, node("/client", calls), node("/arm", serves)) == [
         "/client calls /home (Trigger), which no node offers; /arm offers /arm/home"
@@ -185,7 +185,7 @@ def author(
     return node(name, interface=Interface("n.py", flows=flows), **given)
 
 
-def test_one_node_publishes_the_commands_of_a_topic(example):
+def test_two_nodes_that_publish_commands_on_the_same_topic_are_reported(example):
     found = messages(
         305, author(example, "/b"), author(example, "/a"), author(example, "/c", remaps=(("cmd_vel", "raw"),))
     )
@@ -197,7 +197,7 @@ def test_one_node_publishes_the_commands_of_a_topic(example):
     assert messages(305, author(example, "/a"), node("/b", unread=True)) == []
 
 
-def test_a_stale_command_names_both_ends_as_launched(example):
+def test_the_report_of_a_stale_command_names_both_ends_as_launched(example):
     stale = replace(
         example.finding(), flow=replace(example.flow(), sink=replace(example.sink(), type="Twist"))
     )
@@ -241,7 +241,7 @@ NONE = "/k has no parameter {}: the launch file sets it without effect"
         (Setting("~in", FILE, yaml="a: 1"), ["in"]),
     ],
 )
-def test_a_parameter_that_is_set_is_one_that_the_node_has(setting, absent):
+def test_a_setting_of_a_parameter_that_the_node_lacks_is_reported(setting, absent):
     assert messages(307, keeper("/k", setting)) == [NONE.format(name) for name in absent]
 
 
@@ -288,14 +288,14 @@ def mover(name: str = "/n/k", **given: Any) -> Instance:
         ("k:cmd_val", None),
     ],
 )
-def test_a_remapping_names_what_the_node_uses(old, told):
+def test_a_remapping_of_a_name_that_the_node_does_not_use_is_reported(old, told):
     found = messages(308, mover(remaps=((old, "y"),)))
     assert found == (
         [] if told is None else [f"/n/k uses no name {old}, so renaming it to y has no effect{told}"]
     )
 
 
-def test_a_remapping_may_name_what_is_not_known():
+def test_a_remapping_of_a_name_that_the_node_may_use_is_not_reported():
     remaps = (("cmd_val", "y"),)
     assert messages(308, mover(remaps=remaps, whole=False)) == []
     assert messages(308, mover(remaps=remaps, words=("/x/cmd_val",))) == []
@@ -324,7 +324,7 @@ def test_an_absent_field_is_reported_once_for_each_program():
     ]
 
 
-def test_two_nodes_have_two_names():
+def test_two_nodes_with_the_same_name_are_reported():
     first, second = node("/a", line=3), node("/a", line=9)
     said = ["/a is started twice, also at robot.launch:3: give each node its own name"]
     assert messages(310, first, second) == said

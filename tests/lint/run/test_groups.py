@@ -100,7 +100,7 @@ def test_without_a_reader_programs_keep_their_order(performed):
     assert performed == ["a.py", "b.py", "c.py"]
 
 
-def test_what_is_final_is_told_after_one_two_and_four_programs(performed):
+def test_final_findings_are_reported_after_one_two_and_four_programs(performed):
     told: list[tuple[int, list[str]]] = []
     examine(
         scripts(*range(7)),

@@ -91,7 +91,7 @@ def test_a_failure_ends_the_other_work(pool):
     assert "PYTHONSAFEPATH" not in os.environ
 
 
-def test_without_processes_there_is_no_answer(monkeypatch):
+def test_without_support_for_processes_none_is_returned(monkeypatch):
     monkeypatch.setattr(workers, "_context", lambda: None)
     assert in_processes(str, [1], [1], 2, silent) is None
 

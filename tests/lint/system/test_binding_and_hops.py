@@ -32,7 +32,7 @@ def launched(name: str = "k", **given: Any) -> LaunchedNode:
     return LaunchedNode("arm", "k.py", name, given.pop("namespace", "/n"), FILE, 3, **given)
 
 
-def test_a_node_has_its_own_parameters_and_those_around_it():
+def test_a_node_has_its_own_parameters_and_those_of_enclosing_namespaces():
     node = launched(
         settings=(
             Setting("~a", FILE, 1),
@@ -70,11 +70,11 @@ VALUES = {
     [("~a", 1), ("~l", ("x", 2)), ("~none", DEFAULT), ("~t", None), ("~r", None), ("~m", None), ("b", "y"),
      ("/c", True), ("~t/u", 3), (ARGUMENTS, None)],
 )  # fmt: skip
-def test_a_scalar_or_a_list_of_scalars_decides(name, value):
+def test_only_scalars_and_lists_of_scalars_are_known_values_of_parameters(name, value):
     assert fixed([name], VALUES, "/n/k") == ({} if value is None else {name: value})
 
 
-def test_the_command_line_ends_with_what_ros_adds():
+def test_the_command_line_ends_with_the_arguments_that_ros_adds():
     node = launched(arguments="--fast 'a b' scan:=/s", remaps=(("odom", "o"), ("scan", "/s")))
     assert command_line(node, Launch(FILE), "/n/k") == {
         ARGUMENTS: ("k.py", "--fast", "a b", "scan:=/s", "odom:=o", "__name:=k", "__log:=node.log")
@@ -176,7 +176,7 @@ def test_the_flows_of_a_node_have_launched_topics(example):
     assert made(instance("/k", replace(example.finding(), flow=None))) == []
 
 
-def test_flows_of_services_have_the_part_of_their_ends(example):
+def test_the_ends_of_a_service_flow_are_named_request_and_response(example):
     server = instance("/s", flow(example, ("add",), ("add",), heard="rospy.Service", said="rospy.Service"))
     assert made(server) == [("/s", "/add (request)", "/add (response)", "explicit")]
 
@@ -211,7 +211,7 @@ def test_a_node_that_was_not_read_may_connect_the_topics_of_its_remappings(examp
     assert made(seen) == [("/c", "/i", "/o", "not read"), ("/c", "/i", "/p", "not read")]
 
 
-def test_a_node_without_a_name_has_that_of_its_code_or_program():
+def test_an_unnamed_node_gets_the_name_in_its_code_or_of_its_program():
     assert full_name(launched("a"), "b") == "/n/a"
     assert full_name(launched(""), "b") == "/n/b"
     assert full_name(launched(""), "") == "/n/k.py"

@@ -193,7 +193,7 @@ DECIDING = [
 
 
 @pytest.mark.parametrize(("text", "names"), DECIDING)
-def test_parameters_in_conditions_decide(text, names):
+def test_parameters_used_in_conditions_are_listed(text, names):
     assert deciding([module(text)]) == tuple(sorted(names))
 
 

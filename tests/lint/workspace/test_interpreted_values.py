@@ -591,7 +591,7 @@ PROBLEMS = {
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_what_is_not_constant_is_a_problem_with_its_line(tmp_path, name):
+def test_code_that_is_not_constant_is_a_problem_with_its_line(tmp_path, name):
     text, line, reason = PROBLEMS[name]
     path = tmp_path / "read.py"
     path.write_text(text)

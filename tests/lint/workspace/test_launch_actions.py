@@ -164,7 +164,7 @@ def test_an_action_has_its_effect(package, name):
     assert reasons(found) == problems
 
 
-def test_nodes_of_events_and_unique_names_are_marked(package):
+def test_nodes_started_by_events_and_anonymous_names_are_marked(package):
     found = described(
         package,
         "node('a'), RegisterEventHandler(OnProcessExit(on_exit=[GroupAction([node('b')])])), node(AnonName('c')),"

@@ -43,7 +43,7 @@ def test_launch_files_in_yaml_are_read(package):
     [("a: 1", NONE), ("- launch", NONE),
      ("", NONE), ("launch: [", "it is not YAML: ")],
 )  # fmt: skip
-def test_yaml_that_is_no_launch_file_is_a_problem(package, text, reason):
+def test_yaml_that_is_not_a_launch_file_is_a_problem(package, text, reason):
     (problem,) = reasons(launched(package, text, "a.launch.yaml"))
     assert problem.startswith(reason)
 
@@ -53,7 +53,7 @@ def test_at_most_five_thousand_elements_of_yaml_are_read(package):
     assert len(launched(package, text, "a.launch.yaml").nodes) == 5_000
 
 
-def test_a_launch_file_in_xml_or_yaml_may_choose_by_words(package):
+def test_less_common_xml_elements_and_substitutions_are_read(package):
     text = """<launch><let name="n" value="$(file-content $(find-pkg-share arm)/words.txt)"/>
         <set_parameter name="w" value="$(var n)"/>
         <load_composable_node target="box"><composable_node pkg="c" plugin="a::B" name="x" if="$(eval 1 &lt; 2)"/>

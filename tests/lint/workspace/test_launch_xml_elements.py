@@ -160,7 +160,7 @@ def test_files_that_include_each_other_end(package):
     assert reasons(same) == ["<include>: a.launch: it includes itself"]
 
 
-def test_names_that_the_robot_makes_unique_are_told_apart_by_their_file(package):
+def test_anonymous_names_are_distinguished_by_their_file(package):
     (package / "c.launch").write_text('<launch><node pkg="arm" type="d" name="$(anon x)"/></launch>')
     found = launched(
         package,

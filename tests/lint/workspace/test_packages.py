@@ -43,7 +43,7 @@ def written(folder: Path, files: dict[str, str]) -> Path:
         ("", (), "unknown"),
     ],
 )
-def test_a_package_is_of_the_kind_that_builds_it(tmp_path, inside, files, kind):
+def test_the_kind_of_a_package_is_its_build_system(tmp_path, inside, files, kind):
     (tmp_path / "package.xml").write_text(f"<package><name>arm</name>{inside}</package>")
     for name in files:
         (tmp_path / name).touch()
@@ -284,7 +284,7 @@ def test_a_parameter_that_is_not_constant_is_a_problem_with_its_line(tmp_path, l
     assert (found.line, found.reason) == (3, problem)
 
 
-def test_groups_within_groups_know_those_around_them(tmp_path):
+def test_nested_groups_know_their_enclosing_groups(tmp_path):
     lines = "a = gen.add_group('A b', state=False)\nb = a.add_group('C')\nb.add('x', bool_t, 0, names())"
     (tmp_path / "Arm.cfg").write_text(CFG.format(lines))
     ((found,), _) = configurations(tmp_path / "Arm.cfg")

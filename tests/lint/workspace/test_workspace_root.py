@@ -22,6 +22,6 @@ def test_a_path_beside_the_sources_is_in_the_workspace(tmp_path: Path, package: 
     )
 
 
-def test_a_folder_of_other_sources_is_no_workspace(tmp_path: Path) -> None:
+def test_a_folder_of_other_sources_is_not_a_workspace(tmp_path: Path) -> None:
     (tmp_path / "src/arm").mkdir(parents=True)
     assert workspace_root(tmp_path) is None

@@ -88,7 +88,7 @@ def test_a_reader_that_has_closed_the_pipe_ends_the_command_silently(
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_closed_standard_streams_are_no_error(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_closed_standard_streams_are_not_an_error(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdout", None)
     monkeypatch.setattr(sys, "stderr", None)
     assert main(list(COMMANDS[command])) == 0

@@ -17,7 +17,7 @@ from tarl_lint.model import Span
 @pytest.mark.parametrize(
     ("text", "count"), [("", 0), ("abc", 3), ("é", 1), ("\uffff", 1), ("\U00010000", 2), ("a🤖b🤖", 6)]
 )
-def test_characters_beyond_the_basic_plane_count_two_units(text: str, count: int) -> None:
+def test_characters_beyond_the_basic_plane_count_as_two_units(text: str, count: int) -> None:
     assert units(text) == count
 
 

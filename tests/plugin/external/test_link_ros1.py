@@ -199,7 +199,7 @@ def test_a_call_waits_for_its_service_and_for_earlier_commands(
     assert (pauses, link._sent) == ([0.0], False)
 
 
-def test_a_broken_connection_is_no_answer(linked: Linked) -> None:
+def test_a_broken_connection_does_not_count_as_an_answer(linked: Linked) -> None:
     link, said, master = linked
     master.services["/step"] = "own_srvs/Step"
     link.call({"id": 7, "service": "/step", "request": {"data": -2.0}})

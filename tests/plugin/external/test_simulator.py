@@ -56,7 +56,7 @@ def test_events_of_the_previous_simulator_are_ignored(guardian: Guardian, ros: R
         ([graph("", "/odom"), clock(0.0)], "no time on /clock"),
     ],
 )
-def test_a_simulator_that_is_not_ready_in_time_is_told_with_what_is_missing(
+def test_a_simulator_that_is_not_ready_in_time_is_reported_with_what_is_missing(
     guardian: Guardian, ros: Ros, events: list[dict[str, Any]], words: str
 ) -> None:
     guardian.react = lambda what, **_: [{"kind": "stopped"}, *events] if what == "start" else []
@@ -77,7 +77,7 @@ def test_a_simulator_that_is_not_ready_in_time_is_told_with_what_is_missing(
         ({"kind": "gone"}, SimulatorLostError, "process that keeps the simulator has ended"),
     ],
 )
-def test_a_simulator_that_ends_early_is_told(
+def test_a_simulator_that_ends_early_is_reported(
     guardian: Guardian, ros: Ros, event: dict[str, Any], error: type[Exception], words: str
 ) -> None:
     guardian.react = lambda *_, **__: [{"kind": "stopped"}, event]
@@ -85,7 +85,7 @@ def test_a_simulator_that_ends_early_is_told(
         Simulator(SETUP, ros, ()).begin()
 
 
-def test_a_simulator_that_ends_later_is_told_with_its_time(guardian: Guardian, ros: Ros) -> None:
+def test_a_simulator_that_ends_later_is_reported_with_its_time(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     guardian.events.put({"kind": "ended", "status": -9})
     with pytest.raises(SimulatorLostError, match="ended with status -9 at 2 s of its time"):
@@ -123,7 +123,7 @@ def test_the_test_waits_for_a_simulator_that_ran_on_only_for_the_new_step(
     assert made.clock == 10.0
 
 
-def test_a_simulator_without_progress_hangs(guardian: Guardian, ros: Ros) -> None:
+def test_a_simulator_without_progress_counts_as_hung(guardian: Guardian, ros: Ros) -> None:
     made = begun(replace(SETUP, patience=0.05), guardian, ros)
     guardian.events.put(clock(2.5))
     with pytest.raises(
@@ -158,7 +158,7 @@ def test_the_nodes_commands_go_to_the_simulator(guardian: Guardian, ros: Ros) ->
     ]  # fmt: skip
 
 
-def test_topics_of_nodes_are_received_and_those_that_are_asked_for(guardian: Guardian, ros: Ros) -> None:
+def test_topics_of_nodes_and_requested_topics_are_received(guardian: Guardian, ros: Ros) -> None:
     made = begun(SETUP, guardian, ros)
     ros.bus.subscribed |= {"/scan", "/clock", "/odom", "/gps"}  # as nodes that subscribe do
     guardian.react = lambda what, **_: (

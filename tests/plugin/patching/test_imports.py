@@ -124,6 +124,6 @@ def test_an_alias_equal_to_the_name_is_not_written() -> None:
     assert Import("m.n").written == "m.n"
 
 
-def test_imports_in_functions_are_no_imports_of_the_module() -> None:
+def test_imports_in_functions_do_not_count_as_imports_of_the_module() -> None:
     text = "import a\nclass C:\n    import b\n    def f(self):\n        import c\n"
     assert [node.names[0].name for node in top_imports(document("n.py", text))] == ["a", "b"]

@@ -100,7 +100,7 @@ def test_a_failing_mission_is_compared_with_its_own_designed_reward() -> None:
 
 
 @pytest.mark.parametrize("share", [0.05, 0.12, 0.3])
-def test_a_repair_may_earn_less_on_missions_that_seldom_lose(share: float) -> None:
+def test_if_few_missions_lose_a_repair_may_earn_less_on_them(share: float) -> None:
     road: Any = Road(share)
     goal, margin = enriched(road, Trials(never, 300)), road.order.reference.margin
     losing = len(road.order.goal.pairs) / 40

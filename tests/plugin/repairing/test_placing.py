@@ -256,7 +256,7 @@ def test_a_parameter_of_a_launch_file_is_not_said_to_be_passed_by_the_test(worn:
     assert "the launch file of the test sets it. Change the parameter there" in told
 
 
-def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) -> None:
+def test_a_definition_that_other_code_depends_on_stays_unchanged(worn: pytest.Pytester) -> None:
     node(worn, before="GAIN = 2.0\n", use="GAIN")
     changed(
         worn,
@@ -306,6 +306,6 @@ def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytes
     assert "it works only at one use of the constant" in told
 
 
-def test_an_unknown_place_is_explained(worn: pytest.Pytester) -> None:
+def test_an_unknown_value_of_the_flag_edit_is_refused_with_a_suggestion(worn: pytest.Pytester) -> None:
     done = worn.runpytest(*REPAIR, "--tarl-edit=defintion")
     done.stderr.fnmatch_lines(["*--tarl-edit does not know 'defintion'; did you mean 'definition'?*"])

@@ -64,5 +64,5 @@ def test_percentages_in_guarantees_are_rounded_down(share: float) -> None:
     assert share - 0.001 < shown <= share + 1e-9
 
 
-def test_an_infinite_bound_is_printed_as_nothing() -> None:
+def test_an_infinite_bound_is_not_printed() -> None:
     assert figure(float("-inf")) == "nothing"

@@ -84,7 +84,7 @@ def test_captions_say_what_a_figure_averages_over_and_leaves_out(varied: Varied)
     assert list(html._captions(few, figure())) == []
 
 
-def test_curves_are_told_by_their_last_value() -> None:
+def test_curves_are_described_by_their_last_value() -> None:
     curves = [{"name": "designed", "mean": [1.0, -2.5]}, {"name": "deployed", "mean": [3.0]}]
     assert html._curves_in_words(curves) == "designed −2.50 after 2 episodes; deployed 3.00 after 1 episodes"
 

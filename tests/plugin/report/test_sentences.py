@@ -125,7 +125,7 @@ def refused(mean: float, *, reason: Reason = "gain too small", fresh: bool = Tru
     return Repair(False, "", EDITS, history=(Attempt("KP → 3", reason, mean, 8, fresh),))
 
 
-def test_a_repair_that_restores_nearly_all_is_told_with_the_tolerance_that_accepts_it(varied: Varied) -> None:
+def test_a_repair_that_restores_nearly_all_is_reported_with_a_sufficient_tolerance(varied: Varied) -> None:
     totals = {"offline": (10.0, 10.0), "online": (0.0, 0.0)}
     margin = replace(varied().verdict, tolerance=0.5)
     told = repair_words.wider_tolerance(varied(totals=totals, verdict=margin, repair=refused(9.0)))

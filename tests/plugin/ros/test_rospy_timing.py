@@ -56,7 +56,7 @@ def told(event):
 """
 
 
-def test_a_timer_tells_planned_and_actual_times_and_how_long_its_callback_took(start: Start) -> None:
+def test_a_timer_reports_planned_and_actual_times_and_the_duration_of_its_callback(start: Start) -> None:
     code = f"spent = [0.2, 1.5]\n{EVENTS}timer = rospy.Timer(rospy.Duration(1.0), told)\nrospy.spin()"
     assert run(start, code, 4.5) == [
         (None, None, 1.0, 1.0, None),
@@ -111,7 +111,7 @@ except ValueError as error:
     assert log == [f"a timer needs a period above zero, not {period} s"]
 
 
-def test_sleeps_take_seconds_or_durations_and_the_past_does_not_wait(start: Start) -> None:
+def test_sleeps_accept_seconds_or_durations_and_negative_ones_return_at_once(start: Start) -> None:
     log = run(start, """
 for span in (0.5, rospy.Duration(0.25), 0, -1.0, rospy.Duration(-1), 2):
     rospy.sleep(span)

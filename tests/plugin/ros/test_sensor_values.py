@@ -46,7 +46,7 @@ def test_points_are_read_at_their_offsets_and_without_the_padding_of_rows(kind: 
     assert (every[3].x, every[3].flag, list(every[3].pair), every[3].y) == (3, 4, [0, 7], 30)
 
 
-def test_pixels_select_points_in_ros1_and_no_pixels_select_all() -> None:
+def test_in_ros1_pixels_select_points_and_an_empty_list_selects_all() -> None:
     made = cloud("")
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], uvs=[(2, 0), (0, 1)])] == [2, 3]
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], uvs=np.array([(2, 1)]))] == [5]
@@ -54,7 +54,7 @@ def test_pixels_select_points_in_ros1_and_no_pixels_select_all() -> None:
     assert [x for (x,) in point_cloud2.read_points(made, ["x"], skip_nans=True, uvs=[(1, 1), (0, 1)])] == [3]
 
 
-def test_numbers_select_points_in_ros2_after_those_with_nan() -> None:
+def test_in_ros2_indices_select_points_after_points_with_nan_are_removed() -> None:
     made = cloud("msg/")
     assert point_cloud2.read_points(made, ["x"], uvs=[2, 0])["x"].tolist() == [2, 0]
     assert point_cloud2.read_points(made, ["x"], skip_nans=True, uvs=np.array([4]))["x"].tolist() == [5]

@@ -42,7 +42,7 @@ def filled(name: str) -> Any:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_message_survives_as_bytes(name: str) -> None:
+def test_a_message_survives_serialization(name: str) -> None:
     made = filled(name)
     assert deserialize(serialize(made), message_type(name)) == made
 
@@ -57,7 +57,7 @@ def test_the_bytes_are_those_of_rclpy() -> None:
 
 
 @pytest.mark.parametrize("data", ["", "00010000ffffffff", "000100000900000061", "00000000"])
-def test_bytes_that_are_no_message_are_refused(data: str) -> None:
+def test_bytes_that_are_not_a_message_are_refused(data: str) -> None:
     with pytest.raises(ValueError, match="the bytes are not a"):
         deserialize(bytes.fromhex(data), message_type("std_msgs/msg/String"))
 

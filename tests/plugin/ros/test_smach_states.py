@@ -275,7 +275,7 @@ outcome = smach_ros.ConditionState(check, {options}).execute(smach.UserData())
         (-1, [1, 2], "preempted", [1, 2]),
     ],
 )
-def test_a_topic_is_watched_until_a_message_is_invalid_or_enough_came(
+def test_a_topic_is_watched_until_a_message_is_invalid_or_enough_messages_arrived(
     start: Start, most: int, levels: list[int], outcome: str, checked: list[int]
 ) -> None:
     ros = start(HEAD + f"""

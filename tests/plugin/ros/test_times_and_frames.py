@@ -174,7 +174,7 @@ def test_invalid_transforms_are_refused() -> None:
             add(*wrong)
 
 
-def test_unknown_and_unconnected_frames_are_told_apart() -> None:
+def test_unknown_and_unconnected_frames_are_distinguished() -> None:
     tree = TransformTree()
     put(tree, "map", "base", 1.0, 1.0)
     put(tree, "world", "arm", 1.0, 1.0)
@@ -187,7 +187,7 @@ def test_unknown_and_unconnected_frames_are_told_apart() -> None:
             tree.look_up(name, "base", 0)
 
 
-def test_a_loop_of_frames_is_no_endless_search() -> None:
+def test_a_loop_of_frames_does_not_cause_an_endless_search() -> None:
     tree = TransformTree()
     put(tree, "a", "b", 1.0, 1.0)
     put(tree, "b", "a", 1.0, 1.0)

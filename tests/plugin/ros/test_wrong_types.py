@@ -144,7 +144,7 @@ def test_serving_something_else_than_a_service_is_refused_at_the_call(start: Sta
         bus.serve("dock", TRIGGER, None)
 
 
-def test_a_name_that_is_no_text_and_a_listener_that_cannot_be_called_are_refused(start: Start) -> None:
+def test_a_name_that_is_not_a_string_and_a_listener_that_is_not_callable_are_refused(start: Start) -> None:
     bus = start("pass").bus
     for call in (
         lambda: bus.publish(None, message_type("std_msgs/Float64")()),

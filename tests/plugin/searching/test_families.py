@@ -63,7 +63,7 @@ def test_the_values_of_a_family_are_similar(values: tuple[float | bool | None, .
     assert len(found) == expected
 
 
-def test_uses_of_one_constant_and_constants_of_different_files_are_no_family() -> None:
+def test_uses_of_one_constant_and_constants_of_different_files_are_not_a_family() -> None:
     one = constant(1, "K[0]", 2.0)
     again = Operand(
         SiteId("node.py", "run", "line 2"), Span("node.py", 2, 5, 2, 9), "K[0]", 2.0, one.definition
@@ -72,7 +72,7 @@ def test_uses_of_one_constant_and_constants_of_different_files_are_no_family() -
     assert not families([Unit((one,)), Unit((constant(2, "K[1]", 2.0, "other.py"),))])
 
 
-def test_nine_constants_are_a_table_and_no_family() -> None:
+def test_nine_constants_are_a_table_and_not_a_family() -> None:
     many = [Unit((constant(n, f"K[{n}]", 2.0),)) for n in range(1, 10)]
     assert len(families(many[:8])) == 1
     assert not families(many)

@@ -180,7 +180,7 @@ def test_hidden_constants_are_moved_less_often() -> None:
     assert moved[2] < 0.75 * min(moved[:2])
 
 
-def test_the_starts_are_the_best_points_that_lie_apart() -> None:
+def test_the_starts_are_the_best_points_that_are_far_apart() -> None:
     points = np.array([[0.0, 0.0], [0.1, 0.19], [0.2, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]])
     values = np.array([5.0, 9.0, 4.0, 3.0, 2.0, 1.0])
     assert jointly._best_apart(points, values).tolist() == [[0.1, 0.19], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]

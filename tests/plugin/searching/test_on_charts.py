@@ -28,7 +28,7 @@ def operand(line: int, value: float) -> Operand:
         (0.0, offset(0.01), -0.02, -0.015),
     ],
 )
-def test_the_search_finds_a_value_that_no_factor_comes_near(
+def test_the_search_finds_a_value_that_no_factor_approaches(
     value: float, chart: Chart, low: float, high: float
 ) -> None:
     wanted, others = operand(3, value), [operand(line, 2.0) for line in range(4, 12)]

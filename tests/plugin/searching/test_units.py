@@ -56,7 +56,7 @@ def test_uses_of_one_constant_and_opposite_limits_change_together(operands: Any,
     assert [unit.operands for unit in units(operands)] == groups
 
 
-def test_a_unit_on_a_chart_follows_the_plain_one_and_replaces_that_of_a_zero() -> None:
+def test_a_unit_on_a_second_scale_follows_the_plain_unit_and_replaces_that_of_a_zero() -> None:
     zero = Unit((use("0.0", 0.0),))
     plain, pair, none = Unit((use("0.5", 0.5, column=9),)), Unit((FIRST, SECOND)), Unit((OTHER,))
     charts = {zero.operands[0]: SHARE, plain.operands[0]: SHARE, FIRST: SHARE}
@@ -113,7 +113,7 @@ def test_the_best_gain_of_each_operand_is_kept_by_site() -> None:
     }
 
 
-def test_a_factor_that_changes_nothing_is_no_mutation() -> None:
+def test_a_factor_that_changes_nothing_is_not_a_mutation() -> None:
     def mutate(operand: Operand, factor: float) -> Mutation | None:
         return None if operand == OTHER else Mutation(operand, factor)
 

@@ -26,7 +26,7 @@ def test_losses_are_cut_off_where_margins_are() -> None:
     assert cut_off([-9.0, 0.5, 40.0]) == pytest.approx([-1.5, 0.5, 2.5])
 
 
-def test_drifts_far_beyond_the_boundary_have_no_say_in_the_typical_variance() -> None:
+def test_drifts_far_beyond_the_boundary_do_not_affect_the_typical_variance() -> None:
     near = [cut_off([0.4, 0.6]), cut_off([0.5, 0.7])]
     far = [cut_off([30.0, 90.0])] * 20
     assert typical_variance([*near, *far]) == pytest.approx(0.02)

@@ -44,7 +44,7 @@ def test_drifts_take_turns_in_the_seeds_and_are_paired_with_the_same_nominal_see
         assert not any(failed for _, failed in evaluator.recalled(SEARCH, point))
 
 
-def test_a_second_glance_keeps_the_seeds_of_a_drift() -> None:
+def test_evaluating_a_drift_again_uses_its_first_seeds() -> None:
     evaluator = evaluator_of(sloping, SQUARE)
     point = {"a": 0.5, "b": 0.5}
     evaluator.glance(point, 3)
@@ -55,7 +55,7 @@ def test_a_second_glance_keeps_the_seeds_of_a_drift() -> None:
     assert evaluator.rows(SQUARE.nominal, GLANCE) == [0, 1]
 
 
-def test_drifts_with_different_seeds_tell_the_model_more() -> None:
+def test_drifts_with_different_seeds_make_the_model_more_certain() -> None:
     coordinates = Coordinates(SQUARE, SQUARE.nominal)
     vectors = [np.array([0.5, 0.5]), np.array([0.51, 0.5])]
     given = evaluator_of(sloping, SQUARE).guarantee
