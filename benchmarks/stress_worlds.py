@@ -75,7 +75,7 @@ WORLDS: Mapping[str, World] = {one.__name__: one for one in (plane, product, cor
 
 
 def finished(plan: EpisodePlan, passed: bool, total: float) -> EpisodeRun:
-    """Return an episode of a world that is no node: its reward and nothing else."""
+    """Return an episode of a world without a node: its reward and nothing else."""
     trace = Trace((), _NONE, np.zeros(0), _NONE, _NONE, _NONE, np.array([total]), {})
     return EpisodeRun(plan, trace, passed)
 

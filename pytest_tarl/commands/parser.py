@@ -15,7 +15,7 @@ NO_COMMAND = "the following arguments are required: COMMAND"
 class Parser(argparse.ArgumentParser):
     """The parser of `tarl` or of one of its commands.
 
-    `passing` names the commands that pass the arguments after `--` on, in `argv`.
+    `passing` names the commands whose arguments after `--` are stored in `argv`.
     """
 
     passing: frozenset[str] = frozenset()

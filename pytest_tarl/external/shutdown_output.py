@@ -16,8 +16,8 @@ _INTERRUPTED = re.compile(
 
 
 def without_interrupts(output: str) -> str:
-    """Remove each Python traceback whose last exception tells that the process was interrupted.
+    """Remove each Python traceback whose last exception shows that the process was interrupted.
 
-    Other tracebacks remain, also if an interrupt occurred while their exception was handled, or caused it.
+    Other tracebacks remain, even if an interrupt caused their exception or occurred while it was being handled.
     """
     return _INTERRUPTED.sub("", output)
