@@ -54,7 +54,7 @@ NOT_REPRODUCIBLE = (
 class Recorded:
     """The episodes of one world: the first one's trace, the statistics of all, and message types by sensor topic.
 
-    `sarsa` holds one learner per taint list, updated in the order of the seeds; `learner` names their rule.
+    `sarsa` holds one learner per taint list, updated in the order of the seeds; `learner` names the learning rule.
     """
 
     first: Trace
@@ -138,7 +138,7 @@ def record(
 
 
 def repeated(rollout: Rollout, plan: EpisodePlan, recorded: Recorded) -> list[str]:
-    """Run the first episode again; return a note if the result differs. With a simulator, it states both rewards."""
+    """Run the first episode again; if the result differs, return a note (with both rewards for a simulator)."""
     again = sound(rollout(plan))
     if identical(recorded.first, again.trace):
         return []

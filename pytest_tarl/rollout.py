@@ -71,7 +71,7 @@ class Pending(Protocol):
         """Cancel the episode if it has not started; return whether it was cancelled."""
 
     def then(self, call: Callable[[EpisodeRun], None]) -> None:
-        """Call a function with the result once there is one, perhaps in another thread; an error is no result."""
+        """Call a function with the result, perhaps in another thread; do not call it after an error."""
 
 
 class Rollout(Protocol):

@@ -52,7 +52,7 @@ def defined(analysis: Analysis, operand: Operand) -> Place | None:
     name = parameter(analysis, operand) or _name(source, node) or operand.code
     start, end = source.start(node), source.end(node)
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        start = source.text.find(node.value, start, end)  # the number inside the quotes, which contains no escapes
+        start = source.text.find(node.value, start, end)  # the number inside the quotes, without escapes
         end = start + len(node.value)
     return Place(span.path, start, end, node.lineno, name, value) if start >= 0 else None
 

@@ -74,7 +74,7 @@ class RospyNetwork:
         self.wire.forget()
 
     def enter(self, process: Process) -> None:
-        """Assign a copy of rospy to a process that starts, if possible the one that it had in the last episode."""
+        """Assign a copy of rospy to a starting process: if possible, the copy that it had in the last episode."""
         if process in self._copies:
             return
         key, number = process.argv, 0

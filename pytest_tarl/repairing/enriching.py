@@ -77,9 +77,9 @@ def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> floa
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
     """Yield seeds and totals of recorded missions that are likely to lose reward under the drift, most likely first.
 
-    Each bin of a sensor has a score: the share of drifted episodes with a loss that visited it, minus the share of
-    those without a loss. A mission's score is the score of its best bin. Bins of single sensors are scored instead of
-    cells, because one sensor may suffice to detect the drift.
+    Each bin of a sensor has a score: its share of visits among the drifted episodes with a loss, minus that among those
+    without a loss. A mission's score is the score of its best bin. Bins of single sensors are scored instead of cells,
+    because one sensor may suffice to detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}

@@ -24,13 +24,13 @@ def exceeding(comparison: Comparison, totals: Mapping[str, Sequence[float]]) -> 
         "repaired": f"in {world_name(comparison)}",
     }
     for world, place in places.items():
-        low = loss_between(totals[world], designed, CONFIDENCE).low  # by how much the designed program earns less
+        low = loss_between(totals[world], designed, CONFIDENCE).low  # loss of the designed program
         if low > comparison.verdict.tolerance:
             earned, before = (sum(one) / len(one) for one in (totals[world], designed))
             told = (
                 f"{place} the repaired node earns {amount(earned)}, more than the {amount(before)} of the recording: "
-                "the repair does more than undo the drift. If this is not wanted, let the reward also "
-                "count what the repair exceeds, such as speed or force."
+                "the repair does more than undo the drift. If this is not wanted, let the reward penalise "
+                "the excess, such as a high speed or force."
             )
             return [told]
     return []

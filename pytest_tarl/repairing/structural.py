@@ -200,7 +200,7 @@ class Structures:
         return groups
 
     def _at(self, template: Template, among: Sequence[Spot], first: bool | None) -> Iterator[Operand]:
-        """Yield a template's operands at the first expressions, at all later ones, or at all; store their forms."""
+        """Yield a template's operands at the first, the later or all expressions; store their forms."""
         for number, forms in enumerate(_forms(self.order, template, among)):
             if first is None or (number < FIRST) == first:
                 for operand, form in forms:

@@ -29,8 +29,8 @@ class Spot:
     `typical` is the usual size of its value in the designed world, `larger` the larger of its usual sizes in the two
     worlds. `away` is its distance from a publish call, in statements. `hears` says whether its module subscribes to
     topics, so that a template can read a sensor there. `constants` says which constants the expression has at its top
-    level: a factor, a term. `numeric` says whether its value is known to be a number; only for published names it may
-    be something else.
+    level: a factor, a term. `numeric` says whether its value is known to be a number; only the value of a published
+    name may be something else.
     """
 
     site: SiteId

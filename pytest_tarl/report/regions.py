@@ -70,9 +70,9 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 
 
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
-    """Join boxes of an angle that touch across the ends of its range.
+    """Join boxes that touch where an angle wraps around, such as at ±180°.
 
-    The last bin of such a box exceeds the range.
+    The last bin of a joined box exceeds the number of bins.
     """
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:

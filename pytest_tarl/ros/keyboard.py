@@ -214,8 +214,8 @@ def split(streams: Sequence[Any]) -> tuple[list[Any], list[Any], Terminal | None
 def terminals(processes: Sequence[Process]) -> Iterator[None]:
     """Give the nodes terminals as `sys.stdin`, for `input` and for `os.read`; close them at the end.
 
-    Replacements by the test stay in place: its own `input`, or its own stream as `sys.stdin`, from which `input` then
-    reads.
+    If the test itself has replaced `input` or `sys.stdin`, its replacement stays; `input` then reads from the test's
+    stream.
     """
     mine = _StandardInput(sys.stdin)
     replaced: list[tuple[Any, str, Any, Any]] = [(os, "read", os.read, _read(os.read))]

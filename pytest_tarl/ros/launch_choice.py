@@ -17,7 +17,7 @@ def chosen(script: Path, package: Path | None, starts: Sequence[Start]) -> Given
     """Return what the script gets; `package` is the folder of its package.
 
     If the launch files differ, those of the package count; if these differ too, the one that is named after the script.
-    If there is none, return what is equal in all of them.
+    Otherwise, return what is equal in all of them.
     """
     giving = [one for one in starts if one[0].gives]
     near = [one for one in giving if package is not None and one[1].is_relative_to(package)]

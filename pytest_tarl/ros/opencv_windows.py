@@ -1,7 +1,7 @@
 """OpenCV windows of nodes: nothing is drawn, and `cv2.waitKey` waits in virtual time for keys that the test types.
 
-The machine of a test often has no display, its OpenCV often no windows (`opencv-python-headless`), and a real window
-would wait in real time. Images, drawing and everything else of `cv2` are the library's own.
+A test machine often has no display, its OpenCV often lacks windows (`opencv-python-headless`), and a real window would
+wait in real time. Everything else in `cv2`, such as images and drawing, is the real library.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ _FUNCTIONS: Mapping[str, Callable[..., Any]] = {  # function of cv2 → what nod
 
 
 class _OfNodes:
-    """A function of cv2 that acts on the windows of the running node, and outside of nodes is the library's."""
+    """Replaces a function of cv2: in a node, it acts on the node's windows; elsewhere, it calls the library."""
 
     def __init__(self, real: Callable[..., Any], ours: Callable[..., Any]) -> None:
         self.real = real
@@ -183,7 +183,7 @@ class _ReplacingLoader(Loader):
 
 @contextmanager
 def windows_discarded() -> Iterator[None]:
-    """Replace the window functions of OpenCV for nodes, whether it is imported already or by a node.
+    """Replace the window functions of OpenCV for nodes, whether OpenCV is imported already or a node imports it later.
 
     A function that the test itself has replaced stays in place.
     """

@@ -47,8 +47,8 @@ def dtype_from_fields(
 def _structured(cloud: Any, names: Sequence[str] | None, skip_nans: bool, uvs: Any) -> Any:
     """Return the points as a structured array.
 
-    `uvs` selects points: by column and row in ROS 1, where none selects all, and by their number in ROS 2, counted
-    after the points with NaN are left out. In ROS 2, a dense cloud is not searched for NaN.
+    `uvs` selects points. In ROS 1, it holds their columns and rows; if it is empty, all points are selected. In ROS 2,
+    it holds their numbers, counted after the points with NaN are left out; a dense cloud is not searched for NaN.
     """
     import numpy as np
 

@@ -203,7 +203,7 @@ class Process:
 
 
 def _status(error: SystemExit) -> str:
-    """Return the status of an exit; a text, which Python prints before it exits with 1, in one line."""
+    """Return the exit status; for an exit with a text, return 1 (as Python does) and the first line of the text."""
     if isinstance(error.code, int):
         return str(error.code)
     first = next((one.strip() for one in str(error.code).splitlines() if one.strip()), "")

@@ -134,7 +134,10 @@ def quaternion_matrix(quaternion: Numbers) -> Any:
 
 
 def quaternion_from_matrix(matrix: Any) -> Any:
-    """Return the quaternion of a rotation matrix: w is positive below 120°, as in tf, else the largest component."""
+    """Return the quaternion of a rotation matrix.
+
+    As in tf, w is positive for rotations below 120°; for larger ones, the largest component is positive.
+    """
     m = matrix
     squares = [  # 4x², 4y², 4z², 4w²
         1 + m[0][0] - m[1][1] - m[2][2],

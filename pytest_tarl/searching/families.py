@@ -1,8 +1,8 @@
 """Group constants that stand for the same quantity of several axes, sides or joints.
 
-A drone has one stiffness for each axis; if the wind blows in all directions, none of them helps alone. Constants are a
-family if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`), or if their names differ only in a word such as
-`left` or `x`, and if their values are similar.
+A drone has one stiffness for each axis; if the wind blows in all directions, changing one of them alone does not help.
+Constants are a family if they are entries of one table (`STIFFNESS["x"]`, `GAINS[1]`), or if their names differ only in
+a word such as `left` or `x`, and if their values are similar.
 """
 
 from __future__ import annotations

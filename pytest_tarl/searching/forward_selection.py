@@ -137,7 +137,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units that had no effect alone to a good pair: alone, a mission may have ended before they mattered."""
+        """Add units without an effect of their own to a good pair: with it, missions may last until they matter."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():

@@ -182,7 +182,7 @@ class Trials:
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
 
     def ran(self, candidate: Candidate, pairs: Iterable[Pair]) -> list[Outcome]:
-        """Return the outcomes of the episodes of these seeds on which a candidate has run."""
+        """Return a candidate's outcomes on those of the given seeds on which it has run."""
         known = (self._known.get((candidate, pair.seed)) for pair in pairs)
         return [outcome for outcome in known if outcome is not None]
 

@@ -64,7 +64,7 @@ def _alike(one: Joint, other: Joint, selection: ForwardSelection) -> bool:
 def _refined(
     base: Joint, unit: Unit, gains: dict[float, float], selection: ForwardSelection
 ) -> Generator[Candidate, None, None]:
-    """Try further factors of a unit, and those between the best ones while the best is not the unchanged value."""
+    """Try further factors of a unit, and factors between the best ones while the best factor is not 1."""
     yield from _tried(base, unit, FINER, gains, selection)
     for _ in range(ROUNDS):
         if max(gains, key=gains.__getitem__) == 1.0:

@@ -40,8 +40,8 @@ def hold(curve: Curve, evaluator: Evaluator) -> None:
 def holds(ray: Ray, t: float, evaluator: Evaluator, risk: float, paired: int) -> bool:
     """Return whether fresh seeds show, with error probability `risk`, that the guarantee holds at place t.
 
-    The first test allows no failed episode. If one failed, a second, longer test allows one. `paired` episodes bound
-    the loss; if the marker declares total_range, all of them do.
+    The first test allows no failed episode. If one failed, a second, longer test allows one. The loss is bounded with
+    `paired` episodes, or with all episodes if the marker declares total_range.
     """
     given, point, nominal = evaluator.guarantee, ray.point(t), evaluator.space.nominal
     for allowed, share in enumerate(SHARES):

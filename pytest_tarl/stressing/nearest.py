@@ -134,7 +134,7 @@ class Nearest:
         """Yield drifts to confirm, nearer than `limit`: one for each of `steps`, then drifts that failed farther away.
 
         At the boundary, even many episodes rarely show a failure. The candidates therefore lie beyond the boundary, as
-        far as noise and errors of the model require. Each is vetted before. Raise BudgetSpentError.
+        far as noise and errors of the model require. Each candidate is vetted first. Raise BudgetSpentError.
         """
         for point in self._candidates(steps):
             if self._distance(point) >= NEARER * limit:

@@ -1,4 +1,4 @@
-"""The noise of losses: what the model of a search may expect beside the effect of a drift."""
+"""The noise of losses: how much losses vary apart from the effect of a drift."""
 
 from __future__ import annotations
 

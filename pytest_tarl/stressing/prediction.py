@@ -163,8 +163,8 @@ class Prediction:
     def excess(self, vectors: Vector, errors: float = 0.0) -> Vector:
         """Return how far each vector's predicted loss or failure rate exceeds what fresh episodes can show.
 
-        The larger excess of the two counts, in units of the tolerated loss. The prediction is first lowered by `errors`
-        standard deviations. The result has the shape (drifts,).
+        Of the two excesses, the larger one counts; it is in units of the tolerated loss. The prediction is first
+        lowered by `errors` standard deviations. The result has the shape (drifts,).
         """
         mean, deviation = self._losses.moments(*self._prior(vectors, 0))
         found: Vector = mean - errors * deviation - 1.0 - self.shown.depth

@@ -207,7 +207,7 @@ def _but_must_hold(stress: Stress, one: Failure) -> str:
 
 
 def _promised(stress: Stress, one: Failure) -> bool:
-    """Return whether every direction of a failure is inside its `must_hold`; without it, only nominal is."""
+    """Return whether every direction of a failure is inside its `must_hold`, which defaults to the nominal value."""
     return all(_inside(stress, name, one.point[name]) for name in one.names)
 
 

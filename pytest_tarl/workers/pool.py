@@ -130,7 +130,7 @@ class Worker:
     def end(self) -> None:
         """End the worker immediately.
 
-        Two threads may call this: the one that waits for it and the one that stops the run.
+        Two threads may call this: the one that waits for the worker and the one that stops the run.
         """
         self._over.set()
         self._process.kill()

@@ -12,7 +12,7 @@ Entrance = tuple[int, Frame, Frame, int]  # (condition, frame of the value, fram
 
 
 def made_alongside(graph: Graph) -> dict[int, list[int]]:
-    """Return, for each node, the nodes whose values it uses without their conditions, by the number of their copies."""
+    """Return, for each node, the nodes whose values it uses through a copy without conditions."""
     found: dict[int, list[int]] = {}
     for node, formers in enumerate(graph.data):
         if not graph.stands_for.keys().isdisjoint(formers):

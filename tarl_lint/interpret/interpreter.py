@@ -259,7 +259,7 @@ class Interpreter:
         return frozenset(map(self.graph.unchosen, free))
 
     def nothing_yet(self, value: Value) -> bool:
-        """Return whether a value is unset so far, or None on all paths."""
+        """Return whether a value is still unset, or is None on all paths."""
         if value.pts or (value.deps and value.consts != NONE_ONLY):
             return False
         if value.consts == NONE_ONLY:

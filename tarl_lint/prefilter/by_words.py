@@ -91,7 +91,7 @@ def mentioning(modules: Iterable[M], config: Config, *, clients: bool = False) -
 
 
 def endpoint_words(config: Config, *, clients: bool = False) -> Callable[[str], bool]:
-    """Return a test of texts: whether one contains a word that every subscribing or publishing module contains."""
+    """Return a function that tests whether a text has a word that every subscribing or publishing module has."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()

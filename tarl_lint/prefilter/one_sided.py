@@ -78,13 +78,13 @@ def two_sided(texts: Sequence[str], config: Config) -> bool:
 
 
 def _hears_and_says(texts: Sequence[str]) -> tuple[bool, bool]:
-    """Return (whether texts contain words that subscribe, whether they contain words that publish)."""
+    """Return two truth values: whether texts contain words used to subscribe, and words used to publish."""
     hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
     return (True, True) if answers else (hears, says)
 
 
 def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:
-    """Return whether a class inherits from an external package that is not part of Python or ROS."""
+    """Return whether a class inherits from a class of an external package that is not part of Python or ROS."""
     known = KNOWN | ours
     names: set[str] = set()
     for node in tree.body:

@@ -1,6 +1,6 @@
-"""Compare two texts of a file in the parts that an analysis has read of the first one.
+"""Compare two texts of a file, but only the parts of the first text that an analysis has read.
 
-If these parts agree, an analysis of the second text has the same result on other lines.
+If these parts agree, an analysis of the second text has the same result, possibly on other lines.
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ class Cache:
             self.put_entry(key, list(parts))
 
     def adapted(self, scripts: Sequence[Script]) -> Report | None:  # noqa: ARG002 - used by the cache of the editor
-        """Return a report for earlier texts of the files that still holds; None if there is none."""
+        """Return a report for earlier texts of the files that is still valid; None if there is none."""
         return None
 
     def edited(self, digests: Mapping[str, str]) -> frozenset[str]:  # noqa: ARG002 - used by the cache of the editor

@@ -139,7 +139,7 @@ def _reports(
 
 
 def _known(task: Task, key: str, cache: Cache) -> Report | None:
-    """Return the report of a task if it is cached, or if the report for earlier texts of its files still holds."""
+    """Return the report of a task if it is cached, or if the report for earlier texts of its files is still valid."""
     report = cache.report(key)
     if report is None and task.analyse:
         report = cache.adapted(task.scripts)

@@ -56,7 +56,7 @@ class Result:
     `found` are the findings in the form of a baseline. `vanished` and `kept` are the other entries of the baseline.
     `unmatched` are messages about settings without effect. `followed` are the installed packages that were analysed.
     `ended` are the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
-    `has_endpoints` is false if no file contains a word that subscribes or publishes. `left_out` counts findings
+    `has_endpoints` is false if no file contains a word used to subscribe or publish. `left_out` counts findings
     disabled by `per-file-ignores`. `off_by_default` counts findings of rules that are off by default. Unless
     `names_errors`, text reports count unreadable files without listing them. `kinds` are the kinds of flows that were
     requested; `reports_hazards` says whether hazards were. New findings with codes in `failing` fail the run.

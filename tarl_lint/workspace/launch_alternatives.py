@@ -134,7 +134,7 @@ def _one_of_actions(values: list[tuple[str, Any]], line: int) -> Any:
 
 
 def _plain_group(action: Action) -> bool:
-    """Return whether an action is a launch description without anything but its actions."""
+    """Return whether an action is a launch description that contains nothing but actions."""
     return action.kind == "group" and set(action.values) <= {"actions", "assumed"}
 
 

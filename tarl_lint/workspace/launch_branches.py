@@ -131,7 +131,10 @@ class BranchingInterpreter(Interpreter):
                 return
 
     def _alternatives(self, runs: _Runs, text: str, line: int, names: Scope) -> None:
-        """Interpret both branches, and go on with the names of those that do not leave."""
+        """Interpret both branches, and continue with the names of those that do not end early.
+
+        A branch ends early by `return`, `raise`, `break` or `continue`.
+        """
         text, other_text = closed(text), negated(text)
         before = _Names.of(names)
         old = self._containers(before)
@@ -156,7 +159,7 @@ class BranchingInterpreter(Interpreter):
             self._go_on(_all(text, rest), old, rest, other)
 
     def _branch(self, run: Callable[[], None], branch: _Branch) -> tuple[Exception | None, list[_Branch]]:
-        """Interpret one branch. Return how it leaves, or None, and the conditions under which it goes on."""
+        """Interpret a branch; return the exception that ended it early, or None, and the conditions if it continues."""
         count = len(self._branches)
         self._branches.append(branch)
         try:
@@ -178,12 +181,12 @@ class BranchingInterpreter(Interpreter):
     def _go_on(
         self, text: str, old: dict[int, Any], within: list[_Branch], left: Exception | None = None
     ) -> None:
-        """Let what follows run under a condition, until the end of what `left` leaves."""
+        """Put the following statements under a condition, up to the end of the function or loop that `left` ends."""
         whole = any(one.whole for one in within) if left is None else not isinstance(left, Left) or left.whole
         self._branches.append(_Branch(text, old, whole))
 
     def _leave_both(self, left: Exception, other: Exception, text: str) -> None:
-        """Raise how both branches leave."""
+        """Raise the exception that represents both branches, each of which ended early."""
         if isinstance(left, Raised):
             raise other
         if isinstance(other, Raised):

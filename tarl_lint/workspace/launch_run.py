@@ -190,7 +190,7 @@ class Runner:
             context.settings = (*context.settings, *given)
 
     def _declare(self, name: str, default: Any, context: Context, condition: str) -> None:
-        """Declare an argument. Its default is unknown if it has another one under another condition."""
+        """Declare an argument. Its default is unknown if different conditions give it different defaults."""
         self.arguments.add(name)
         text = f"$(var {name})" if default is None else performed(default, context)
         if name not in context.configurations:

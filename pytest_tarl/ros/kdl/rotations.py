@@ -112,15 +112,15 @@ class Rotation:
         return None
 
     def DoRotX(self, angle: float) -> None:  # noqa: N802
-        """Rotate about the own x axis."""
+        """Rotate about the rotated x axis."""
         self._data = (self * Rotation.RotX(angle))._data
 
     def DoRotY(self, angle: float) -> None:  # noqa: N802
-        """Rotate about the own y axis."""
+        """Rotate about the rotated y axis."""
         self._data = (self * Rotation.RotY(angle))._data
 
     def DoRotZ(self, angle: float) -> None:  # noqa: N802
-        """Rotate about the own z axis."""
+        """Rotate about the rotated z axis."""
         self._data = (self * Rotation.RotZ(angle))._data
 
     def GetRPY(self) -> tuple[float, float, float]:  # noqa: N802

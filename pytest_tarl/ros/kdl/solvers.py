@@ -42,7 +42,7 @@ class _Solver:
         return _TEXTS.get(code, "UNKNOWN ERROR")
 
     def updateInternalDataStructures(self) -> None:  # noqa: N802
-        """Take over changes of the chain; the solvers read it anew in each call."""
+        """Do nothing: the solvers read the chain anew in each call."""
 
     def _ended(self, code: int) -> int:
         self._error = code

@@ -126,7 +126,7 @@ class Vector:
 
 
 class _Six:
-    """Two vectors, of which the subclasses name one."""
+    """Two vectors: a linear part and an angular part, which the subclasses name."""
 
     __slots__ = ("_one", "_two")
     __hash__ = None  # type: ignore[assignment]

@@ -55,12 +55,12 @@ class Motions:
         return model
 
     def state(self, model: RobotModel | None) -> dict[str, float]:
-        """Return the values of all joints; a joint that was not heard of is at 0."""
+        """Return the values of all joints; a joint without a received value is at 0."""
         names = model.joints if model is not None else ()
         return {name: self._state.get(name, 0.0) for name in names}
 
     def run(self, trajectory: Any) -> bool:
-        """Publish the states of a trajectory in their time; return False if it is stopped."""
+        """Publish each state of a trajectory when it is due; return False if the motion is stopped."""
         began, self.stopped = Time.now(), False
         for point in trajectory.points:
             wait = (began + point.time_from_start - Time.now()).to_sec()

@@ -32,7 +32,8 @@ _SETTINGS: Final = {
 class MoveGroupCommander(Targets):
     """A group of joints, described by `robot_description` and `robot_description_semantic`.
 
-    Without them, it can be made, but no plan succeeds. Settings of the planner are kept and have no effect.
+    Without these parameters, a group can be created, but no plan succeeds. Settings of the planner are kept and have no
+    effect.
     """
 
     def __init__(
@@ -84,9 +85,9 @@ class MoveGroupCommander(Targets):
     def compute_cartesian_path(
         self, waypoints: Sequence[Any], eef_step: float, *options: Any, **_named: Any
     ) -> tuple[Any, float]:
-        """Return the trajectory of the link along straight lines through poses, and the part that it reaches.
+        """Return the trajectory of the link along straight lines through poses, and the covered fraction of the path.
 
-        The last reachable pose ends it. Raise MoveItCommanderException for a step that is not positive.
+        It ends at the last reachable pose. Raise MoveItCommanderException for a step that is not positive.
         """
         if eef_step <= 0 or any(isinstance(one, float | int) and one < 0 for one in options[:1]):
             raise MoveItCommanderException("The step of a Cartesian path must be positive.")

@@ -18,7 +18,7 @@ from pytest_tarl.ros.posemath import fromMsg
 
 
 class Targets:
-    """A group of a robot, where it is, and where it shall go."""
+    """A group of joints of a robot, its present state and its target."""
 
     def __init__(self, name: str, description: str) -> None:
         self._motions = Motions.here()
@@ -208,7 +208,7 @@ class Targets:
         self._goal = None
 
     def set_pose_targets(self, poses: Sequence[Any], end_effector_link: str = "") -> None:
-        """Set target poses, of which the first one counts here."""
+        """Set target poses; only the first one is used."""
         self.set_pose_target(poses[0], end_effector_link)
 
     def set_position_target(self, xyz: Sequence[float], end_effector_link: str = "") -> None:

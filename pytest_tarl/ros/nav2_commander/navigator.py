@@ -30,9 +30,9 @@ class TaskResult(Enum):
 
 
 class BasicNavigator(PathRequests, MapRequests):
-    """A node that sends one task at a time: start it, ask `isTaskComplete` until it is, then `getResult`.
+    """A node that sends one task at a time: start it, call `isTaskComplete` until it returns true, then `getResult`.
 
-    It waits in virtual time for servers that are not there; the nodes or the world of a test provide them.
+    It waits in virtual time for missing servers, which the nodes or the world of a test provide.
     """
 
     def __init__(self, node_name: str = "basic_navigator", namespace: str = "") -> None:

@@ -26,8 +26,8 @@ def set_message_fields(
 ) -> list[Stamp]:
     """Store the values of a dictionary, with dictionaries for the messages inside, in the fields of a message.
 
-    Return a function for each header given as `auto` and each time given as `now`, if these are expanded. The
-    function stores the time that it is called with.
+    Return a function for each header given as `auto` and each time given as `now`, if these are expanded. The function
+    stores the time that is passed to it.
 
     Raise TypeError if a message is not given as a dictionary, AttributeError for an unknown field, and ValueError for
     a value that does not fit.

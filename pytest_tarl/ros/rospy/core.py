@@ -31,7 +31,7 @@ add_client_shutdown_hook = add_preshutdown_hook = add_shutdown_hook
 
 
 def deprecated(func: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function with a DeprecationWarning at every call."""
+    """Wrap a function so that every call emits a DeprecationWarning."""
 
     @functools.wraps(func)
     def warned(*args: Any, **kwds: Any) -> Any:

@@ -274,7 +274,7 @@ class Subscriber(Topic):
 
 
 class SubscribeListener:
-    """Base class for listeners to subscriptions by nodes; the simulated world is not announced."""
+    """Base class for listeners that are notified when a node (not the simulated world) subscribes."""
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         """Do nothing by default."""

@@ -9,11 +9,11 @@ from pytest_tarl.ros.process import running_process
 
 
 def set_loggers(info: Any, warn: Any, debug: Any, error: Any) -> None:
-    """Ignore other log functions; messages go to the node's log."""
+    """Ignore the given log functions; messages go to the node's log."""
 
 
 def set_shutdown_check(cb: Callable[[], bool]) -> None:
-    """Ignore another check; state machines end when the node ends."""
+    """Ignore the given check; state machines end when the node ends."""
 
 
 def is_shutdown() -> bool:

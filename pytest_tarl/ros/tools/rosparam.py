@@ -61,7 +61,7 @@ def load_str(text: str, filename: str, default_namespace: str | None = None, ver
 
 
 def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
-    """Set a dictionary of parameters below a namespace. Raise RosParamException for any other value in `/`."""
+    """Set a dictionary of parameters below a namespace. Raise RosParamException if any other value is set in `/`."""
     if absolute(ns) == "/" and not isinstance(values, dict):
         raise RosParamException("global / can only be set to a dictionary")
     if verbose:

@@ -299,7 +299,7 @@ def _supplied(frame: Frame, callback: Value) -> bool:
 
 
 def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
-    """Return the functions passed to a helper, directly or in nested calls, that wraps them in a callback."""
+    """Return the functions that are passed, directly or in nested calls, to a helper that wraps them in a callback."""
     if target.kind == "partial" and isinstance(target.info, tuple):
         return {o for o in target.info[0].pts if o.kind in CALLABLE}
     maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
