@@ -79,8 +79,8 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=400)
     runs = parser.parse_args().runs
     for spread, shared in ((0.1, 0.0), (1.0, 0.0), (1.0, 0.9)):
-        print(f"\nspread {spread:g}, of which the seed decides {shared:.0%}\n")
-        print("| repair | it loses | it is | accepted | episodes |\n|---|---|---|---|---|")
+        print(f"\nspread {spread:g}, {shared:.0%} of it determined by the seed\n")
+        print("| repair | true loss | right or wrong | accepted | episodes |\n|---|---|---|---|---|")
         for ratio in RATIOS:
             print(row(f"reward × {ratio:g}, never fails", ratio, 0.0, spread, shared, runs), flush=True)
         for failing in FAILING[1:]:

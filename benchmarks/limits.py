@@ -211,7 +211,7 @@ def main() -> None:
         print(json.dumps([process_time() - before[0], before[1], peak(), told]))
         return
     print(
-        "| case | size | CPU s | peak MB | ms a unit | kB a unit | came to |\n|---|---|---|---|---|---|---|"
+        "| case | size | CPU s | peak MB | ms a unit | kB a unit | result |\n|---|---|---|---|---|---|---|"
     )
     worse = []
     for name in given.cases or CASES:

@@ -49,7 +49,7 @@ def _launches(judged: Mapping[str, Any], trees: Path) -> Iterator[tuple[Path, li
     for repository, data in judged.items():
         tree = trees / repository.replace("/", "+")
         if not tree.is_dir():
-            print(f"{tree}: not there, left out", file=sys.stderr)
+            print(f"{tree}: not found, skipped", file=sys.stderr)
             continue
         for file, rows in data["launch"].items():
             yield tree / file, rows

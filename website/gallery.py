@@ -97,7 +97,7 @@ def write(staged: Path) -> None:
         "These pages were made by the [examples](../examples/index.md) when this site was built. Each is one file that",
         "loads nothing.",
         "",
-        "| report | example | what there is to see |",
+        "| report | example | what it shows |",
         "|---|---|---|",
     ]
     for shown in SHOWN:

@@ -335,8 +335,8 @@ class Simulator:
 
     def _hung(self) -> SimulatorError:
         return SimulatorLostError(
-            f"The simulator {self.setup.shown} hung at {self.clock:g} s of simulated time: no new message "
-            "arrived within "
+            f"The simulator {self.setup.shown} hung at {self.clock:g} s of simulated time: nothing new came "
+            "within "
             f"{self.setup.patience:g} s{self._words()}."
         )
 

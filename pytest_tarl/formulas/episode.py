@@ -37,9 +37,8 @@ class EpisodeFormulas:
         if self._judge is None:
             if begun or self._now():
                 raise SettingsError(
-                    "tarl.require: the episode has already begun, and the signals of the formula were not "
-                    "recorded from the start: call tarl.require before the first step, or put requires=[] "
-                    "into the marker."
+                    "tarl.require: the formula was added after the episode began, so its signals were not recorded so "
+                    "far: call tarl.require before the first step, or put requires=[] into the marker."
                 )
             self._judge = Judge(self._requirements.names, (), self._requirements.said)
         self._judge.require(formula)

@@ -328,7 +328,7 @@ def test_the_command_ingest_prints_the_missions_of_each_log_and_their_sum(
     told = capsys.readouterr()
     assert told.out.splitlines() == [
         "  a.log: 3 missions of r1",
-        "  b.log: 4 missions of r1, 2 were there already, 1 not judged by every formula",
+        "  b.log: 4 missions of r1, 2 were already in the data set, 1 not judged by every formula",
         "    note: cut off",
         "    note: late",
         "data: 7 missions added",

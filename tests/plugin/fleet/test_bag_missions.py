@@ -67,7 +67,7 @@ def test_bags_of_every_format_are_replayed_once_and_compared_with_the_recording(
     converted = write_bag(project.path / "again" / "r1.db3", mission(1.0, 1))
     assert ingested(project, *bags, converted) == 0
     assert missions(project) == found
-    assert "1 were there already" in capsys.readouterr().out
+    assert "1 were already in the data set" in capsys.readouterr().out
     assert main(["fleet", str(project.path / "fleet"), "--by", "version"]) == 0
     assert "4 missions of 4 robots" in capsys.readouterr().out
 

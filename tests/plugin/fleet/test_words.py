@@ -207,8 +207,8 @@ def test_the_effect_of_a_repair_is_printed_with_intervals_and_counts() -> None:
     )
     assert [*repair_words.lines(some, {"guard-1": "mud"})] == [
         (
-            "Repairs, against missions without a repair at the same site in the same week (intervals "
-            "hold together at 95 %)"
+            "Repairs, against missions without a repair at the same site in the same week (simultaneous "
+            "intervals at 95 %)"
         ),
         (
             "  guard-1 at wet: helps, reward +0.5 (+0.25 to +0.75), pass rate +5.0 points (+1 to +9), 1,200 missions "
