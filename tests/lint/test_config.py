@@ -190,7 +190,7 @@ def test_per_file_ignores_are_patterns_with_codes(in_directory):
         ('sources = ["listen"]', r"'sources' .* must be a list of qualified names .* not \['listen'\]"),
         ('sinks = "bus.send"', r"'sinks' .* must be a list of qualified names"),
         ('sanitizers = ["bus.send()"]', r"'sanitizers' .* must be a list of qualified names"),
-        ('remaps = ["scan"]', r"'remaps' .* must be a table of topics"),
+        ('remaps = ["scan"]', r"'remaps' .* must be a table from topics"),
         ('tf2 = "yes"', r"'tf2' .* must be true or false, not 'yes'"),
         ('wrappers = ["bus.listen"]', r"'wrappers' .* must be a table"),
         ('wrappers = {"listen" = "rospy.Subscriber"}', r"'wrappers' .* must be a table"),

@@ -84,7 +84,7 @@ def test_the_nominal_option_is_the_first_unless_stated() -> None:
         (lambda: Drift.range(0, 1, nominal=float("nan")), "nominal value must be"),
         (lambda: Drift.choice("up"), "at least two options, got 1"),
         (lambda: Drift.choice(), "at least two options, got 0"),
-        (lambda: Drift.choice("up", "down", nominal="left"), "'left' is none of"),
+        (lambda: Drift.choice("up", "down", nominal="left"), "'left' is not one of"),
         (lambda: Drift.step(0, 1, nominal=1, at=-1), "at must be a moment"),
         (lambda: Drift.step(0, 1, nominal=2, at=1), "nominal value must be"),
         (lambda: Drift.step(0, 1, nominal=None, at=1), "give nominal="),  # type: ignore[arg-type]

@@ -283,7 +283,7 @@ def test_parameters_override_the_quality_of_service(start: Start) -> None:
     with pytest.raises(NodeError, match="check refused the profile: no"):
         start(check.format(False) + dedent(node))
     with pytest.raises(
-        NodeError, match="'sometimes' is no reliability: it is one of system_default, reliable,"
+        NodeError, match="'sometimes' is not a valid reliability: use one of system_default, reliable,"
     ):
         start(check.format(True) + dedent(node),
               parameters={"qos_overrides./out.publisher_left.reliability": "sometimes"})  # fmt: skip
