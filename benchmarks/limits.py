@@ -210,9 +210,7 @@ def main() -> None:
         told = CASES[given.cases[0]][0](given.size)
         print(json.dumps([process_time() - before[0], before[1], peak(), told]))
         return
-    print(
-        "| case | size | CPU s | peak MB | ms a unit | kB a unit | result |\n|---|---|---|---|---|---|---|"
-    )
+    print("| case | size | CPU s | peak MB | ms a unit | kB a unit | result |\n|---|---|---|---|---|---|---|")
     worse = []
     for name in given.cases or CASES:
         rows = []

@@ -33,7 +33,9 @@ def main() -> int:
     """Print the milliseconds per episode, in wall time, in CPU time, and in CPU time relative to the first kind."""
     argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0]).parse_args()
     first = 0.0
-    print("| kind | ms an episode, wall | ms an episode, CPU | CPU relative to the first |\n|---|---|---|---|")
+    print(
+        "| kind | ms an episode, wall | ms an episode, CPU | CPU relative to the first |\n|---|---|---|---|"
+    )
     for kind, (world, options, episodes) in KINDS.items():
         few = _seconds(world, options, FEW)
         many = _seconds(world, options, FEW + episodes)

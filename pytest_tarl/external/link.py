@@ -12,7 +12,7 @@ from pytest_tarl.external.plain import filled, to_plain
 NAME = "tarl_link"
 OWN = ("/rosout", "/parameter_events")
 DEPTH = 1000
-# after this many attempts without a message, none is left; an attempt may handle another event instead
+# after this number of attempts without a message, no message is left; an attempt may handle another event
 IDLE = 3
 
 Say = Callable[[dict[str, Any]], None]

@@ -139,7 +139,7 @@ class Simulator:
             "PYTHONUNBUFFERED": "1",
             **os.environ,
             **one.environment,
-        }  # a message quotes its last words
+        }  # error messages quote the simulator's last output
         self._client.do(
             "start",
             command=list(one.command),

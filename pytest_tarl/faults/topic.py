@@ -76,7 +76,7 @@ def of_field(
 def of_topic(
     kind: str, topic: str, extent: Span | Choice, begin: Callable[[float, np.random.Generator], Channel]
 ) -> TopicFault:
-    """Return a fault of whole messages. Raise SettingsError for an invalid topic."""
+    """Return a fault that acts on whole messages. Raise SettingsError for an invalid topic."""
     require_text(kind, "topic", topic)
     return TopicFault(kind, topic, extent, begin)
 

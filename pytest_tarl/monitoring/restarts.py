@@ -27,8 +27,8 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 BETS = 12  # number of bets per process
 LARGE = 600  # stakes above 2^LARGE are scaled down; a single factor is below 2^70
-# the size of stakes is checked after missions whose number is a multiple of this, so that it does not matter how
-# missions are divided into calls
+# the size of stakes is checked only after a multiple of this number of missions, so that the result does not depend
+# on how missions are divided into calls
 LOOK = 4
 
 

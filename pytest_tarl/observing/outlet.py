@@ -24,7 +24,7 @@ ENDED = (
     "all later records are lost."
 )
 _PIECE = SIZE // 4  # size of the pieces in which larger messages are sent (bytes)
-_PLAIN = 2  # version of marshal without references to repeated objects, which is written faster
+_PLAIN = 2  # version of marshal without references to repeated objects; it is faster to write
 _LOOKS = 10  # number of calls of `pump` between two checks that the writer still runs
 _PAUSE = 0.005  # time between two attempts while closing (s)
 

@@ -54,7 +54,7 @@ class Examiner:
         self.ledger = Ledger()
         self.waiting: list[
             Candidate
-        ] = []  # they pass on known seeds, but `SHARE` candidates of the same operands were already tested
+        ] = []  # these pass on known seeds, but `SHARE` candidates of the same operands were already tested
         self._missed = Missed()
         self.others = Others(mutants, self.ledger, self._missed)
         self.tested = 0

@@ -42,7 +42,8 @@ CLAMPS = ("clamp", "clip", "saturate", "constrain")
 # minimum number of episodes for templates with a telling sensor (see `telling_sensors`), but never more than a third
 # of the episodes left
 LEAST = 50
-# if the candidates of a group need more than its own episodes, they leave this share of the others to later groups
+# if the candidates of a group need more than the group's own episodes, they leave this share of the remaining
+# episodes to later groups
 KEPT = 0.6
 COMMANDS = 3  # maximum number of commands that are scaled or shifted before all other changes
 # minimum number of episodes for each of these changes, but never more than a third of the episodes left

@@ -38,7 +38,7 @@ PREDICTED = 3  # number of predicted drifts to try in a row
 GAIN = 0.01  # minimum expected gain of a drift that is tried, in units of the best distance
 # numbers of standard deviations by which the predictions may be optimistic, in turn
 BOLD = (0.0, 1.0, 0.0, 0.5)
-# a tried drift counts as failing if its predicted excess loss falls short of the detectable one by at most this share
+# a tried drift also counts as failing if its predicted excess loss is below the detectable excess by at most this share
 SURE = 0.5
 # number of standard deviations below 0 at which the margin of a tried drift clearly shows a failure
 CLEAR = 4.0

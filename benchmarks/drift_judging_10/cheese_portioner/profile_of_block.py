@@ -4,7 +4,7 @@ from collections import namedtuple
 
 Section = namedtuple("Section", "area highest")
 
-FLOOR = 0.15  # lower heights are those of the belt (cm)
+FLOOR = 0.15  # smaller heights belong to the belt, not to the block (cm)
 
 
 def section(heights, spacing):

@@ -26,7 +26,7 @@ class Line:
     def __init__(self, rng, ratio):
         self.rng = rng
         self.ratio = ratio
-        self.bottles = []  # places of front edges that are still to be labelled
+        self.bottles = []  # positions of the front edges of bottles without a label
         place = -60.0
         for _ in range(BOTTLES):
             self.bottles.append(place)

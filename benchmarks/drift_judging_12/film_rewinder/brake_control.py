@@ -5,14 +5,14 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Float32
 
-K_BRAKE = 14.0  # Nm per A of the powder brake
+K_BRAKE = 14.0  # torque of the powder brake per current (Nm/A)
 BEARING = 0.4  # Nm
 TENSION = 80.0  # N
 DANCER_MIDDLE = 0.50
-KP = 0.35  # A per unit of the dancer
+KP = 0.35  # current per unit of the dancer's position (A)
 KD = 0.08
-INERTIA = 26.0  # Nm per m/s2 and m of radius, of a full roll
-START_CURRENT = 0.25  # A while the line stands
+INERTIA = 26.0  # torque per acceleration and radius of a full roll (Nm per m/s2 and m)
+START_CURRENT = 0.25  # current while the line stands (A)
 MAX_CURRENT = 4.0
 DT = 0.1
 

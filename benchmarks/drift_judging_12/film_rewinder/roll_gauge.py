@@ -6,7 +6,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import Range
 from std_msgs.msg import Float32
 
-MOUNT = 0.60  # m from the sensor to the axle
+MOUNT = 0.60  # distance from the sensor to the axle (m)
 CORE, FULL = 0.05, 0.42  # m
 SMOOTHING = 0.2
 

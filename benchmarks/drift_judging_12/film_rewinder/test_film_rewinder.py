@@ -13,8 +13,8 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.1
 STEPS = 250
 WANTED = 80.0  # N
-LOOSE, TIGHT = 66.0, 100.0  # N, mean over half a second
-THICKNESS = 0.0012  # m, of a coarse foamed film
+LOOSE, TIGHT = 66.0, 100.0  # mean tension over half a second (N)
+THICKNESS = 0.0012  # of a coarse foamed film (m)
 SETTLED = 6.0  # s
 
 

@@ -5,15 +5,15 @@ import rclpy
 from rclpy.node import Node
 from std_msgs.msg import Bool, Float32, Int32
 
-KG_PER_COUNT = 0.004  # load cell under the ladle
-TARE = 20000  # counts of the empty ladle
-MOULD = 12.0  # kg of iron in a mould
-IN_FLIGHT = 0.5  # kg that still leave the lip when the ladle starts to tilt back
-SLOW_BELOW = 4.0  # kg that are missing
+KG_PER_COUNT = 0.004  # scale of the load cell under the ladle (kg)
+TARE = 20000  # reading for an empty ladle (counts)
+MOULD = 12.0  # mass of iron in a mould (kg)
+IN_FLIGHT = 0.5  # mass that still leaves the lip after the ladle starts to tilt back (kg)
+SLOW_BELOW = 4.0  # missing mass below which the ladle pours slowly (kg)
 FAST, SLOW, BACK = 2.4, 0.9, -6.0  # deg/s
 SMOOTHING = 0.6
-STARTS = 0.15  # kg that show that iron flows
-MIN_LEFT = 8.0  # kg, below this slag would come along
+STARTS = 0.15  # loss of mass that shows that iron flows (kg)
+MIN_LEFT = 8.0  # with less iron in the ladle, slag would flow out (kg)
 
 
 class FoundryLadle(Node):

@@ -12,7 +12,7 @@ Int32 = message_type("std_msgs/msg/Int32")
 DT = 0.2
 MOULDS = 3
 FULL = 12.0  # kg
-MAY_MISS = 0.05  # of the weight
+MAY_MISS = 0.05  # share of the weight
 TIME_BOUND = 90.0
 
 
@@ -25,9 +25,9 @@ class Casting:
         self.mass = rng.uniform(58.0, 62.0)
         self.fluidity = rng.uniform(0.9, 1.1)
         self.tilt = 0.0
-        self.falling = []  # kg between lip and mould, by step
+        self.falling = []  # mass between lip and mould, by step (kg)
         self.moulds = [0.0]
-        self.moving = 0.0  # s until the next mould is in place
+        self.moving = 0.0  # time until the next mould is in place (s)
         self.time, self.gained = 0.0, 0.0
         self.failure = ""
 
@@ -47,7 +47,7 @@ class Casting:
         self.time += DT
         self.gained = 0.0
         self.tilt = max(0.0, min(90.0, self.tilt + (rate.data if rate else 0.0) * DT))
-        lip = 8.0 + 0.55 * (62.0 - self.mass)  # deg at which the iron reaches the lip
+        lip = 8.0 + 0.55 * (62.0 - self.mass)  # angle at which the iron reaches the lip (deg)
         flow = 0.16 * self.fluidity * max(0.0, self.tilt - lip) ** 1.2 * self.rng.uniform(0.95, 1.05)
         leaves = min(self.mass, flow * DT)
         self.mass -= leaves

@@ -8,12 +8,12 @@ from rclpy.node import Node
 from sensor_msgs.msg import Temperature
 from std_msgs.msg import Bool, Float32
 
-LANDING = 6.8  # m above the water
-HYDRAULIC_LAG = 0.30  # s from a command to the motion of the cylinder
+LANDING = 6.8  # height above the water (m)
+HYDRAULIC_LAG = 0.30  # time from a command to the motion of the cylinder (s)
 RATE_SMOOTHING = 0.7
-HOVER = 0.6  # m above the landing before it is lowered
+HOVER = 0.6  # height above the landing before the gangway is lowered (m)
 LOWERING = 0.15  # m/s
-CALM = 0.9  # m/s of heave above which nobody may walk
+CALM = 0.9  # heave above which nobody may walk (m/s)
 WARM_OIL = 5.0  # °C
 DT = 0.1
 

@@ -3,7 +3,7 @@
 import math
 
 LENGTH = 18.0  # m
-PIVOT = 6.0  # m above the water
+PIVOT = 6.0  # height above the water (m)
 LUFF_MIN, LUFF_MAX = -0.30, 0.30  # rad
 
 

@@ -10,14 +10,14 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32
 
 METRES_PER_TICK = 0.002
-TRACK = 0.95  # m between the tracks
+TRACK = 0.95  # distance between the tracks (m)
 LANES = [(7.0, 0.0), (7.0, 5.0), (0.5, 5.0), (0.5, 10.0), (7.0, 10.0)]  # m
 SPEED = 0.7  # m/s
 TURN = 1.4  # 1/s
 MAX_TURN = 0.6  # rad/s
 REACHED = 0.25  # m
 ON_COURSE = 0.25  # rad
-BLADE_OVER = 0.02  # m of snow below which the blade stays up
+BLADE_OVER = 0.02  # depth of snow below which the blade stays up (m)
 
 
 def wrapped(angle):

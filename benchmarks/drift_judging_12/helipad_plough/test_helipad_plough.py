@@ -14,7 +14,7 @@ DT = 0.2
 TICK = 0.002
 TRACK = 0.95
 CORNERS = [(7.0, 0.0), (7.0, 5.0), (0.5, 5.0), (0.5, 10.0), (7.0, 10.0)]
-NEAR = 1.2  # m, half the width of the blade
+NEAR = 1.2  # half the width of the blade (m)
 TIME_BOUND = 150.0
 STANDS = 4.0  # s
 

@@ -5,13 +5,13 @@ import rospy
 from sensor_msgs.msg import Temperature
 from std_msgs.msg import Bool, Float32
 
-SETPOINT = 74.0  # °C at the end of the holding tube
+SETPOINT = 74.0  # temperature at the end of the holding tube (°C)
 LEGAL = 72.0
 HYSTERESIS = 0.3
-GAIN = 0.012  # of the steam valve per K
+GAIN = 0.012  # opening of the steam valve per K
 RESET = 12.0  # s
-PREHEAT = 0.0135  # of the steam valve per K between raw milk and setpoint
-OUTLIER = 6.0  # K within one reading
+PREHEAT = 0.0135  # opening of the steam valve per K between raw milk and setpoint
+OUTLIER = 6.0  # change from one reading to the next (K)
 PERIOD = 2.0
 
 

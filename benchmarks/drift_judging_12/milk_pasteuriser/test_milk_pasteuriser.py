@@ -15,7 +15,7 @@ DT = 2.0
 STEPS = 220
 LEGAL = 72.0
 BURNT = 78.0
-RISE = 74.0  # K of a fully open valve
+RISE = 74.0  # temperature rise with a fully open valve (K)
 
 
 class Plant:
@@ -24,7 +24,7 @@ class Plant:
     def __init__(self, rng, delay):
         self.rng = rng
         self.raw = rng.uniform(5.0, 7.0)
-        self.drop = (rng.integers(60, 110), rng.uniform(2.5, 3.5))  # step, K: a colder tank
+        self.drop = (rng.integers(60, 110), rng.uniform(2.5, 3.5))  # step of a colder tank, difference (K)
         self.power = rng.uniform(0.98, 1.02)
         self.heat = self.power * RISE * 0.0135 * (74.0 - self.raw)
         self.tube = deque([self.raw + self.heat] * (1 + round(delay / DT)))

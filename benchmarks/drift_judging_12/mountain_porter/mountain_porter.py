@@ -12,12 +12,12 @@ from std_msgs.msg import Float32
 
 PATH = [(0.0, 0.0), (160.0, 30.0), (290.0, 120.0), (430.0, 150.0), (520.0, 240.0)]  # m
 CRUISE = 1.5  # m/s
-STEEP = 1.4  # less speed per unit of slope
-REACHED = 4.0  # m from a point of the path
+STEEP = 1.4  # reduction of the speed per unit of slope
+REACHED = 4.0  # distance from a point of the path (m)
 TURN = 0.3  # rad/s per rad
-SHARP = 0.7  # rad of heading error
-LOW = 0.03  # of the charge
-CLEARANCE = 0.35  # m from the belly to the ground
+SHARP = 0.7  # heading error (rad)
+LOW = 0.03  # share of the charge
+CLEARANCE = 0.35  # distance from the belly to the ground (m)
 
 
 def wrapped(angle):

@@ -12,10 +12,10 @@ TOP = 14.0  # m
 CLIMB = 0.5  # m/s
 GAIN = 0.8  # m/s per m
 DAMPING = 0.5
-TILT_COMFORT = 0.12  # rad, above this the climb waits
+TILT_COMFORT = 0.12  # tilt above which the climb waits (rad)
 MAX_SPEED = 1.0  # m/s
-SHARP = 0.3  # m/s of approach at which pictures blur
-EVERY = 0.8  # m between pictures
+SHARP = 0.3  # approach speed at which pictures blur (m/s)
+EVERY = 0.8  # distance between pictures (m)
 DT = 0.2
 
 

@@ -12,7 +12,7 @@ Range = message_type("sensor_msgs/msg/Range")
 DT = 0.2
 TOP = 14.0
 PICTURES = 16
-ROTORS = 0.45  # m from the middle of the drone
+ROTORS = 0.45  # distance from the middle of the drone (m)
 SHARP_FROM, SHARP_TO = 1.0, 3.6  # m
 TIME_BOUND = 70.0
 

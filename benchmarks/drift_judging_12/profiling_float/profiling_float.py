@@ -4,10 +4,10 @@
 import rospy
 from std_msgs.msg import Float32
 
-NEUTRAL = 300.0  # cm3 of oil with which the float hovers
-SINK, RISE = 120.0, 160.0  # cm3 less, more
+NEUTRAL = 300.0  # volume of oil with which the float hovers (cm3)
+SINK, RISE = 120.0, 160.0  # decrease, increase of the volume (cm3)
 PARK = 45.0  # m
-NEAR = 12.0  # m above the parking depth, where it starts to brake
+NEAR = 12.0  # height above the parking depth at which the float starts to brake (m)
 PARKED = 600.0  # s
 KP = 12.0  # cm3 per m
 KD = 900.0  # cm3 per m/s

@@ -13,7 +13,7 @@ BOTTOM = 62.0
 TIME_BOUND = 2100.0
 G = 9.81
 MASS = 25.0  # kg
-HULL = (MASS / 1026.0 - 300e-6) * 1e6  # cm3, so that 300 cm3 of oil carry it in the sea
+HULL = (MASS / 1026.0 - 300e-6) * 1e6  # chosen so that 300 cm3 of oil carry the float in the sea (cm3)
 
 
 class Water:

@@ -12,10 +12,10 @@ Float32 = message_type("std_msgs/msg/Float32")
 PointStamped = message_type("geometry_msgs/msg/PointStamped")
 
 DT = 0.2
-START = 90.0  # mm, where the seam must be welded from
+START = 90.0  # place where the seam must begin (mm)
 LENGTH = 340.0
-BESIDE = 1.5  # mm from the joint that the arc still melts
-MAY_SKIP = 20.0  # mm of the seam
+BESIDE = 1.5  # distance from the joint at which the arc still melts it (mm)
+MAY_SKIP = 20.0  # length of the seam (mm)
 TIME_BOUND = 90.0
 
 

@@ -7,12 +7,12 @@ from joint_memory import JointMemory
 from rclpy.node import Node
 from std_msgs.msg import Bool, Float32
 
-LEAD = 45.0  # mm from the torch to the line of the laser
+LEAD = 45.0  # distance from the torch to the line of the laser (mm)
 TRAVEL = 6.0  # mm/s
-CREEP = 12.0  # mm/s, without arc
+CREEP = 12.0  # speed without the arc (mm/s)
 SLIDE_GAIN = 3.0  # 1/s
 SLIDE_MAX = 12.0  # mm/s
-ZERO = 0.0  # mm, tracker against torch
+ZERO = 0.0  # offset between tracker and torch (mm)
 ARC_WITHIN = 2.0  # mm
 MIN_QUALITY = 0.4
 

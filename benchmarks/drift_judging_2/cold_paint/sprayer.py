@@ -6,7 +6,7 @@ from std_msgs.msg import Bool, Float64
 
 GUN = {
     "flow": 12.0,  # ml/s
-    "overspray": 0.25,  # share that misses the board
+    "overspray": 0.25,  # share of the paint that misses the board
     "width": 0.30,  # m
 }
 GANTRY = {

@@ -2,7 +2,7 @@
 
 IRON = {"temperature": 350.0, "idle": 180.0, "ready_within": 5.0}  # degrees C
 
-# A joint is heated for `factor` of its time constants; the constant grows with the pad.
+# A joint is heated for `factor` times its time constant, which grows with the size of the pad.
 HEATING = {"factor": 1.04, "base": 0.70, "per_mm2": 0.25}  # -, s, s
 
 MOTION = {"approach": 0.3, "retract": 0.2, "cool": 0.3}  # s

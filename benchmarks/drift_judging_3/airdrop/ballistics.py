@@ -2,7 +2,7 @@
 
 import numpy as np
 
-CHUTE = dict(sink=6.0, opening=1.2, throw=0.9)  # m/s, s until it is open, s of flight at the drone's speed
+CHUTE = dict(sink=6.0, opening=1.2, throw=0.9)  # sink rate (m/s), time to open (s), flight at drone speed (s)
 FREE_FALL = 4.0  # mean speed until the chute is open (m/s)
 
 

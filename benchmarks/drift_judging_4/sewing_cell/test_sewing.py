@@ -14,8 +14,8 @@ Float64MultiArray = message_type("std_msgs/msg/Float64MultiArray")
 String = message_type("std_msgs/msg/String")
 
 DT = 0.05
-LENGTH_WINDOW = 0.13  # share of the stitch
-LOCK_WINDOW = 0.2  # share of the tension that the cloth needs
+LENGTH_WINDOW = 0.13  # tolerated error, as a share of the stitch
+LOCK_WINDOW = 0.2  # tolerated error, as a share of the tension that the cloth needs
 TIME_BOUND = 14.0
 CLOTHS = {"cotton": (0.04, 1.0), "denim": (0.27, 1.55)}  # slip, tension relative to cotton
 

@@ -16,7 +16,7 @@ STEPS = 180
 TRAVEL = 0.12  # share of the awning in one step
 PLAY = 0.04  # smaller movements are ignored by the drive
 START_HEAT = 1.0  # heat per start or reversal
-COOLING = 0.012  # share in a step
+COOLING = 0.012  # share of the heat that the motor loses in a step
 HOT = 26.0
 NEAR = 0.35  # tolerated difference from the share that the mean light needs
 
