@@ -62,7 +62,7 @@ class Tarl:
         self._replay = replay
         # a recorded mission already contains the faults of its robot
         self._faults = NO_FAULTS if replay is not None else faults
-        self._drifted = drifted or bool(self._faults.active)  # True if a silent node is a result and not an error
+        self._drifted = drifted or bool(self._faults.active)  # if true, a silent node is not an error
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0

@@ -16,7 +16,7 @@ MAX_FRAMES = 20_000  # maximum number of call contexts of a program
 MAX_STATEMENTS = 25_000
 # number of statements in one run of a root after which the calls of a frequently called function share a context
 SEPARATE_STATEMENTS = 3_000
-SEPARATE_CALLS = 8  # maximum number of calls of a function with a context of their own; further calls share a context
+SEPARATE_CALLS = 8  # maximum number of calls of a function in separate contexts; further calls share one
 # after this number of statements of a program, only roots that never ran are run; after twice this number,
 # none
 PROGRAM_LIMIT = 80_000

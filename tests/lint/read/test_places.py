@@ -102,7 +102,7 @@ def environment(tmp_path: Path) -> Path:
     return tmp_path / "env"
 
 
-def test_two_names_of_one_folder_are_searched_once(environment):
+def test_a_folder_reached_by_two_names_is_searched_once(environment):
     (site,) = {one.resolve() for one in search_path(environment)}
     assert len(search_path(environment)) == 1
     assert site == environment / "lib/python3.11/site-packages"

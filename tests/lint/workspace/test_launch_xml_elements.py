@@ -137,7 +137,7 @@ def test_an_included_file_gets_the_arguments_that_the_include_gives(package):
     assert {one.file.name for one in found.nodes} == {"part.launch"}
 
 
-def test_a_default_may_use_earlier_arguments_and_says_if_it_cannot(package):
+def test_a_default_may_use_earlier_arguments_and_unknown_ones_are_reported(package):
     found = launched(
         package,
         """<launch><arg name="a" default="x"/><arg name="b" default="$(arg a)y"/><arg name="c" default="$(arg d)"/>

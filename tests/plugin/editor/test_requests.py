@@ -272,7 +272,7 @@ def test_the_root_is_the_first_workspace_folder_or_the_root_path_or_the_current_
     assert root([], None) == Path.cwd()
 
 
-def test_the_first_request_begins_on_the_root_and_lints_it(
+def test_the_server_changes_to_the_root_and_lints_it_when_initialized(
     session: Session, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "inner").mkdir()

@@ -49,7 +49,7 @@ def test_a_step_moves_by_multiples_of_the_size_up_and_down_alike(step: float, mo
     assert step_to(moved) == pytest.approx(step)
 
 
-def test_a_scale_is_positive_with_two_digits() -> None:
+def test_scales_are_positive_and_have_two_digits() -> None:
     assert (offset(-0.01234), offset(3.0).size, Chart(Scale.SHIFT).size) == (
         Chart(Scale.SHIFT, 0.012),
         3.0,

@@ -149,7 +149,7 @@ def test_a_waiting_goal_is_recalled_by_a_newer_one(scene: Scene) -> None:
         (("b", 2.0), True, True),
     ],
 )
-def test_a_cancel_request_means_an_id_all_goals_up_to_its_stamp_or_all(
+def test_a_cancel_request_selects_a_goal_by_id_or_goals_by_stamp_or_all_goals(
     scene: Scene, request_: tuple[str, float], active: bool, waiting: bool
 ) -> None:
     scene.goal("a", stamp=2.0)

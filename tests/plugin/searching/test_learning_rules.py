@@ -80,7 +80,7 @@ def test_before_the_first_result_a_choice_is_random() -> None:
     assert learner(4, 0.5, 3)._choose(0) == 3
 
 
-def test_all_tried_mutations_are_exploited_without_the_first_draw() -> None:
+def test_once_all_mutations_were_tried_one_draw_decides_to_exploit() -> None:
     made = learner(2, 0.9)
     made.seen = {0: [1.0], 1: [2.0]}
     assert made._choose(0) == 1

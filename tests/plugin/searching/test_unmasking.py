@@ -45,7 +45,7 @@ def test_a_constant_that_matters_only_under_another_change_is_found() -> None:
 
 
 @pytest.mark.parametrize(("steps", "expected"), [(TORN, False), (11, False), (12, True), (WRAPPED, True)])
-def test_missions_last_longer_from_a_fifth_on(steps: int, expected: bool) -> None:
+def test_missions_count_as_longer_if_they_last_a_fifth_longer(steps: int, expected: bool) -> None:
     base = Joint(((Unit((PULL,)), 0.65),), ALWAYS)
     trials = Trials(lambda *_: Outcome(1.0, False, steps=steps), 9)
     trials(base.candidate(mutations), PAIRS[0].seed)

@@ -52,7 +52,7 @@ def test_the_probability_of_at_most_a_given_number_of_failures_is_binomial() -> 
         (curve(MUD, {0.25: -1.0}), (0.0, 0.0), 16),
     ],
 )
-def test_the_search_tests_these_drift_sizes_for_the_claim_that_the_guarantee_holds(
+def test_the_drift_sizes_at_which_the_guarantee_is_tested_to_hold_are_known(
     one: Curve, values: tuple[float, float], paired: int
 ) -> None:
     evaluator: Any = SimpleNamespace(guarantee=GIVEN)

@@ -160,14 +160,14 @@ DRIFTS = {
 }
 
 
-def test_the_flag_must_hold_accepts_ranges_or_options_of_a_direction() -> None:
+def test_must_hold_accepts_ranges_or_options_of_a_direction() -> None:
     given = {"mud": (0.4, 1), "camera": ["up", "down"], "late": (0, 0.1)}
     assert must_hold("t", given, DRIFTS) == {"mud": (0.4, 1.0), "camera": ("up", "down"), "late": (0.0, 0.1)}
     assert must_hold("t", {"mud": (0.4, None)}, DRIFTS) == {"mud": (0.4, 1.0)}
     assert must_hold("t", {"late": (None, 0.1)}, DRIFTS) == {"late": (0.0, 0.1)}
 
 
-def test_failures_violate_a_must_hold_flag_with_one_end_or_with_options() -> None:
+def test_failures_violate_must_hold_with_one_end_or_with_options() -> None:
     def world(point: Point, draws: np.random.Generator) -> tuple[bool, float]:
         return point["slope"] < 0.1 and point["camera"] != 1.0, 1.0
 
@@ -221,7 +221,7 @@ def test_a_clear_failure_is_confirmed_although_four_episodes_misled_the_search_n
         ({"camera": "up"}, "options of its choice"),
     ],
 )
-def test_other_values_of_the_flag_must_hold_are_refused(value: Any, told: str) -> None:
+def test_other_values_of_must_hold_are_refused(value: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         must_hold("t", value, DRIFTS)
 
