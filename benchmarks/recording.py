@@ -39,7 +39,7 @@ from pytest_tarl.learning.statistics import sample
 
 os.environ["COVERAGE_CORE"] = "ctrace"  # newer versions of Python would use sys.monitoring
 TURNS = 60
-ROUNDS = 2_000  # number of rounds, which record about ten thousand events, as in an episode
+ROUNDS = 2_000  # number of rounds; they record about ten thousand events, as an episode does
 STEPS = 200
 DISCS = 340  # number of discs with which a step takes about 200 µs
 RUNS = 12

@@ -96,7 +96,7 @@ class Fixed:
 
     @property
     def loses(self) -> str:
-        """Return why the repair must be withheld; empty if it need not be."""
+        """Return the reason to withhold the repair; empty if there is none."""
         fragile = [row.name for row in self.rows if row.change == "more fragile"]
         if fragile:
             return f"the boundary of {' and '.join(fragile)} moved nearer to the nominal point"

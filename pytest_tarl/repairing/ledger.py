@@ -20,7 +20,7 @@ HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 class Tried:
     """An examined candidate and its result; `reason` is "" if it was accepted.
 
-    `fresh` is true if its totals are from fresh seeds, and `tested` if the candidate had a test of its own.
+    `fresh` is true if the candidate's totals are from fresh seeds, `tested` if the candidate had a test of its own.
     """
 
     candidate: Candidate
