@@ -28,11 +28,9 @@ def ranking_confidence(
     )
     held = len(accepted.acceptance.drifted) if accepted else 0
     if len(places) > 1:
-        first = (
-            f"the first {len(places)} were repaired together; the repair was confirmed on {held} fresh seeds"
-        )
+        first = f"the first {len(places)} were repaired together; the repair passed on {held} fresh seeds"
     elif places:
-        first = f"the repair of the first was confirmed on {held} fresh seeds"
+        first = f"the repair of the first passed on {held} fresh seeds"
     else:
         first = "no accepted repair confirms the first"
     if ranking is None:

@@ -1,10 +1,9 @@
 """TARL201: state is shared between threads without the lock that guards it elsewhere.
 
-In rospy every subscriber, timer and service runs its callbacks in a thread of its own, beside the main loop.
-In rclpy, callbacks run in several threads only with a MultiThreadedExecutor and callback groups that allow
-it, or if the node starts threads itself. If one thread accesses an attribute or global under a lock and
-another thread changes or reads it without the lock, the other thread may see a partial change, or a change
-may be lost.
+In rospy every subscriber, timer and service runs its callbacks in a thread of its own, alongside the main loop. In
+rclpy, callbacks run in several threads only with a MultiThreadedExecutor and callback groups that allow it, or if the
+node starts threads itself. If one thread accesses an attribute or global under a lock and another thread changes or
+reads it without the lock, the other thread may see a partial change, or a change may be lost.
 
 An access is reported only if other code guards the same state with a lock, and only if the access can go wrong:
 

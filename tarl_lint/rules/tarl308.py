@@ -4,7 +4,7 @@ The remapping has no effect, so the two ends that it was meant to connect stay s
 published on `cmd_vel_mux/output` and the launch file remapped `cmd_vel_mux/mux_cmd_vel`, a name that no node used. The
 robot ignored all velocity commands (https://github.com/aliasrobotics/RVD/issues/582).
 
-A remapping from `/cmd_vel` matches nothing either if the node uses `cmd_vel` in a namespace: its topic is then
+A remapping from `/cmd_vel` also matches nothing if the node uses `cmd_vel` in a namespace: its topic is then
 `/robot/cmd_vel`.
 
 A remapping is reported only if every node that it applies to could be read with all its imports, uses only constant

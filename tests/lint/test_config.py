@@ -228,7 +228,7 @@ def test_invalid_names_and_tables_are_refused(in_directory, line, complaint):
 
 def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
     with pytest.raises(
-        ConfigError, match=r"'bus\.listen' .* like 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
+        ConfigError, match=r"'bus\.listen' .* like = 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
     ):
         facts((Wrapper("bus.listen", "rospy.Subscribr"),))
 

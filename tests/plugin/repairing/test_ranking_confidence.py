@@ -37,9 +37,7 @@ def ranked(budget: int) -> Ranking:
 
 def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN), None)
-    assert told.startswith(
-        "the repair of the first was confirmed on 12 fresh seeds; 2 of 3 lines were simulated"
-    )
+    assert told.startswith("the repair of the first passed on 12 fresh seeds; 2 of 3 lines were simulated")
     assert "--tarl-localize=full" in told
 
 
@@ -65,7 +63,7 @@ def raced() -> Ranking:
 def test_lines_repaired_together_are_reported_together() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
     assert told.startswith(
-        "the first 2 were repaired together; the repair was confirmed on 12 fresh seeds; 2 lines were simulated alone"
+        "the first 2 were repaired together; the repair passed on 12 fresh seeds; 2 lines were simulated alone"
     )
 
 
