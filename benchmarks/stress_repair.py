@@ -53,7 +53,7 @@ class Moved:
 
     @property
     def line(self) -> str:
-        """Return the columns of the table after the task."""
+        """Return the table's columns other than the name of the task."""
         change = self.change or "no repair"
         return f"{shown(self.before)} | {shown(self.after) if self.change else ''} | {change}"
 

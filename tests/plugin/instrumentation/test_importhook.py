@@ -102,7 +102,7 @@ def test_every_episode_has_new_modules_and_restores_the_interpreter(project):
     assert set(sys.modules) - known <= {"pickle"}
 
 
-def test_helpers_without_sites_are_reloaded_but_not_those_of_the_test(project, monkeypatch):
+def test_helpers_without_sites_are_reloaded_unless_they_belong_to_the_test(project, monkeypatch):
     (project / "world.py").write_text("tide = []\n")
     monkeypatch.syspath_prepend(project)
     with imports(project, Recorder(), plan={}) as node:
