@@ -336,8 +336,7 @@ class Simulator:
     def _hung(self) -> SimulatorError:
         return SimulatorLostError(
             f"The simulator {self.setup.shown} hung at {self.clock:g} s of simulated time: nothing new came "
-            "within "
-            f"{self.setup.patience:g} s{self._words()}."
+            f"within {self.setup.patience:g} s{self._words()}."
         )
 
     def _unanswered(self, call: Call) -> SimulatorError:
