@@ -6,10 +6,10 @@ import ast
 import difflib
 import re
 import shlex
-from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import combinations
 from pathlib import Path
 
 from pytest_tarl.errors import SettingsError
@@ -17,6 +17,7 @@ from pytest_tarl.ros.launch_sources import Given
 from pytest_tarl.ros.launched import WITH_TEXTS, parameters, python_files
 from pytest_tarl.ros.messages.workspace import on_forget, search, workspaces
 from tarl_lint.node_names import node_name
+from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.folders import workspace_root
 from tarl_lint.workspace.hidden_packages import problems as hidden
 from tarl_lint.workspace.launch_lookup import NoLaunchFileError, launch_file, unknown_argument
@@ -76,7 +77,8 @@ class LaunchPlan:
     def chosen(self, only: Collection[str] | None, replaced: Collection[str]) -> tuple[Launched, ...]:
         """Return the nodes to start or to replace.
 
-        Raise SettingsError for an unknown name, and for a node in `only` that can be neither started nor replaced.
+        Raise SettingsError for an unknown name, for a node in `only` that can be neither started nor replaced, and for
+        two nodes that a launch never starts together.
         """
         for argument, names in (("only", only or ()), ("replace", replaced)):
             for name in names:
@@ -92,6 +94,7 @@ class LaunchPlan:
                     f"tarl.launch: only names {one.name}, which is not a Python node of the workspace ({one.foreign}). "
                     f'Replace it by a function of the test: replace={{"{one.name.rpartition("/")[2]}": function}}.'
                 )
+        _check_alternatives([one for one in wanted if not one.foreign or named(one, replaced)])
         return tuple(wanted)
 
     def _check(self, argument: str, name: str) -> None:
@@ -105,6 +108,19 @@ class LaunchPlan:
             f"tarl.launch: {argument} names {name!r}, but {self.file.name} starts no such node.{hint} It starts "
             f"{', '.join(known)}."
         )
+
+
+def _check_alternatives(nodes: Sequence[Launched]) -> None:
+    """Raise SettingsError if one node is started only without another one, such as `if` and `unless` of an argument."""
+    for one, other in combinations(nodes, 2):
+        if exclusive(one.node, other.node):
+            argument = _ARGUMENT.search(one.node.condition)
+            known = argument is not None and argument[1] in one.launch.arguments
+            given = f'pass arguments={{"{argument[1]}": …}}, or ' if argument is not None and known else ""
+            raise SettingsError(
+                f"tarl.launch: {one.launch.file.name} starts either {one.name} ({one.node.condition}) or {other.name} "
+                f"({other.node.condition}): {given}choose one of them with only=[…]."
+            )
 
 
 def named(one: Launched, names: Iterable[str]) -> bool:
@@ -149,12 +165,13 @@ def _plan(file: Path, arguments: tuple[tuple[str, str], ...]) -> LaunchPlan:
     workspace = _around(file) or Workspace(file.parent)
     launch = read_launch(file, workspace, dict(arguments))
     _check_arguments(launch, [name for name, _ in arguments])
-    if not launch.nodes:
+    nodes = [one for one in launch.nodes if one.kind != "test"]
+    if not nodes:
         why = f": {launch.problems[0].reason}" if launch.problems else " with these arguments"
         raise SettingsError(f"tarl.launch: {file.name} starts no node{why}.")
     return LaunchPlan(
         file,
-        tuple(_launched(launch, one, workspace) for one in launch.nodes),
+        tuple(_launched(launch, one, workspace) for one in nodes),
         tuple(_notes(launch, workspace)),
     )
 
@@ -236,13 +253,25 @@ def _notes(launch: Launch, workspace: Workspace) -> Iterator[str]:
     if problems:
         more = f"; and {len(problems) - SHOWN} more" if len(problems) > SHOWN else ""
         yield f"parts of {launch.file.name} could not be evaluated: {'; '.join(problems[:SHOWN])}{more}."
-    names = Counter((joined(one.namespace, one.name), one.anonymous) for one in launch.nodes if one.name)
-    twice = [name for (name, _), count in names.items() if count > 1 and "$(" not in name]
+    twice = _names_of_several(launch.nodes)
     if twice:
         effect = (
             "in ROS 2 they share parameters and services" if launch.ros2 else "roslaunch refuses the file"
         )
         yield f"{launch.file.name} starts several nodes named {', '.join(twice[:SHOWN])}: {effect}."
+
+
+def _names_of_several(nodes: Sequence[LaunchedNode]) -> list[str]:
+    """Return the names that several nodes have which a launch may start together."""
+    found: dict[tuple[str, str], list[LaunchedNode]] = {}
+    for one in nodes:
+        if one.name:
+            found.setdefault((joined(one.namespace, one.name), one.anonymous), []).append(one)
+    return [
+        name
+        for (name, _), named in found.items()
+        if "$(" not in name and any(not exclusive(one, other) for one, other in combinations(named, 2))
+    ]
 
 
 on_forget(_plan.cache_clear)

@@ -16,6 +16,7 @@ from pytest_tarl.ros.messages.workspace import on_forget, workspaces
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.executables import is_python
 from tarl_lint.workspace.folders import folders
+from tarl_lint.workspace.launch_lookup import TEST
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.launch_parameters import ON_ROBOT, Stated, leaves, stated
 from tarl_lint.workspace.model import Workspace
@@ -62,6 +63,9 @@ def _starts(workspace: Workspace, script: Path) -> list[tuple[Launch, LaunchedNo
         for node in one.nodes
         if node.file == one.file and _runs(workspace, node, script)
     ]
+    direct = [
+        one for one in direct if one[0].file.suffix != TEST
+    ] or direct  # launch files of tests come last
     found = []
     for one, node in direct:
         files = () if _source(workspace, one, node).complete else _launches(workspace, [one.file.name])

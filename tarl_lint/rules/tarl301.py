@@ -18,8 +18,9 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, single, spelled_alike
+from tarl_lint.system.hazards import at_end, differ, single, spelled_alike
 from tarl_lint.system.model import System
+from tarl_lint.workspace.conditions import exclusive
 
 CODE: Final = "TARL301"
 SUMMARY: Final = "a subscription has no publisher, and a publisher with a similar name has no subscriber"
@@ -139,7 +140,11 @@ def findings(system: System) -> Iterator[Finding]:
         near = sorted(
             (other, them.name)
             for other, them, beyond in lonely
-            if them is not who and single(beyond) == single(end) and spelled_alike(name, other)
+            if them is not who
+            and single(beyond)
+            and not differ(end, beyond)
+            and spelled_alike(name, other)
+            and not exclusive(who.node, them.node)
         )
         if near:
             message = f"{who.name} subscribes to {name} ({end.type}), which no node publishes; "

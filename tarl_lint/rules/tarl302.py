@@ -2,8 +2,11 @@
 
 ROS refuses the connection, and no message arrives. rospy logs a warning; rclpy usually logs nothing. For
 example, some nodes use `Twist` and others `TwistStamped`
-(https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). The rule compares only the last part of the
-two type names, and only if the code names both types by constants.
+(https://github.com/ros-teleop/teleop_twist_keyboard/issues/39). Two packages may also have types of the same
+name, such as `std_msgs/String` and `my_msgs/String`.
+
+The rule reports only types that the code names by constants. It compares packages only where both are known; the
+package of a class that another module of the program defines or passes on is not known.
 """
 
 from __future__ import annotations
@@ -13,8 +16,9 @@ from typing import Final
 
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
-from tarl_lint.system.hazards import at_end, single
-from tarl_lint.system.model import System
+from tarl_lint.system.hazards import at_end, differ
+from tarl_lint.system.model import Endpoint, System
+from tarl_lint.workspace.conditions import exclusive
 
 CODE: Final = "TARL302"
 SUMMARY: Final = "publisher and subscription of a topic have different types"
@@ -49,6 +53,29 @@ INVALID: Final = (
     rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="lamp.py" name="lamp"/>
+      <node pkg="robot" type="desk.py" name="desk"/>
+    </launch>
+    --- scripts/desk.py
+    import rospy
+    from std_msgs.msg import ColorRGBA
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("desk")
+    pub = rospy.Publisher("color", ColorRGBA, queue_size=1)
+    rospy.Subscriber("joy", Joy, lambda joy: pub.publish(ColorRGBA(r=joy.axes[0])))
+    rospy.spin()
+    --- scripts/lamp.py
+    import rospy
+    from lamp_msgs.msg import ColorRGBA
+
+    rospy.init_node("lamp")
+    rospy.Subscriber("color", ColorRGBA, lambda msg: print(msg.r))
+    rospy.spin()
+    """,
 )
 
 VALID: Final = (
@@ -81,6 +108,47 @@ VALID: Final = (
     rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
     rospy.spin()
     """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <arg name="stamped"/>
+      <node pkg="robot" type="teleop.py" name="teleop"/>
+      <node pkg="robot" type="base.py" name="base" unless="$(arg stamped)"/>
+      <node pkg="robot" type="stamped.py" name="base" if="$(arg stamped)"/>
+      <node pkg="robot" type="stamper.py" name="stamper" if="$(arg stamped)"/>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("joy_vel", Twist, queue_size=1)
+    rospy.Subscriber("joy", Joy, lambda joy: pub.publish(Twist()))
+    rospy.spin()
+    --- scripts/base.py
+    import rospy
+    from geometry_msgs.msg import Twist
+
+    rospy.init_node("base")
+    rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
+    rospy.spin()
+    --- scripts/stamped.py
+    import rospy
+    from geometry_msgs.msg import TwistStamped
+
+    rospy.init_node("base")
+    rospy.Subscriber("cmd_vel", TwistStamped, lambda msg: print(msg.twist.linear.x))
+    rospy.spin()
+    --- scripts/stamper.py
+    import rospy
+    from geometry_msgs.msg import Twist, TwistStamped
+
+    rospy.init_node("stamper")
+    pub = rospy.Publisher("cmd_vel", TwistStamped, queue_size=1)
+    rospy.Subscriber("joy_vel", Twist, lambda msg: pub.publish(TwistStamped(twist=msg)))
+    rospy.spin()
+    """,
 )
 
 
@@ -88,11 +156,17 @@ def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each subscription whose type no publisher of its topic has."""
     for name, who, end in system.ends("subscribes"):
         others = {
-            (them.name, single(beyond))
+            (them.name, beyond)
             for other, them, beyond in system.ends("publishes")
-            if other == name and len(beyond.names) == 1
+            if other == name and len(beyond.names) == 1 and not exclusive(who.node, them.node)
         }
-        if single(end) and len(end.names) == 1 and others and all(t not in ("", end.type) for _, t in others):
-            theirs = " and ".join(f"{node} publishes {kind}" for node, kind in sorted(others))
-            message = f"{who.name} subscribes to {name} as {end.type}, but {theirs}"
+        if len(end.names) == 1 and others and all(differ(end, beyond) for _, beyond in others):
+            alike = any(beyond.type == end.type for _, beyond in others)
+            published = sorted((node, _shown(beyond, alike)) for node, beyond in others)
+            theirs = " and ".join(f"{node} publishes {kind}" for node, kind in dict.fromkeys(published))
+            message = f"{who.name} subscribes to {name} as {_shown(end, alike)}, but {theirs}"
             yield at_end(CODE, who, end, message, topic_text(end.in_code))
+
+
+def _shown(endpoint: Endpoint, alike: bool) -> str:
+    return endpoint.whole_type if alike and endpoint.whole_type else endpoint.type

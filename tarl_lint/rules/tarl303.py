@@ -18,6 +18,7 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_end
 from tarl_lint.system.model import Endpoint, System
+from tarl_lint.workspace.conditions import exclusive
 
 CODE: Final = "TARL303"
 SUMMARY: Final = "a subscription requests a stricter quality of service than its publisher offers"
@@ -151,7 +152,7 @@ def findings(system: System) -> Iterator[Finding]:
     """Yield a hazard for each subscription that ROS 2 does not connect with a publisher of its topic."""
     for name, who, end in system.ends("subscribes"):
         for other, them, offered in system.ends("publishes"):
-            if other == name:
+            if other == name and not exclusive(who.node, them.node):
                 for policies in _refused(offered, end):
                     message = (
                         f"{who.name} asks for {policies[0]} on {name}, but {them.name} offers {policies[1]}"

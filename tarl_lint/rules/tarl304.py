@@ -15,6 +15,7 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.system.hazards import at_end, single, spelled_alike
 from tarl_lint.system.model import System
+from tarl_lint.workspace.conditions import exclusive
 
 CODE: Final = "TARL304"
 SUMMARY: Final = "a service that is called has no server, and a server with a similar name is never called"
@@ -77,7 +78,10 @@ def findings(system: System) -> Iterator[Finding]:
         near = sorted(
             (other, them.name)
             for other, them, beyond in system.ends("serves")
-            if other not in called and single(beyond) == single(end) and spelled_alike(name, other)
+            if other not in called
+            and single(beyond) == single(end)
+            and spelled_alike(name, other)
+            and not exclusive(who.node, them.node)
         )
         if name not in served and near and single(end):
             message = f"{who.name} calls {name} ({end.type}), which no node offers; "

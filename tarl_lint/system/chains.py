@@ -106,6 +106,9 @@ def _walk(
                     continue
             if last == UNKNOWN or last not in leading:
                 continue
-            passed = {start, *(hop.sink for hop in path)}
-            pending += [(*path, hop) for hop in reversed(from_topic.get(last, ())) if hop.sink not in passed
-                        or hop.sink == UNKNOWN]  # fmt: skip
+            passed = {start, *(hop.sink for hop in path)} - {UNKNOWN}
+            pending += [
+                (*path, hop)
+                for hop in reversed(from_topic.get(last, ()))
+                if hop.sink not in passed and not any(hop.excludes(one) for one in path)
+            ]

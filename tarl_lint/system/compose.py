@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -26,6 +27,7 @@ from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.node_programs import Program, program
 from tarl_lint.workspace.parameter_yaml import NoYamlError, content
+from tarl_lint.workspace.ros_names import resolved
 
 UNKNOWN: Final = "?"
 # prefix before the name of a service; together they name the unread node that answers the service
@@ -42,9 +44,40 @@ Reader = Callable[[Program, Mapping[str, object]], Interface | str]
 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
     """Return the system of a launch file. `files` are the Python files of the workspace."""
-    instances = [_instance(node, launch, workspace, files, read) for node in launch.nodes]
+    instances = _with_meant([_instance(node, launch, workspace, files, read) for node in launch.nodes])
     problems = (*launch.problems, *hidden_packages.problems(launch, workspace), *_unparsed(launch))
     return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), problems)
+
+
+def _with_meant(instances: Sequence[Instance]) -> list[Instance]:
+    """Return the nodes; unread ones have the remappings of groups that no other node of the group can use."""
+    candidates: dict[tuple[str, str], list[Instance]] = {}
+    for one in instances:
+        for pair in one.node.remaps[: one.node.inherited]:
+            if _may_use(one, pair[0]):
+                candidates.setdefault(pair, []).append(one)
+
+    def meant(one: Instance) -> tuple[tuple[str, str], ...]:
+        inherited = one.node.remaps[: one.node.inherited]
+        return tuple(pair for pair in inherited if candidates.get(pair) == [one])
+
+    return [replace(one, meant=meant(one)) if _opaque(one) else one for one in instances]
+
+
+def _opaque(instance: Instance) -> bool:
+    """Return whether the remappings of a node are all that is known about its topics."""
+    return instance.interface is None and not instance.seen and instance.node.kind != "test"
+
+
+def _may_use(instance: Instance, old: str) -> bool:
+    """Return whether a node may use a name before any remapping: an unread one, or one that uses the name."""
+    if _opaque(instance):
+        return not instance.silent
+    own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
+    ends = instance.interface.endpoints if instance.interface is not None else instance.seen
+    unknown = not all(one.names for one in ends)
+    used = {resolved(name, namespace, own) for one in ends for name in one.names}
+    return unknown or resolved(old, namespace, own) in used
 
 
 def _unparsed(launch: Launch) -> Iterator[Problem]:
@@ -116,21 +149,28 @@ def _decided(
 def hops(instances: Sequence[Instance]) -> list[Hop]:
     """Return the flows of each node by launched topics, and the possible flows of nodes that were not read."""
     found: dict[tuple[str, str, str], list[Finding]] = {}
+    started: dict[tuple[str, str, str], dict[LaunchedNode, None]] = {}
     for instance in instances:
         for finding, source, sink in _flows(instance):
-            found.setdefault((instance.name, source, sink), []).append(finding)
-    made = [Hop(node, source, sink, *_ranked(findings)) for (node, source, sink), findings in found.items()]
+            key = instance.name, source, sink
+            found.setdefault(key, []).append(finding)
+            started.setdefault(key, {})[instance.node] = None
+    made = [Hop(*key, *_ranked(findings), tuple(started[key])) for key, findings in found.items()]
     published = _names(instances, "publishes")
     subscribed = _names(instances, "subscribes")
     for instance in instances:
         ends = [sorted({name for name, _ in instance.named(role)}) for role in ("subscribes", "publishes")]
         if instance.seen:
-            made += [Hop(instance.name, one, other, "not read") for one in ends[0] for other in ends[1]]
+            made += [_unread(instance, one, other) for one in ends[0] for other in ends[1]]
         inputs = [one for one in instance.touched if one in published]
         outputs = [one for one in instance.touched if one in subscribed and one not in published]
-        made += [Hop(instance.name, one, other, "not read") for one in inputs for other in outputs]
+        made += [_unread(instance, one, other) for one in inputs for other in outputs]
     made += _through_servers(instances, made)
     return sorted(made, key=lambda hop: (hop.node, hop.source, hop.sink, hop.kind))
+
+
+def _unread(instance: Instance, source: str, sink: str) -> Hop:
+    return Hop(instance.name, source, sink, "not read", started=(instance.node,))
 
 
 def _through_servers(instances: Sequence[Instance], found: Sequence[Hop]) -> Iterator[Hop]:

@@ -42,11 +42,12 @@ def drawing(system: System) -> Drawing:
     drawn = {(node, topic) for topic, node, _ in inputs} | outputs
     touching = {(one.name, name) for one in system.instances for name in one.touched} - drawn
     topics = {topic for _, topic in drawn | touching} - {UNKNOWN}
+    nodes = [one for one in system.instances if one.node.kind != "test"]
     servers = [hop.node for hop in system.hops if hop.node.startswith(SERVER)]
     return Drawing(
-        tuple(dict.fromkeys([*(one.name for one in system.instances), *servers])),
+        tuple(dict.fromkeys([*(one.name for one in nodes), *servers])),
         tuple(sorted(topics)),
-        frozenset([*(one.name for one in system.instances if one.interface is None), *servers]),
+        frozenset([*(one.name for one in nodes if one.interface is None), *servers]),
         tuple(one for one in inputs if one[0] in topics),
         tuple(sorted(one for one in outputs if one[1] in topics)),
         tuple(sorted(touching)),

@@ -61,6 +61,14 @@ def single(endpoint: Endpoint) -> str:
     return "" if " | " in endpoint.type or endpoint.type == "AnyMsg" else endpoint.type
 
 
+def differ(one: Endpoint, other: Endpoint) -> bool:
+    """Return whether two endpoints certainly have different types; packages are compared where both are known."""
+    if not single(one) or not single(other):
+        return False
+    whole = one.whole_type and other.whole_type
+    return one.whole_type != other.whole_type if whole else one.type != other.type
+
+
 def spelled_alike(one: str, other: str) -> bool:
     """Return whether two absolute names may be meant to be equal: one has a namespace more, or a letter differs.
 

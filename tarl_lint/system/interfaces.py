@@ -6,7 +6,7 @@ A program is analysed with the modules that it imports, whose main blocks do not
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
@@ -132,7 +132,16 @@ def _endpoints(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline])
         source = tracer.ends.source(record)
         if record.kind == "topic":
             qos = of_call(outlines[record.path], record.pos) if record.api.startswith("rclpy") else None
-            yield Endpoint("subscribes", source.topics, source.type, source.span, qos, source.qualname)
+            whole = only(record.whole_types)
+            yield Endpoint(
+                "subscribes",
+                source.topics,
+                source.type,
+                source.span,
+                qos,
+                source.qualname,
+                whole_type=whole,
+            )
         elif record.kind in _SERVED and not record.api.startswith(CLIENTS):
             role = _SERVED[record.kind]
             yield Endpoint(role, source.topics, source.type, source.span, None, source.qualname)
@@ -160,4 +169,10 @@ def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]
         outline = outlines[path]
         qos = of_call(outline, pos) if publishers[0].api.startswith("rclpy") else None
         span = tracer.texts[path].stretch(pos)
-        yield Endpoint("publishes", topics, types, span, qos, outline.qualname(pos[0]))
+        whole = only({kind for one in publishers for kind in one.whole_types})
+        yield Endpoint("publishes", topics, types, span, qos, outline.qualname(pos[0]), whole_type=whole)
+
+
+def only(types: Collection[str]) -> str:
+    """Return the type, if there is only one; else ""."""
+    return next(iter(types)) if len(types) == 1 else ""

@@ -32,7 +32,7 @@ def _system(system: System, origin: str, target: str) -> dict[str, Any]:
         "launch": shown(system.file),
         "arguments": dict(system.arguments),
         "nodes": [_node(one) for one in system.instances],
-        "parameters": [_parameter(one) for one in system.settings],
+        "parameters": [_parameter(one) for one in system.settings if not one.unknown],
         "hops": [_hop(one) for one in system.hops],
         "chains": [{"kind": one.kind, "hops": [numbers[id(hop)] for hop in one.hops]} for one in found],
         "more_chains": more,

@@ -10,6 +10,7 @@ from typing import Literal
 
 from tarl_lint.model import Finding, Kind, Span
 from tarl_lint.parameter_names import ParameterName
+from tarl_lint.workspace.conditions import exclusive
 from tarl_lint.workspace.launch_model import LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined, remapped
@@ -30,7 +31,7 @@ class Endpoint:
     """A use of a topic or service in a program. `names` are the names in the code; empty if they are unknown.
 
     If names contain parameters, `written` has the names as in the code, and `names` has them with the values at
-    launch.
+    launch. `type` has no package; `whole_type` is `package/Name`, or "" if it is unknown or may be one of several.
     """
 
     role: Role
@@ -40,6 +41,7 @@ class Endpoint:
     qos: Qos | None = None
     place: str = ""  # qualified name of the function that contains the use
     written: tuple[str, ...] = ()
+    whole_type: str = ""
 
     @property
     def in_code(self) -> tuple[str, ...]:
@@ -95,6 +97,9 @@ class Instance:
     unread: str = ""
     seen: tuple[Endpoint, ...] = ()  # for an unread node, the topics that its C++ source names
     silent: bool = False  # whether the node is known to publish nothing that other nodes subscribe to
+    meant: tuple[
+        tuple[str, str], ...
+    ] = ()  # for an unread node, the remappings of groups that are meant for it
 
     def resolve(self, name: str) -> str:
         """Return the launched name of a topic or service in the code."""
@@ -119,20 +124,28 @@ class Instance:
     @cached_property
     def touched(self) -> tuple[str, ...]:
         """Return the launched topics in the remappings of an unread node."""
-        own = self.name.rpartition("/")[2]
-        names = {remapped(old, self.node.namespace, own, self.node.remaps) for old, _ in self.node.remaps}
+        names = {self.resolve(old) for old, _ in (*self.meant, *self.node.remaps[self.node.inherited :])}
         return () if self.interface is not None or self.seen else tuple(sorted(names))
 
 
 @dataclass(frozen=True)
 class Hop:
-    """The flows of one node from one topic to another, explicit ones first; empty if the node was not read."""
+    """The flows of one node from one topic to another, explicit ones first; empty if the node was not read.
+
+    `started` are the launched nodes with the name `node` that have these flows.
+    """
 
     node: str
     source: str
     sink: str
     kind: Kind | Literal["not read"]
     findings: tuple[Finding, ...] = ()
+    started: tuple[LaunchedNode, ...] = ()
+
+    def excludes(self, other: Hop) -> bool:
+        """Return whether the nodes of two hops are never started together."""
+        pairs = [(one, two) for one in self.started for two in other.started]
+        return bool(pairs) and all(exclusive(one, two) for one, two in pairs)
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,9 @@ def report(systems: Sequence[System], view: View, origin: str = "", target: str 
 
 
 def _system(system: System, view: View, origin: str, target: str) -> Iterator[Line]:
-    unread = sum(one.interface is None for one in system.instances)
-    count = f"{len(system.instances)} {'node' if len(system.instances) == 1 else 'nodes'}"
+    tests = sum(one.node.kind == "test" for one in system.instances)
+    unread = sum(one.interface is None for one in system.instances) - tests
+    count = counted(len(system.instances) - tests, "node") + (f", {counted(tests, 'test')}" if tests else "")
     name = f"{shown(system.file)}, names as in the code" if system.file.is_dir() else shown(system.file)
     yield ((name, "strong"), (f": {count}{f', {unread} not read' if unread else ''}", ""))
     if not (origin or target):
@@ -48,6 +49,11 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
     yield from _findings(system)
     if not (origin or target):
         yield from _problems(system)
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number with its noun in singular or plural."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _nothing(system: System, origin: str, target: str) -> str:

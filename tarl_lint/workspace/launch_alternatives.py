@@ -6,8 +6,9 @@ import ast
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Unknown
-from tarl_lint.workspace.launch_run import Action, combined
+from tarl_lint.workspace.launch_run import Action
 from tarl_lint.workspace.launch_values import Substitution
 from tarl_lint.workspace.python_values import plain
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.launch_alternatives import (
     ABSENT,
@@ -20,7 +21,7 @@ from tarl_lint.workspace.launch_alternatives import (
     negated,
     one_of,
 )
-from tarl_lint.workspace.launch_run import Action, combined
+from tarl_lint.workspace.launch_run import Action
 from tarl_lint.workspace.python_values import Bound, Class, Function, Made, Scope
 from tarl_lint.workspace.statements import Interpreter, Left, Raised, Returned
 

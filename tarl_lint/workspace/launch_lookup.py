@@ -10,7 +10,8 @@ from typing import Final
 from tarl_lint.workspace.launch_model import Launch
 from tarl_lint.workspace.model import Workspace
 
-ENDINGS: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
+TEST: Final = ".test"  # launch files of rostest
+ENDINGS: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml", TEST)
 
 
 class NoLaunchFileError(Exception):

@@ -9,7 +9,7 @@ from typing import Literal
 from tarl_lint.workspace.model import Problem
 
 Scalar = str | int | float | bool
-Kind = Literal["node", "container", "component"]
+Kind = Literal["node", "container", "component", "test"]  # "test": a program that rostest runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class Setting:
     `name` is absolute or begins with `~`; for YAML, it is the namespace of the parameters.
 
     `file` contains the value: the launch file, or the YAML file that it loads. `unknown` says that only the robot
-    knows the value; `value` and `yaml` are then None.
+    knows the value: then `value` and `yaml` are None, or they are set under a condition known only on the robot.
     """
 
     name: str

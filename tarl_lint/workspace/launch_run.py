@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import ros_arguments
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
 from tarl_lint.workspace.launch_values import (
@@ -124,12 +125,13 @@ class Runner:
             right = performed(condition.value, context)
             if not symbolic(left) and not symbolic(right):
                 return (left == right) is condition.wanted, ""
-            text = f"{left} == {right}"
+            text = f"{left} {'==' if condition.wanted else '!='} {right}"
         else:
-            text = performed(condition.value, context)
-            holds = truth(text)
+            tested = performed(condition.value, context)
+            holds = truth(tested)
             if holds is not None:
                 return holds is condition.wanted, ""
+            text = tested if condition.wanted else f"not {tested}"
         self._problem(context, action.line, f"the condition `{text}` is known on the robot only")
         return True, text
 
@@ -353,14 +355,6 @@ def _command(values: Mapping[str, Any], context: Context) -> str:
         texts.append(shlex.quote(text) if listed and " " in text else text)
     more = [performed(one, context) for one in _listed(values.get("ros_arguments"))]
     return " ".join([*texts, *(["--ros-args", *more] if more else [])])
-
-
-def combined(outer: str, inner: str) -> str:
-    """Return the text of two conditions that both hold."""
-    for one, other in ((inner, outer), (outer, inner)):
-        if f" and {other} and " in f" and {one} and ":
-            return one
-    return f"{outer} and {inner}" if outer and inner else outer or inner
 
 
 def _anonymous(name: Any) -> bool:

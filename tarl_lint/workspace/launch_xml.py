@@ -9,6 +9,7 @@ from typing import Final
 from xml.etree.ElementTree import Element
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.conditions import combined
 from tarl_lint.workspace.launch_documents import LINE, xml_root
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
@@ -71,33 +72,33 @@ class _Reader:
             try:
                 holds, unsure = self._holds(element, place)
                 if holds:
-                    inside = replace(place, condition=unsure) if unsure else place
-                    place = replace(self._element(element, inside), condition=place.condition)
+                    inside = replace(place, condition=combined(place.condition, unsure))
+                    place = replace(self._element(element, inside, unsure), condition=place.condition)
             except SymbolicError as reason:
                 self._problem(element, place, f"<{element.tag}>: {reason}")
 
-    def _element(self, element: Element, place: _Place) -> _Place:
-        """Read one element; return the context of the following ones."""
+    def _element(self, element: Element, place: _Place, unsure: str) -> _Place:
+        """Read one element; return the context of the following ones. `unsure` is its own unknown condition."""
         if element.tag == "arg":
-            return self._argument(element, place)
+            return self._argument(element, place, unsure)
         if element.tag == "remap":
             pair = self._name(element, "from", place), self._name(element, "to", place)
-            return replace(place, remaps=(*place.remaps, pair))
+            return replace(place, remaps=(*place.remaps, (pair[0], _perhaps(pair[1], unsure))))
         if element.tag == "group":
             namespace = joined(place.namespace, self._name(element, "ns", place))
             self.elements(element, replace(place, namespace=namespace))
         elif element.tag == "include":
             self._include(element, place)
-        elif element.tag == "node":
+        elif element.tag in ("node", "test"):
             self._node(element, place)
         elif element.tag in ("param", "rosparam"):
-            setting = self._setting(element, place, place.namespace)
+            setting = self._setting(element, place, place.namespace, unsure)
             if setting is not None and setting.name.startswith("~"):
                 return replace(place, private=(*place.private, setting))
             self.settings += [setting] if setting is not None else []
         return place
 
-    def _argument(self, element: Element, place: _Place) -> _Place:
+    def _argument(self, element: Element, place: _Place, unsure: str) -> _Place:
         name = element.get("name", "")
         if len(place.including) == 1 and "value" not in element.attrib:
             self.arguments.add(name)
@@ -107,10 +108,10 @@ class _Reader:
             return place  # set by the including file
         stated = element.get("value", element.get("default"))
         value: str | None = None
-        try:
-            value = None if stated is None else place.scope.text(stated)
-        except SymbolicError as reason:
-            self._problem(element, place, f"<arg name={name!r}>: {reason}")
+        if stated is not None:
+            value = self._value(element, name, stated, place)
+            if value != place.scope.arguments.get(name):
+                value = _perhaps(value, unsure)
         arguments = {**place.scope.arguments, name: value}
         return replace(place, scope=replace(place.scope, arguments=arguments))
 
@@ -122,26 +123,34 @@ class _Reader:
         if element.get("pass_all_args", "").lower() in ("true", "1"):
             given = dict(place.scope.arguments)
         for one in element:
-            if one.tag == "arg" and self._holds(one, place)[0]:
-                try:
-                    given[one.get("name", "")] = place.scope.text(one.get("value", one.get("default", "")))
-                except SymbolicError as reason:
-                    given[one.get("name", "")] = None
-                    self._problem(one, place, f"<arg name={one.get('name')!r}>: {reason}")
+            holds, unsure = self._holds(one, place) if one.tag == "arg" else (False, "")
+            if holds:
+                name, stated = one.get("name", ""), one.get("value", one.get("default", ""))
+                given[name] = _perhaps(self._value(one, name, stated, place), unsure)
         namespace = joined(place.namespace, self._name(element, "ns", place))
         self.file(path, given, replace(place, namespace=namespace))
 
+    def _value(self, element: Element, name: str, stated: str, place: _Place) -> str:
+        """Return the value of an argument; it is symbolic if only the robot knows it."""
+        text, reasons = place.scope.symbolic(stated)
+        for reason in reasons:
+            self._problem(element, place, f"<arg name={name!r}>: {reason}")
+        return text
+
     def _node(self, element: Element, place: _Place) -> None:
-        package, executable, name = (self._name(element, key, place) for key in ("pkg", "type", "name"))
+        """Read a node, or a test, which rostest runs beside the nodes."""
+        named = "name" if element.tag == "node" or "name" in element.attrib else "test-name"
+        package, executable, name = (self._name(element, key, place) for key in ("pkg", "type", named))
         inner, settings = place, list(place.private)
         for one in element:
             try:
-                if not self._holds(one, place)[0]:
+                holds, unsure = self._holds(one, place)
+                if not holds:
                     continue
                 if one.tag == "remap":
-                    inner = self._element(one, inner)
+                    inner = self._element(one, inner, unsure)
                 elif one.tag in ("param", "rosparam"):
-                    setting = self._setting(one, place, "~")
+                    setting = self._setting(one, place, "~", unsure)
                     settings += [setting] if setting is not None else []
             except SymbolicError as reason:
                 self._problem(one, place, f"<{one.tag}> of {name}: {reason}")
@@ -165,16 +174,24 @@ class _Reader:
                 (*place.remaps, *given.remaps, *own),
                 tuple(settings),
                 arguments,
-                condition=place.condition,
+                "test" if element.tag == "test" else "node",
+                place.condition,
                 inherited=len(place.remaps),
                 anonymous=f"file {place.visit}" if "$(anon " in element.get("name", "") else "",
             )
         )
 
-    def _setting(self, element: Element, place: _Place, above: str) -> Setting | None:
+    def _setting(self, element: Element, place: _Place, above: str, unsure: str) -> Setting | None:
+        """Return a parameter, or the parameters of a file; unknown if they are set under an unknown condition."""
+        made = (
+            self._yaml(element, place, above)
+            if element.tag == "rosparam"
+            else self._param(element, place, above)
+        )
+        return replace(made, unknown=True) if made is not None and unsure else made
+
+    def _param(self, element: Element, place: _Place, above: str) -> Setting | None:
         text = place.scope.text
-        if element.tag == "rosparam":
-            return self._yaml(element, place, above)
         stated = text(element.get("name", ""))
         name = _parameter(
             above, stated.lstrip("/") if above == "~" else stated
@@ -221,7 +238,7 @@ class _Reader:
                     return scalar(place.scope.text(element.attrib[key]), "bool") is wanted, ""
                 except SymbolicError as reason:
                     self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
-                    return True, f"{key} {element.attrib[key]}"
+                    return True, f"{key} {place.scope.symbolic(element.attrib[key])[0]}"
         return True, ""
 
     def _read(self, path: Path) -> str:
@@ -248,6 +265,11 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
         tuple(sorted(reader.arguments)),
         required=tuple(sorted(reader.required)),
     )
+
+
+def _perhaps(text: str, condition: str) -> str:
+    """Return a text that counts under a condition; it is symbolic unless the condition is ""."""
+    return f"$({text} {condition})" if condition else text
 
 
 def _parameter(above: str, name: str) -> str:

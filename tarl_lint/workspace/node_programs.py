@@ -24,6 +24,8 @@ def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> 
     If the package installs a script from a place where it does not exist, the whole package is searched for it, as
     `rosrun` does.
     """
+    if node.kind == "test":
+        return "a test"
     if node.kind != "node":
         return "a composable node" if node.kind == "component" else "a container of composable nodes"
     package = workspace.package(node.package)

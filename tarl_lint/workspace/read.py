@@ -8,7 +8,7 @@ from typing import Final
 
 from tarl_lint.workspace.executables import installed, may_be_started
 from tarl_lint.workspace.folders import folders
-from tarl_lint.workspace.launch_lookup import ENDINGS
+from tarl_lint.workspace.launch_lookup import ENDINGS, TEST
 from tarl_lint.workspace.manifests import Manifest, manifest
 from tarl_lint.workspace.model import INTERFACES, Hidden, Package, Problem, Workspace
 
@@ -29,8 +29,8 @@ class _Found:
 
     def take(self, path: Path) -> None:
         """Classify a file by its name."""
-        name, above = path.name, path.parent.name
-        if name.endswith(ENDINGS) or (above == "launch" and _is_launch_file(path)):
+        above = path.parent.name
+        if _has_ending(path) or (above == "launch" and _is_launch_file(path)):
             self.launch_files.append(path)
         elif path.suffix == ".cfg" and _mentions(path, b"dynamic_reconfigure"):
             self.configurations.append(path)
@@ -98,6 +98,11 @@ def _package(found: _Found) -> Package:
         parameter_files=tuple(found.parameter_files),
         problems=(*problems, *more),
     )
+
+
+def _has_ending(path: Path) -> bool:
+    """Return whether a file has the ending of a launch file; other programs also use the one of rostest."""
+    return path.name.endswith(ENDINGS) and (path.suffix != TEST or _mentions(path, b"<launch"))
 
 
 def _is_launch_file(path: Path) -> bool:

@@ -15,17 +15,29 @@ from tarl_lint.workspace.launch_model import Scalar
 from tarl_lint.workspace.model import Workspace
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
+_EVAL: Final = "$(eval "
 LONGEST: Final = 100_000  # maximum length of a text (characters)
 _TRUTH: Final = {"true": True, "false": False}
 
 
 class SymbolicError(Exception):
-    """A text depends on values that are known only on the robot. The message is the reason."""
+    """A text depends on values that are known only on the robot.
+
+    The message is the reason. `text` is what stands for the text, such as `$(env ROBOT)`; "" if it stands for itself.
+    """
+
+    def __init__(self, reason: str, text: str = "") -> None:
+        super().__init__(reason)
+        self.text = text
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The names for substitutions: the arguments of the file (None: no value), its folder, and the packages."""
+    """The names for substitutions: the arguments of the file, its folder, and the packages.
+
+    An argument without a value is None. The value of an argument that is known only on the robot is symbolic, such as
+    `$(env ROBOT)`, so that it is the same text in all files that pass it on.
+    """
 
     workspace: Workspace
     file: Path
@@ -33,8 +45,8 @@ class Scope:
 
     def text(self, text: str) -> str:
         """Return a text with its substitutions replaced. Raises SymbolicError if a substitution has no value."""
-        if text.startswith("$(eval ") and text.endswith(")"):
-            return str(self._evaluated(text[len("$(eval ") : -1]))
+        if text.startswith(_EVAL) and text.endswith(")"):
+            return str(self._evaluated(text[len(_EVAL) : -1]))
         replaced = _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
         if len(replaced) > LONGEST:
             raise SymbolicError("the text is too long")
@@ -49,9 +61,15 @@ class Scope:
                 return self.text(found[0])
             except SymbolicError as reason:
                 reasons.append(str(reason))
-                return found[0]
+                return found[0] if found[0].startswith(_EVAL) else reason.text or found[0]
 
-        return _ARGUMENT.sub(replaced, text), reasons
+        if text.startswith(_EVAL) and text.endswith(")"):
+            try:
+                return self.text(text), []
+            except SymbolicError as reason:
+                return text, [str(reason)]
+        whole = _ARGUMENT.sub(replaced, text)
+        return (whole, reasons) if len(whole) <= LONGEST else (text, [*reasons, "the text is too long"])
 
     def _replaced(self, words: list[str]) -> str:
         command, *rest = words or [""]
@@ -77,10 +95,13 @@ class Scope:
         value = self.arguments.get(name)
         if value is None:
             raise SymbolicError(f"the argument {name} has no value")
+        if "$(" in value:
+            raise SymbolicError(f"the argument {name} is known on the robot only: {value}", value)
         return value
 
     def _evaluated(self, expression: str) -> Any:
-        names: dict[str, Any] = {key: scalar(one) for key, one in self.arguments.items() if one is not None}
+        known = {key: one for key, one in self.arguments.items() if one is not None and "$(" not in one}
+        names: dict[str, Any] = {key: scalar(one) for key, one in known.items()}
         names |= {"true": True, "false": False, "pi": math.pi, "e": math.e, "find": self._found}
         names |= {"arg": lambda name: scalar(self._argument(name)), "optenv": _otherwise}
         names["dirname"] = lambda: str(self.file.parent)

@@ -19,6 +19,7 @@ class SourceRecord:
     """A subscription: its place, its topics, and the nodes at which its messages arrive.
 
     `key` distinguishes the subscriptions made at one place, which a launch file may give different names.
+    `types` are the last parts of the types' names; `whole_types` are types with packages ("" if that is unknown).
     """
 
     path: str
@@ -31,6 +32,7 @@ class SourceRecord:
     frame: Frame
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
+    whole_types: set[str] = field(default_factory=set)
     callbacks: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
     registered: set[tuple[str, ir.Pos]] = field(default_factory=set)
@@ -58,10 +60,11 @@ class SinkRecord:
 
 @dataclass(slots=True, eq=False)
 class Publisher:
-    """A publisher: its topics, the place of its creation, and whether it is used."""
+    """A publisher: its topics, types (as in SourceRecord), the place of its creation, and whether it is used."""
 
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
+    whole_types: set[str] = field(default_factory=set)
     api: str = ""
     path: str = ""
     pos: ir.Pos = (0, 0, 0, 0)

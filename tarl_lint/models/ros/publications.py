@@ -22,6 +22,7 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
     obj.info = info
     info.topics.update(topics(ctx, it))
     info.types.update(type_names(it.argument(it.fact.type)))
+    info.whole_types.update(whole_type_names(it.argument(it.fact.type)))
     return pointer(obj)
 
 
@@ -111,6 +112,12 @@ def qualname(frame: Frame) -> str:
 def type_names(value: Value) -> list[str]:
     """Return the last parts of message types' names."""
     return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]
+
+
+def whole_type_names(value: Value) -> list[str]:
+    """Return message types as `package/Name`; "" for a type whose package is unknown."""
+    names = [o.name.split(".") if o.kind == "ext" else [] for o in value.pts if o.kind in ("ext", "class")]
+    return [f"{parts[0]}/{parts[-1]}" if parts[1:2] == ["msg"] else "" for parts in names]
 
 
 def _api(info: Publisher, it: Invocation) -> str:

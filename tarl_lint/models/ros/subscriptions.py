@@ -23,7 +23,7 @@ from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, jo
 from tarl_lint.models import sizes
 from tarl_lint.models.ros import publications
 from tarl_lint.models.ros.endpoints import NAMESPACE, Kind, Publisher, SourceRecord
-from tarl_lint.models.ros.publications import type_names
+from tarl_lint.models.ros.publications import type_names, whole_type_names
 from tarl_lint.models.smach import LATER
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
@@ -52,6 +52,7 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
     record.via.update(via)
     record.topics.update(publications.topics(ctx, it))
     record.types.update(type_names(it.argument(it.fact.type)))
+    record.whole_types.update(whole_type_names(it.argument(it.fact.type)))
     return record
 
 
@@ -109,6 +110,7 @@ def feedback(ctx: Interpreter, it: Invocation) -> Value:
         if any(one.kind in ("closure", "bound", "partial") for one in given.pts):
             record = source(ctx, replace(it, arguments=([Value(consts=topics)], {})), given)
             record.types.add("InteractiveMarkerFeedback")
+            record.whole_types.add("visualization_msgs/InteractiveMarkerFeedback")
             connect(ctx, record, given, [])
     return handle(ctx, it.frame, it.call)
 

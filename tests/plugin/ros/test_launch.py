@@ -179,6 +179,31 @@ def test_a_note_names_nodes_that_have_the_same_name(tarl: Tarl, tmp_path: Path) 
     assert note == "twice.launch starts several nodes named /same: roslaunch refuses the file."
 
 
+def test_nodes_that_exclude_each_other_are_never_started_together(tarl: Tarl, tmp_path: Path) -> None:
+    node = '<node pkg="one" type="relay.py" name="{}" {}="$(arg sim)"/>'
+    nodes = node.format("driver", "if") + node.format("driver", "unless") + node.format("other", "if")
+    write(tmp_path, {"one/launch/either.launch": f'<launch><arg name="sim"/>{nodes}</launch>'})
+    with pytest.raises(SettingsError) as raised:
+        tarl.launch("either.launch")
+    assert str(raised.value) == (
+        "tarl.launch: either.launch starts either /driver (if $(arg sim)) or /driver (unless $(arg sim)): "
+        'pass arguments={"sim": …}, or choose one of them with only=[…].'
+    )
+    tarl.launch("either.launch", arguments={"sim": "true"})
+    assert tarl.ros.notes == ()
+
+
+def test_tests_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) -> None:
+    node = '<node pkg="one" type="relay.py" name="relay"/>'
+    test = '<test pkg="one" type="relay.py" test-name="check"/>'
+    write(tmp_path, {"one/test/relay.test": f"<launch>{node}{test}</launch>"})
+    workspace.forget()
+    tarl.launch("one/relay.test")
+    assert sent(tarl, "/in", 1.0) is None
+    assert tarl.bus.latest("/out").data == 10.0
+    assert tarl.ros.notes == ()
+
+
 def test_a_node_of_a_hidden_package_runs_with_a_note(tarl: Tarl, tmp_path: Path) -> None:
     write(tmp_path, {"other/CATKIN_IGNORE": ""})
     workspace.forget()
