@@ -299,11 +299,20 @@ def _unjudged(formula: str, recorded: Sample) -> str:
 def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
     """Return a note for every taint list of which no site was reached."""
     silent = [
-        t.name
-        for t, one in zip(plan.lists, recorded.lists, strict=True)
+        number
+        for number, one in enumerate(recorded.lists)
         if not one.visits.state.any()  # state 0 is the start of an episode, not a site
     ]
-    return [f"no step of {name} was executed: does the test drive that part of the node?" for name in silent]
+    return [_silent(plan.lists[number].name, forwarded=number in plan.forwarded) for number in silent]
+
+
+def _silent(name: str, *, forwarded: bool) -> str:
+    if forwarded:
+        return (
+            f"no statement runs when a message passes {name}, since the callback is the publish call itself: to "
+            "record or repair it, publish in a function of the node"
+        )
+    return f"no step of {name} was executed: does the test drive that part of the node?"
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:

@@ -33,13 +33,15 @@ class Plan:
     """The sites to record.
 
     A global site number is an index into `places`; `members[i]` holds the numbers of the sites in `lists[i]`.
-    `positions` holds the sites of each path, named as in the analysis; columns count characters.
+    `positions` holds the sites of each path, named as in the analysis; columns count characters. `forwarded` are the
+    indices of the lists whose callback is a publish call of ROS itself: no statement runs when a message passes.
     """
 
     lists: tuple[TaintList, ...]
     places: tuple[SitePlace, ...]
     members: tuple[tuple[int, ...], ...]
     positions: Mapping[str, Positions]
+    forwarded: frozenset[int] = frozenset()
 
     @property
     def publishes(self) -> frozenset[int]:
@@ -62,7 +64,15 @@ def plan(analysis: HasFlows) -> Plan:
         TaintList(source, sink, tuple(places[n] for n in sites))
         for (source, sink), sites in zip(ordered, members, strict=True)
     )
-    return Plan(lists, places, members, _positions(number.values()))
+    forwarded = frozenset(
+        index for index, pair in enumerate(ordered) if all(map(_is_forwarded, grouped[pair]))
+    )
+    return Plan(lists, places, members, _positions(number.values()), forwarded)
+
+
+def _is_forwarded(flow: Flow) -> bool:
+    """Return whether the registration of the subscription is also the publish call: `Subscriber(…, pub.publish)`."""
+    return flow.sink.span in (flow.source.span, *flow.source.registered)
 
 
 def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:

@@ -150,6 +150,18 @@ def test_an_interrupt_caught_by_the_node_still_ends_the_run_and_keeps_the_old_re
     tank.runpytest_subprocess(*RECORD).stdout.fnmatch_lines(["Interrupted *: no recording was written.*"])
 
 
+def test_a_callback_that_is_the_publish_call_itself_does_not_count_as_not_driven(
+    tank: pytest.Pytester,
+) -> None:
+    copy = 'rospy.Subscriber("/level", Float64, rospy.Publisher("/copy", Float64, queue_size=1).publish)'
+    changed(tank, "keeper", "    rate = rospy.Rate(10)", f"    {copy}\n    rate = rospy.Rate(10)")
+    told = tank.runpytest(*RECORD)
+    told.stdout.fnmatch_lines(
+        ["*no statement runs when a message passes /level → /copy, since the callback is*"]
+    )
+    told.stdout.no_fnmatch_line("*was executed*")
+
+
 def test_a_node_that_the_test_does_not_drive_is_reported(tank: pytest.Pytester) -> None:
     tank.makepyfile(idle=(tank.path / "keeper.py").read_text())
     changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["idle.py"]')

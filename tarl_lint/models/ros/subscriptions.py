@@ -68,17 +68,17 @@ def subscribe(ctx: Interpreter, it: Invocation) -> Value:
     record = source(ctx, it, callback)
     extra = it.argument(it.fact.extra)
     passed = [extra] if extra is not BOTTOM else []
-    connect(ctx, record, callback, passed)
-    _forward(ctx, record, callback, it)
+    connect(ctx, record, callback, passed, it)
     return handle(ctx, it.frame, it.call)
 
 
-def _forward(ctx: Interpreter, record: SourceRecord, callback: Value, it: Invocation) -> None:
-    """If the callback is a library method, such as `other.publish`, call it where it is registered."""
-    for target in callback.objects:
-        if target.kind == "method":
-            obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
-            calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
+def _of_library(ctx: Interpreter, target: Obj) -> bool:
+    """Return whether a callback is a library's method, such as `other.publish`, also in a `functools.partial`."""
+    if target.kind == "partial" and isinstance(target.info, tuple):
+        ctx.store.reads.look(target)
+        inner: frozenset[Obj] = target.info[0].pts
+        return bool(inner) and all(one is not target and _of_library(ctx, one) for one in inner)
+    return target.kind == "method"
 
 
 def _received(ctx: Interpreter, record: SourceRecord, frame: Frame, slot: Hashable) -> Obj:
@@ -98,7 +98,7 @@ def configured_source(ctx: Interpreter, it: Invocation) -> Value:
     callbacks = [v for v in given if any(o.kind in ("closure", "bound", "partial") for o in v.pts)]
     if not callbacks:
         return receive(ctx, it)
-    connect(ctx, source(ctx, it, callbacks[0]), callbacks[0], [])
+    connect(ctx, source(ctx, it, callbacks[0]), callbacks[0], [], it)
     return handle(ctx, it.frame, it.call)
 
 
@@ -111,7 +111,7 @@ def feedback(ctx: Interpreter, it: Invocation) -> Value:
             record = source(ctx, replace(it, arguments=([Value(consts=topics)], {})), given)
             record.types.add("InteractiveMarkerFeedback")
             record.whole_types.add("visualization_msgs/InteractiveMarkerFeedback")
-            connect(ctx, record, given, [])
+            connect(ctx, record, given, [], it)
     return handle(ctx, it.frame, it.call)
 
 
@@ -120,10 +120,15 @@ def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
     return pointer(recency.allocate(ctx, "lib", frame, ("made", call.slot)))
 
 
-def connect(ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value]) -> None:
-    """Run a callback whenever a message of the source arrives."""
+def connect(
+    ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value], it: Invocation
+) -> None:
+    """Run a callback whenever a message of the source arrives; call one of a library where it is registered."""
     for target in callback.objects:
-        if (target.kind in CALLABLE and target.kind != "method") or target.kind == "instance":
+        if _of_library(ctx, target):
+            obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
+            calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
+        elif target.kind in CALLABLE or target.kind == "instance":
             arriving = message(ctx, record, target)
             call_when(ctx, ("callback", *record.key), target, [pointer(arriving), *extra], "callback")
 

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 
 from pytest_tarl.instrumentation.sites import Plan, plan, relocate
 from tarl_lint.model import Dependence, Flow, Role, Sink, SiteId, Source, Span, Step
+from tests.lint.analysing import analysed
 
 
 @dataclass(frozen=True)
@@ -125,3 +127,35 @@ BEFORE = "a = 1\nb = 2\nc = 3\n"
 )
 def test_sites_are_relocated_in_an_edited_text(after, expected):
     assert relocate({(1, 1): 0, (2, 1): 1, (3, 1): 2}, BEFORE, after) == expected
+
+
+@pytest.mark.parametrize(
+    ("callback", "forwarded"),
+    [
+        ("out.publish", True),
+        ("functools.partial(out.publish)", True),
+        ("functools.partial(functools.partial(out.publish))", True),
+        ("lambda heard: out.publish(heard)", False),
+        ("on_in", False),
+        ("functools.partial(on_in)", False),
+    ],
+)
+def test_a_list_whose_callback_is_a_publish_call_of_ros_runs_no_statement(
+    tmp_path: Path, callback: str, forwarded: bool
+) -> None:
+    found = analysed(
+        tmp_path,
+        node=f"""
+        import functools
+        import rospy
+        from std_msgs.msg import Float64
+        def on_in(heard):
+            out.publish(heard)
+        rospy.init_node("relay")
+        out = rospy.Publisher("out", Float64, queue_size=1)
+        held = rospy.Subscriber("in", Float64, {callback})
+        """,
+    )
+    (only,) = found.flows
+    assert only.sink.span.line == (9 if "on_in" not in callback else 6)
+    assert plan(found).forwarded == (frozenset({0}) if forwarded else frozenset())

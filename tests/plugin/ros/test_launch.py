@@ -195,12 +195,14 @@ def test_nodes_that_exclude_each_other_are_never_started_together(tarl: Tarl, tm
 
 def test_tests_of_a_launch_file_are_not_started(tarl: Tarl, tmp_path: Path) -> None:
     node = '<node pkg="one" type="relay.py" name="relay"/>'
-    test = '<test pkg="one" type="relay.py" test-name="check"/>'
+    checked = '<remap from="out" to="/checked"/>'
+    test = f'<test pkg="one" type="relay.py" test-name="check">{checked}</test>'
     write(tmp_path, {"one/test/relay.test": f"<launch>{node}{test}</launch>"})
     workspace.forget()
     tarl.launch("one/relay.test")
     assert sent(tarl, "/in", 1.0) is None
-    assert tarl.bus.latest("/out").data == 10.0
+    assert tarl.bus.latest("/out").data == 1.0
+    assert tarl.bus.latest("/checked") is None
     assert tarl.ros.notes == ()
 
 
