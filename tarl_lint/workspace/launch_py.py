@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from tarl_lint.workspace import launch_reads
 from tarl_lint.workspace.expressions import Unknown
@@ -54,12 +55,40 @@ _HOMES: Final = (
 _EVENTS: Final = ("on_exit", "on_start", "on_stdout", "on_stderr", "on_completion", "entities")
 
 
+def module_file(path: Path, workspace: Workspace, name: str) -> Path | None:
+    """Return the file of a module that a package of the workspace installs, or that is beside the file `path`."""
+    first, *rest = name.split(".")
+    homes = [one.path for each in workspace.packages for one in each.modules if one.name == first]
+    beside = path.parent / first
+    for home in (*homes, beside, beside.with_suffix(".py")):
+        base = home.joinpath(*rest)
+        for place in (base if home.suffix == ".py" else base.with_suffix(".py"), base / "__init__.py"):
+            if place.is_file() and place.suffix == ".py" and place != path:
+                return place
+    return None
+
+
+@dataclass(frozen=True)
+class _Service:
+    """`LaunchService`: a script includes launch descriptions in it and runs it."""
+
+    included: list[Any]
+    readable: ClassVar = frozenset({"include_launch_description"})
+
+    def include_launch_description(self, description: Any) -> None:
+        """Start a launch description."""
+        self.included.append(description)
+
+
 class _File:
     """The interpretation of one launch file."""
 
     def __init__(self, path: Path, workspace: Workspace) -> None:
         self.path, self.workspace = path, workspace
-        self.file = BranchingInterpreter(path, self._models(), self._module)
+        self._included: list[Any] = []  # the descriptions that a LaunchService of the file includes
+        self.file = BranchingInterpreter(
+            path, self._models(), lambda name: module_file(path, workspace, name)
+        )
 
     def actions(self, problems: list[Problem]) -> Any:
         """Return the launch description.
@@ -71,24 +100,16 @@ class _File:
         description = self.file.called("generate_launch_description")
         if isinstance(description, Action):
             return description
+        if self._included:
+            return self._included
         self.file.problem(0, "generate_launch_description returns nothing that can be followed")
         return ()
-
-    def _module(self, name: str) -> Path | None:
-        """Return the file of a module that a package of the workspace installs, or that is beside the launch file."""
-        first, *rest = name.split(".")
-        homes = [one.path for each in self.workspace.packages for one in each.modules if one.name == first]
-        beside = self.path.parent / first
-        for home in (*homes, beside, beside.with_suffix(".py")):
-            base = home.joinpath(*rest)
-            for place in (base if home.suffix == ".py" else base.with_suffix(".py"), base / "__init__.py"):
-                if place.is_file() and place.suffix == ".py" and place != self.path:
-                    return place
-        return None
 
     def _models(self) -> dict[str, Any]:
         models: dict[str, Any] = {name: self._action(*made) for name, made in _ACTIONS.items()}
         models |= {
+            "launch.LaunchService": lambda *_, **__: _Service(self._included),
+            "launch.launch_service.LaunchService": lambda *_, **__: _Service(self._included),
             "launch.actions.GroupAction": self._group,
             "launch.actions.OpaqueFunction": self._opaque,
             "launch.actions.TimerAction": self._action("group", "period"),

@@ -14,6 +14,7 @@ from tarl_lint.workspace.launch_entities import actions
 from tarl_lint.workspace.launch_model import Launch
 from tarl_lint.workspace.launch_py import actions_of_python
 from tarl_lint.workspace.launch_run import Runner
+from tarl_lint.workspace.launch_script import is_script, read_script
 from tarl_lint.workspace.launch_values import Context
 from tarl_lint.workspace.launch_xml import read_xml
 from tarl_lint.workspace.model import Problem, Workspace
@@ -45,6 +46,8 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
 def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Launch:
     if path.suffix not in (".py", *_YAML) and not is_ros2_xml(path, workspace):
         return read_xml(path, workspace, arguments)
+    if path.suffix == ".py" and is_script(_text(path)):
+        return read_script(path, workspace)
     context = Context(workspace, path, dict(arguments))
     runner = Runner(_opened)
     runner.run(_opened(path, context, runner.problems), context)
@@ -53,11 +56,17 @@ def _launch(path: Path, workspace: Workspace, arguments: dict[str, str]) -> Laun
     return Launch(path, tuple(runner.nodes), (), problems, names, ros2=True, required=required)
 
 
+def _text(path: Path) -> str:
+    try:
+        return read_text(path, LARGEST)
+    except UnreadableError:
+        return ""
+
+
 def is_ros2_xml(path: Path, workspace: Workspace) -> bool:
     """Return whether an XML launch file is for ROS 2, by its elements or else by its package's build type."""
-    try:
-        text = read_text(path, LARGEST)
-    except UnreadableError:
+    text = _text(path)
+    if not text:
         return False
     if _OF_ROS2.search(text):
         return True
