@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.document import Document, Edit, document, parse
 from pytest_tarl.patching.expressions import number
+from pytest_tarl.patching.launch_numbers import computed, numerals
 from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
@@ -24,12 +25,16 @@ _MOST_FILES = 400  # maximum number of configuration files to read per package
 ENVIRONMENT = ("os.environ.get", "environ.get", "os.getenv", "getenv")
 _NUMERAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
+_ARGUMENT = r"\$\((?:arg|var) ([\w-]+)\)"  # the value is that of a launch argument
 _PLAIN = re.compile(r"[-+]?\d+")
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A number at its definition: its offsets `start` and `end` in a file, its name there and its value."""
+    """A number at its definition: its offsets `start` and `end` in a file, its name there and its value.
+
+    If the constant is to be f times as large, the number must be (1 + (f - 1) · `share`) times as large.
+    """
 
     path: str
     start: int
@@ -37,6 +42,7 @@ class Place:
     line: int
     name: str
     value: bool | int | float
+    share: float = 1.0
 
 
 def defined(analysis: Analysis, operand: Operand) -> Place | None:
@@ -101,12 +107,54 @@ def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
     """Yield the numbers that configuration files assign to the parameter `name`."""
     key = re.split(r"[/.~]", name)[-1]
     for path, text in files.items():
+        if _kind(Path(path)) == "launch.py":
+            yield from _launched(path, key, text)
+            continue
         for match in _matches(_kind(Path(path)), key, text):
             start, end = match
             value = ast.literal_eval(
                 text[start:end].capitalize() if text[start].isalpha() else text[start:end]
             )
             yield Place(path, start, end, text.count("\n", 0, start) + 1, key, value)
+
+
+def _launched(path: str, key: str, text: str) -> Iterator[Place]:
+    """Yield the numbers of a Python launch file that determine a parameter."""
+    source = _python(path, text)
+    if source is None:
+        return
+    for one in numerals(key, source.tree):
+        start, end = source.start(one.node), source.end(one.node)
+        if isinstance(one.node, ast.Constant) and isinstance(one.node.value, str):
+            start = text.find(one.node.value.strip(), start, end)  # within the quotes
+            end = start + len(one.node.value.strip())
+        yield Place(path, start, end, one.node.lineno, _target(source, one.node) or key, one.value, one.share)
+
+
+def _target(source: Document, node: ast.expr) -> str:
+    """Return the name to which a number is assigned, or its place in an expression; "" if it stands alone."""
+    around = source.parents.get(node)
+    if isinstance(around, ast.Assign) and len(around.targets) == 1:
+        return source.source(around.targets[0])
+    return f"the {source.source(node)} in {source.source(around)}" if isinstance(around, ast.BinOp) else ""
+
+
+def computed_at(name: str, files: Mapping[str, str]) -> str:
+    """Return where a Python launch file computes a parameter in a way that cannot be changed, as a text, or ""."""
+    key = re.split(r"[/.~]", name)[-1]
+    for path, text in files.items():
+        source = _python(path, text) if _kind(Path(path)) == "launch.py" else None
+        node = next(computed(key, source.tree), None) if source is not None else None
+        if source is not None and node is not None:
+            return f"{path}:{node.lineno} computes it as `{' '.join(source.source(node).split())[:80]}`"
+    return ""
+
+
+def _python(path: str, text: str) -> Document | None:
+    try:
+        return Document(path, text, parse(text))
+    except (SyntaxError, ValueError):
+        return None
 
 
 def redefined(place: Place, value: bool | int | float) -> str:
@@ -193,10 +241,12 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 def _name(source: Document, node: ast.expr) -> str:
     """Return the name of a literal: the target of its assignment, or the parameter that has it as default; else ""."""
-    key, inner = "", node
+    key = ""
+    inner: ast.AST = node
     for each in source.ancestors(node):
-        if isinstance(each, ast.Dict | ast.List | ast.Tuple):
-            key, inner = _key(source, each, inner) + key, each
+        child, inner = inner, each
+        if isinstance(each, ast.Dict | ast.List | ast.Tuple) and isinstance(child, ast.expr):
+            key = _key(source, each, child) + key
             continue
         if isinstance(each, ast.Assign) and len(each.targets) == 1:
             return source.source(each.targets[0]) + key
@@ -225,10 +275,10 @@ def _kind(path: Path) -> str:
         return "yaml"
     if path.suffix == ".toml":
         return "toml"
-    if path.name.endswith((".launch", ".launch.xml")):
+    if path.name.endswith((".launch", ".launch.xml", "_launch.xml")):
         return "launch"
     if path.name.endswith((".launch.py", "_launch.py")):
-        return "yaml"  # in such a file, the parameters of a node are a dictionary
+        return "launch.py"
     return "cfg" if path.suffix == ".cfg" else ""
 
 
@@ -244,18 +294,26 @@ def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
         return
     patterns = [rf"""(?<![\w.-])["']?{word}["']?[ \t]*:[ \t]*{_NUMBER}(?=[ \t]*(?:\#|,|\}}|\)|<|\r?\n|$))"""]
     if kind == "launch":
-        named = rf"""name[ \t]*=[ \t]*["'][^"']*(?<![\w-]){word}["'][^<>]*?"""
-        patterns.append(rf"""{named}(?:value|default)[ \t]*=[ \t]*["'][ \t]*{_NUMBER}[ \t]*["']""")
+        words = [
+            word,
+            *(re.escape(one) for one in re.findall(rf"{_named(word)}{_ARGUMENT}", text) if one != key),
+        ]
+        patterns += [rf"""{_named(one)}{_NUMBER}[ \t]*["']""" for one in dict.fromkeys(words)]
     for pattern in patterns:
         for match in re.finditer(pattern, text):
             yield match.span("number")
 
 
+def _named(word: str) -> str:
+    """Return a pattern for an element of a launch file with this name, up to its value."""
+    named = rf"""name[ \t]*=[ \t]*["'](?:[^"']*(?<![\w-]))?{word}["'][^<>]*?"""
+    return rf"""{named}(?:value|default)[ \t]*=[ \t]*["'][ \t]*"""
+
+
 def _added(key: str, text: str) -> Iterator[tuple[int, int]]:
     """Yield the offsets of defaults in a dynamic_reconfigure file: `gen.add(name, type, level, text, default, …)`."""
-    try:
-        source = Document("", text, parse(text))
-    except (SyntaxError, ValueError):
+    source = _python("", text)
+    if source is None:
         return
     for node in ast.walk(source.tree):
         if not (

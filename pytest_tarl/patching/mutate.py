@@ -113,7 +113,10 @@ def redefinition(mutation: Mutation) -> float | int | bool:
     old = mutation.place.value if mutation.place is not None else value
     if isinstance(old, bool):
         return not old
-    return rounded(old * mutation.value) if value != 0 and old else rounded(mutation.value)
+    if value == 0 or not old:
+        return rounded(mutation.value)
+    share = mutation.place.share if mutation.place is not None else 1.0
+    return rounded(old * (1.0 + (mutation.value - 1.0) * share) if share != 1.0 else old * mutation.value)
 
 
 def rewrite(

@@ -8,7 +8,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter, users
+from pytest_tarl.patching.definitions import (
+    Place,
+    computed_at,
+    configured,
+    defined,
+    package_files,
+    parameter,
+    users,
+)
 from pytest_tarl.patching.mutate import Mutation, redefinition
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate, Trials
@@ -109,7 +117,7 @@ class Placing:
         for place in likely[:MOST_PLACES]:
             if self._moves(mutation, [place], candidate, trials):
                 return place
-        self._why[operand] = self._given(name, operand)
+        self._why[operand] = self._given(name, operand, computed_at(name, texts))
         return None
 
     def _moves(
@@ -126,7 +134,7 @@ class Placing:
                 continue
         return False
 
-    def _given(self, name: str, operand: Operand) -> str:
+    def _given(self, name: str, operand: Operand, computed: str) -> str:
         """Explain that the test, or the launch file that it starts, determines a parameter's value."""
         test = self.order.root / self.order.fixture.test.partition("::")[0]
         text = test.read_text("utf-8", "replace") if test.is_file() else ""
@@ -136,6 +144,8 @@ class Placing:
             "package, but "
         )
         passed = re.search(rf"""["'_]{key}\b""", text)
+        if passed is None and ".launch(" in text and computed:
+            return f"{start}{computed}, which contains no number to change. Change the parameter there"
         if passed is None and ".launch(" in text:
             return f"{start}the launch file of the test sets it. Change the parameter there"
         who = "the test itself passes it (parameters=…, argv=…)" if passed else "this test sets it"

@@ -8,13 +8,25 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pytest_tarl.model import Guard
-from pytest_tarl.patching.definitions import _entry_name, configured, defined, parameter
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.definitions import (
+    _entry_name,
+    _name,
+    computed_at,
+    configured,
+    defined,
+    edits,
+    parameter,
+)
+from pytest_tarl.patching.document import apply_plain_edits, document
+from pytest_tarl.patching.mutate import Mutation, redefinition
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.api import analyse
+from tarl_lint.model import Operand, SiteId, Span
 
 NODE = """\
 import rclpy
@@ -101,6 +113,10 @@ LAUNCH = '<launch><node pkg="a" type="b"><param name="~ki" value="0.5"/></node><
         ("mast.toml", "ki = 0.5"),
         ("mast.launch", LAUNCH),
         ("mast.launch.xml", LAUNCH),
+        ("mast_launch.xml", LAUNCH),
+        ("mast.launch", '<arg name="k" default="0.5"/><param name="ki" value="$(arg k)"/>'),
+        ("mast.launch.xml", '<arg name="k" default="0.5"/><param name="ki" value="$(var k)"/>'),
+        ("mast.launch", '<arg name="ki" default="0.5"/><param name="ki" value="$(arg ki)"/>'),
         ("mast.launch.py", "Node(parameters=[{'ki': 0.5}])"),
         ("mast_launch.py", "Node(parameters=[{'ki': 0.5}])"),
         ("Mast.cfg", "gen.add('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
@@ -118,6 +134,7 @@ def test_a_parameter_is_found_in_each_kind_of_file(path: str, text: str) -> None
         ("mast.yaml", "other_ki: 0.5"),
         ("mast.yaml", "ki: 0.5 m"),
         ("mast.launch", LAUNCH.replace("~ki", "~other_ki")),
+        ("mast.launch", '<arg name="k" default="0.5"/><param name="ki" value="$(arg other)"/>'),
         ("Mast.cfg", "gen.remove('ki', double_t, 0, 'gain', 0.5, 0, 1)"),
         ("Mast.cfg", "gen.add('kp', double_t, 0, 'gain', 0.5, 0, 1)"),
         ("Mast.cfg", "gen.add("),
@@ -186,3 +203,88 @@ def test_an_environment_variable_without_a_number_as_default_has_no_definition(
     analysis = analyse([path], root=tmp_path)
     used = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == "KP"}
     assert all(defined(analysis, one) is None for one in used)
+
+
+HEAD = "base = 1.5\nodd = base if simulated else 2.0\n"
+
+
+@pytest.mark.parametrize(
+    ("expression", "changed"),
+    [
+        ("2 * base", ("'ki': 3 * base", "base = 2.25")),
+        ("base", ("base = 2.25",)),
+        ("base + 0.5", ("'ki': base + 1.5", "base = 2.5")),
+        ("-base / 3", ("base = 2.25",)),
+        ("1.0 - base", ("'ki': 0.75 - base", "base = 1.75")),
+        ("float('0.5')", ("'ki': float('0.75')",)),
+        ("ParameterValue(base, value_type=float)", ("base = 2.25",)),
+        ("LaunchConfiguration('gain')", ("default_value='0.6'",)),
+        ("[LaunchConfiguration('gain')]", ("default_value='0.6'",)),
+        ("base * base", ()),
+        ("odd", ()),
+        ("2 * pick()", ()),
+        ("LaunchConfiguration('other')", ()),
+    ],
+)
+def test_numbers_from_which_a_python_launch_file_computes_a_parameter_are_changed(
+    expression: str, changed: tuple[str, ...]
+) -> None:
+    argument = "DeclareLaunchArgument('gain', default_value='0.4'), DeclareLaunchArgument('other')"
+    text = f"{HEAD}made = [{argument}, Node(parameters=[{{'ki': {expression}}}])]\n"
+    use, definition = Span("n.py", 9, 1, 9, 3), Span("n.py", 2, 1, 2, 2)
+    operand = Operand(SiteId("n", "", "x"), use, "ki", 3.0, definition)
+    found = list(configured("ki", {"a.launch.py": text}))
+    texts = []
+    for place in found:
+        value = redefinition(Mutation(operand, 1.5, place))
+        texts.append(apply_plain_edits("a.launch.py", text, edits({place: value}, text)))
+    assert len(texts) == len(changed)
+    for new, part in zip(texts, changed, strict=True):
+        assert part in new
+        assert part not in text
+    why = computed_at("ki", {"a.launch.py": text})
+    assert why == ("" if changed else f"a.launch.py:3 computes it as `{expression}`")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "SetParameter(name='ki', value=0.5)",
+        "SetParameter('ki', 0.5)",
+        "Node(parameters=[dict(ki=0.5)])",
+        "Node(parameters=[{'mast': {'ki': 0.5}}])",
+        "Node(parameters=[{'mast.ki': 0.5}])",
+        "IncludeLaunchDescription(source, launch_arguments={'ki': '0.5'}.items())",
+        "gain = 0.5\ndef generate_launch_description():\n    return Node(parameters=[{'ki': gain}])",
+    ],
+)
+def test_a_python_launch_file_sets_a_parameter_in_several_ways(text: str) -> None:
+    (place,) = configured("ki", {"a.launch.py": text})
+    assert (place.value, text[place.start : place.end], place.share) == (0.5, "0.5", 1.0)
+
+
+numbers = st.floats(0.1, 10).map(lambda one: round(one, 3))
+
+
+@given(
+    numbers, numbers, numbers, st.sampled_from(["{a} * base + {b}", "{b} - base / {a}", "({a} + base) * {b}"])
+)
+def test_each_found_number_scales_the_parameter_as_wanted(a, b, factor, form):  # type: ignore[no-untyped-def]
+    expression = form.format(a=a, b=b)
+    text = f"base = 1.25\nNode(parameters=[{{'ki': {expression}}}])\n"
+    whole = eval(expression, {"base": 1.25})
+    for place in configured("ki", {"a.launch.py": text}):
+        new = place.value * (1.0 + (factor - 1.0) * place.share)
+        changed = text[: place.start] + repr(new) + text[place.end :]
+        base = float(changed.partition("\n")[0].removeprefix("base = "))
+        value = eval(changed.partition("'ki': ")[2].partition("}")[0], {"base": base})
+        assert value == pytest.approx(factor * whole, abs=1e-6)
+
+
+def test_a_number_in_a_call_in_a_list_is_named_after_its_element() -> None:
+    text = NODE.format(use="LATE[1]").replace("REACH:", 'LATE = [0.1, float("0.5")]\nREACH:')
+    source = document("mast.py", text)
+    literal = next(
+        one for one in ast.walk(source.tree) if isinstance(one, ast.Constant) and one.value == "0.5"
+    )
+    assert _name(source, literal) == "LATE[1]"

@@ -309,3 +309,47 @@ def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytes
 def test_an_unknown_value_of_the_flag_edit_is_refused_with_a_suggestion(worn: pytest.Pytester) -> None:
     done = worn.runpytest(*REPAIR, "--tarl-edit=defintion")
     done.stderr.fnmatch_lines(["*--tarl-edit does not know 'defintion'; did you mean 'definition'?*"])
+
+
+LAUNCHED = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+base = 1.0
+
+
+def pick():
+    return sum([2.0, 0.0])
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [Node(package="tank", executable="keeper.py", name="keeper", parameters=[{{"gain": {gain}}}])]
+    )
+"""
+
+
+def launched(worn: pytest.Pytester, gain: str) -> tuple[str, str, str]:
+    """Record and repair a node whose parameter a Python launch file computes."""
+    (worn.path / ".git").mkdir()  # the workspace ends here
+    (worn.path / "package.xml").write_text("<package><name>tank</name></package>")
+    (worn.path / "keeper.py").write_text(DECLARED.format(declaration=ONE.replace("2.0", "0.7")))
+    (worn.path / "keeper.launch.py").write_text(LAUNCHED.format(gain=gain))
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.launch("keeper.launch.py")')
+    return repaired(worn)
+
+
+def test_a_number_from_which_a_launch_file_computes_a_parameter_is_changed(worn: pytest.Pytester) -> None:
+    where, _, lines = launched(worn, "2 * base")
+    assert where == "keeper.launch.py:13 the 2 in 2 * base"
+    removed, added = lines.splitlines()
+    assert '{"gain": 2 * base}' in removed
+    assert " * base}" in added
+
+
+def test_a_note_names_the_expression_in_which_a_launch_file_has_no_number_to_change(
+    worn: pytest.Pytester,
+) -> None:
+    where, told, _ = launched(worn, "pick()")
+    assert where.startswith("keeper.py:")
+    assert "keeper.launch.py:13 computes it as `pick()`, which contains no number to change" in told
