@@ -62,6 +62,10 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "copy.copy": Fact("copy", "copy.copy"),
     "copy.deepcopy": Fact("copy", "copy.deepcopy"),
     "rospy.get_param": Fact("parameter", "rospy.get_param", (0, "param_name"), extra=(1, "default")),
+    "image_transport.Publisher": Fact("image publisher", "image_transport.Publisher", (0, "topic_uri")),
+    "image_transport.Subscriber": Fact(
+        "subscribe", "image_transport.Subscriber", (0, "topic_uri"), callback=(1, "callback")
+    ),
 }
 
 MARKER_SERVERS: Final = frozenset(
@@ -73,6 +77,7 @@ MARKER_SERVERS: Final = frozenset(
 MARKER_MENUS: Final = frozenset(
     ["interactive_markers.MenuHandler", "interactive_markers.menu_handler.MenuHandler"]
 )
+IMAGE_TRANSPORT: Final = "image_transport_py.ImageTransport"
 FEEDBACK: Final = Fact("feedback", "interactive_markers.InteractiveMarkerServer", (0, ""))
 CLASS_METHODS: Final[Mapping[str, Fact]] = {
     **{
@@ -81,6 +86,18 @@ CLASS_METHODS: Final[Mapping[str, Fact]] = {
         for name in ("insert", "setCallback")
     },
     **{f"{menu}.insert": FEEDBACK for menu in sorted(MARKER_MENUS)},
+    **{
+        f"{IMAGE_TRANSPORT}.{name}": Fact(
+            "image publisher", f"{IMAGE_TRANSPORT}.{name}.publish", (0, "base_topic")
+        )
+        for name in ("advertise", "advertise_camera")
+    },
+    **{
+        f"{IMAGE_TRANSPORT}.{name}": Fact(
+            "subscribe", "image_transport_py.Subscriber", (0, "base_topic"), callback=(2, "callback")
+        )
+        for name in ("subscribe", "subscribe_camera")
+    },
 }  # methods of library classes by qualified name; METHODS holds those that the name of the method identifies
 
 LOOKUPS: Final = frozenset(
@@ -178,6 +195,7 @@ SOURCE_WORDS: Final = (
     "ActionServer",
     "SimpleActionServer",
     "InteractiveMarkerServer",
+    "ImageTransport",
 )  # a file that contains none of these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 CLIENT_WORDS: Final = (

@@ -149,6 +149,7 @@ def _name_class(ctx: Interpreter, qualified: str, made: Value, arguments: Argume
     markers = qualified in catalog.MARKER_SERVERS or qualified in catalog.MARKER_MENUS
     if not (
         markers
+        or qualified == catalog.IMAGE_TRANSPORT
         or qualified.startswith(containers.NAMED)
         or qualified in catalog.RESERVING
         or (ctx.config.named and qualified.rpartition(".")[2][:1].isupper())

@@ -19,8 +19,10 @@ from tarl_lint.system.binding import (
     with_prints,
 )
 from tarl_lint.system.cpp_sources import named_topics
-from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
+from tarl_lint.system.image_transport import is_republisher, republished, transported
+from tarl_lint.system.model import Endpoint, Hop, Instance, Interface, Role, System, full_name
 from tarl_lint.system.service_calls import PARTS, part
+from tarl_lint.system.topic_tools import passed_on
 from tarl_lint.workspace import hidden_packages
 from tarl_lint.workspace.bounded_files import UnreadableError
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
@@ -112,14 +114,20 @@ def _instance(
     name = full_name(node, own)
     if isinstance(interface, Interface) and isinstance(found, Program):
         return Instance(node, name, _decided(node, launch, name, interface, lambda given: read(found, given)))
+    unread = Instance(node, name, None, str(interface), silent=node.executable in _SILENT)
+    seen = () if isinstance(found, Program) else _seen(unread, launch, workspace)
+    return replace(unread, seen=seen, unread=f"a C++ program of {node.package}") if seen else unread
+
+
+def _seen(instance: Instance, launch: Launch, workspace: Workspace) -> tuple[Endpoint, ...]:
+    """Return the topics of a C++ program, from its source or as its documentation states them."""
+    node = instance.node
+    if is_republisher(node):
+        return republished(instance, ros2=launch.ros2)
     package = workspace.package(node.package) if node.kind == "node" else None
-    seen = (
-        named_topics(package, node.executable)
-        if package is not None and not isinstance(found, Program)
-        else ()
-    )
-    reason = f"a C++ program of {node.package}" if seen else str(interface)
-    return Instance(node, name, None, reason, seen, node.executable in _SILENT)
+    if package is None:
+        return passed_on(instance, ros2=launch.ros2)
+    return tuple(transported(instance, named_topics(package, node.executable)))
 
 
 def _decided(

@@ -14,6 +14,7 @@ from typing import Final
 
 from tarl_lint.files import shown
 from tarl_lint.model import Span
+from tarl_lint.system.image_transport import CAMERA, IMAGE
 from tarl_lint.system.model import Endpoint, Role
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.cmake import commands
@@ -29,16 +30,17 @@ _EXECUTABLES: Final = (
 _SUFFIXES: Final = (".cpp", ".cc", ".cxx", ".c++")
 _COMMENT: Final = re.compile(r"//[^\n]*|/\*.*?\*/|(\"(?:[^\"\\\n]|\\.)*\")", re.DOTALL)
 _CALL: Final = re.compile(
-    r"(?:(?P<who>\w+)(?:\(\))?\s*(?:\.|->)\s*)?\b(?P<call>advertise|create_publisher|subscribe|create_subscription)\s*"
-    r"(?:<\s*(?P<type>[\w:]+)[^;(]{0,200}?>)?\s*\(\s*\"(?P<name>[\w/~]+)\""
+    r"(?:(?P<who>\w+)(?:\(\))?\s*(?:\.|->|::)\s*)?"
+    r"\b(?P<call>advertise(?:Camera)?|create_(?:camera_)?publisher|subscribe(?:Camera)?|create_(?:camera_)?subscription)"
+    r"\s*(?:<\s*(?P<type>[\w:]+)[^;(]{0,200}?>)?\s*\((?:\s*[\w.>()-]+\s*,)?\s*\"(?P<name>[\w/~]+)\""
+)
+# objects of image_transport: `ImageTransport it(nh)`, `it = std::make_shared<image_transport::ImageTransport>(nh)`
+_IMAGES: Final = re.compile(
+    r"\bImageTransport>?\s+(\w+)|\b(\w+)\s*(?:=|\.reset\s*\()[^;=]{0,80}\bImageTransport\b"
 )
 _PRIVATE: Final = re.compile(
     r"\b(\w+)\s*[({]\s*\"~\"|\b(\w+)\s*=\s*(?:ros::)?NodeHandle\s*\(\s*\"~\""
 )  # handles
-_ROLES: Final[dict[str, Role]] = {
-    "advertise": "publishes", "create_publisher": "publishes", "subscribe": "subscribes",
-    "create_subscription": "subscribes",
-}  # fmt: skip
 
 
 def named_topics(package: Package, executable: str) -> tuple[Endpoint, ...]:
@@ -84,6 +86,8 @@ def _blank(found: re.Match[str]) -> str:
 
 
 def _named(path: Path, text: str) -> Iterator[Endpoint]:
+    images = {one for pair in _IMAGES.findall(text) for one in pair if one} | {"image_transport"}
+    images |= {"it", "it_"} if "image_transport" in text else set()  # a member that the header declares
     private = {one for pair in _PRIVATE.findall(text) for one in pair if one}
     for found in _CALL.finditer(text):
         who, name = found["who"] or "", found["name"]
@@ -94,4 +98,10 @@ def _named(path: Path, text: str) -> Iterator[Endpoint]:
         line = text.count("\n", 0, found.start("call")) + 1
         column = found.start("call") - text.rfind("\n", 0, found.start("call"))
         span = Span(shown(path), line, column, line, column + len(found["call"]))
-        yield Endpoint(_ROLES[found["call"]], (name,), (found["type"] or "").rpartition("::")[2], span)
+        role: Role = (
+            "publishes" if "advertise" in found["call"] or "publisher" in found["call"] else "subscribes"
+        )
+        kind = (found["type"] or "").rpartition("::")[2]
+        if who in images:
+            kind = CAMERA if "amera" in found["call"] else IMAGE
+        yield Endpoint(role, (name,), kind, span)

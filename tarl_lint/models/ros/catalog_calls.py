@@ -240,6 +240,7 @@ def _parameters(ctx: Interpreter, receiver: Value, name: Value) -> Value:
 
 ACTIONS: Mapping[str, Callable[..., Value]] = {
     "publisher": publications.made_publisher,
+    "image publisher": publications.image_publisher,
     "subscribe": subscriptions.subscribe,
     "receive": subscriptions.receive,
     "configured": subscriptions.configured_source,

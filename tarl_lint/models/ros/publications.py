@@ -26,6 +26,17 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
     return pointer(obj)
 
 
+def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new publisher of image_transport; images are also on topics below its own."""
+    made = made_publisher(ctx, it)
+    for obj in made.objects:
+        if isinstance(obj.info, Publisher):
+            obj.info.topics.update(f"{name}/compressed" for name in topics(ctx, it))
+            obj.info.types.add("Image")
+            obj.info.whole_types.add("sensor_msgs/Image")
+    return made
+
+
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     """Return the possible topic names of a registration, after remapping."""
     names = ctx.config.launched

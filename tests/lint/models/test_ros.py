@@ -11,7 +11,8 @@ from tarl_lint.settings.config import Config
 from tests.lint.models.marked import differing, flows
 
 HEAD = """\
-import actionlib, actionlib.simple_action_server, asyncio, copy, functools, message_filters, multiprocessing
+import actionlib, actionlib.simple_action_server, asyncio, copy, functools, image_transport, message_filters
+import multiprocessing
 import rclpy, rclpy.action, rclpy.action.server, rclpy.wait_for_message
 import rospy, rospy.client, rospy.topics, threading
 from std_msgs.msg import Float64
@@ -55,6 +56,15 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
             out.publish(event.current_real)  # clean
         NAME(rospy.Duration(1.0), tick)
         NAME(rospy.Duration(1.0), callback=lambda event: out.publish(last))  # data
+    """,
+    ("image_transport.Publisher",): """
+        made = NAME("image")
+        rospy.Subscriber("in", Float64, lambda msg: made.publish(msg.data))  # data
+        rospy.Subscriber("in", Float64, lambda msg: made.publish(1.0))  # clean
+    """,
+    ("image_transport.Subscriber",): """
+        NAME("image/compressed", lambda image: out.publish(image))  # data
+        NAME("image", callback=lambda image: out.publish(1.0))  # clean
     """,
     ("rospy.on_shutdown",): """
         def ended():
@@ -245,6 +255,25 @@ def test_each_entry_of_the_catalog_has_a_test(table, facts):
 @pytest.mark.parametrize(("name", "body"), COVERED, ids=[name for name, _ in COVERED])
 def test_only_data_of_messages_reaches_sinks(name, body):
     assert differing(f"{HEAD}{dedent(body.replace('NAME', name))}{SPIN}") == {}
+
+
+def test_images_are_received_and_published_through_image_transport():
+    text = HEAD + dedent("""
+        from image_transport_py import ImageTransport
+        images = ImageTransport("images", image_transport="raw")
+        made, camera = images.advertise("made", 10), images.advertise_camera("camera", 10)
+        def on_image(image):
+            made.publish(image)  # data
+            made.publish(1.0)  # clean
+        images.subscribe("image", 10, on_image)
+        images.subscribe_camera("left", 10, lambda image, info: camera.publish(image, info))  # data
+    """)
+    assert differing(text) == {}
+    ends = {(one.source.topics, one.sink.topics, one.sink.type) for one in flows(text)}
+    assert ends == {
+        (("image",), ("made", "made/compressed"), "Image"),
+        (("left",), ("camera", "camera/compressed"), "Image"),
+    }
 
 
 def test_with_the_setting_tf2_a_transform_is_a_source():

@@ -1,0 +1,149 @@
+"""Programs that pass on what they receive: image_transport, topic_tools, and C++ programs that publish images."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.lint.test_system import MANIFEST, flows, launched, relay, run, workspace, write
+
+__all__ = ["workspace"]
+
+
+def ends(capsys: pytest.CaptureFixture[str], file: str, number: int = 0) -> tuple[list[str], list[str]]:
+    """Return the topics of a node by launched name."""
+    _, out, _ = run(capsys, "--launch", file, "--format", "json")
+    node: dict[str, Any] = json.loads(out)["systems"][0]["nodes"][number]
+    subscribed, published = ([one["name"] for one in node[role]] for role in ("subscribes", "publishes"))
+    return subscribed, published
+
+
+@pytest.mark.parametrize(
+    ("arguments", "inside", "subscribed", "published"),
+    [
+        ("compressed raw in:=/cam/image out:=/cam/plain", "", ["/cam/image/compressed"], ["/cam/plain"]),
+        ("raw in:=/cam/image out:=/small", "", ["/cam/image"], ["/small", "/small/compressed"]),
+        ("raw compressed", '<remap from="in" to="image"/>', ["/image"], ["/out/compressed"]),
+        (
+            "compressed raw",
+            '<remap from="in/compressed" to="/other/compressed"/><remap from="out" to="/plain"/>',
+            ["/other/compressed"],
+            ["/plain"],
+        ),
+        (
+            "",
+            '<param name="in_transport" value="compressed"/>',
+            ["/in/compressed"],
+            ["/out", "/out/compressed"],
+        ),
+    ],
+)
+def test_republish_converts_the_transports_of_an_image(
+    workspace, capsys, arguments, inside, subscribed, published
+):
+    node = f'<node pkg="image_transport" type="republish" name="r" args="{arguments}">{inside}</node>'
+    assert ends(capsys, launched(workspace, node)) == (subscribed, published)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "subscribed"),
+    [
+        ("load image_transport/republish manager compressed raw", ["/in/compressed"]),
+        ("standalone image_transport/republish raw raw", ["/in"]),
+        ("load image_proc/debayer manager", []),
+    ],
+)
+def test_republish_may_be_a_nodelet(workspace, capsys, arguments, subscribed):
+    node = f'<node pkg="nodelet" type="nodelet" name="r" args="{arguments}"/>'
+    assert ends(capsys, launched(workspace, node))[0] == subscribed
+
+
+def test_republish_of_ros2_takes_transports_before_the_arguments_of_ros(workspace, capsys):
+    node = """<node pkg="image_transport" exec="republish" name="r" args="compressed raw">
+    <remap from="in/compressed" to="/cam/compressed"/><remap from="out" to="/plain"/></node>"""
+    assert ends(capsys, launched(workspace, node, "a.launch.xml")) == (["/cam/compressed"], ["/plain"])
+
+
+def test_a_chain_passes_through_republish(workspace, capsys):
+    republish = (
+        '<node pkg="image_transport" type="republish" name="r" args="compressed raw in:=/cam out:=/plain"/>'
+    )
+    file = launched(
+        workspace, relay("camera", "/light", "/cam/compressed") + republish + relay("eye", "/plain", "/go")
+    )
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == [
+        "/light → /camera → /cam/compressed → [/r, not read] → /plain → /eye → /go  not read"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments", "subscribed", "published"),
+    [
+        ("relay", "/scan /other", ["/scan"], ["/other"]),
+        ("relay", "/scan", ["/scan"], ["/scan_relay"]),
+        ("throttle", "messages /scan 5.0", ["/scan"], ["/scan_throttle"]),
+        ("throttle", "messages /scan 5.0 slow", ["/scan"], ["/slow"]),
+        ("throttle", "bytes /scan 9000 1.0 slow", ["/scan"], ["/slow"]),
+        ("drop", "/scan 1 2", ["/scan"], ["/scan_drop"]),
+        ("mux", "/cmd_vel /joy_vel /nav_vel", ["/joy_vel", "/nav_vel"], ["/cmd_vel"]),
+        ("demux", "/in /a /b", ["/in"], ["/a", "/b"]),
+        ("transform", "/in /out std_msgs/Float64 m", [], []),
+        ("throttle", "messages", [], []),
+        ("relay", "", [], []),
+        ("relay", "$(env IN) /out", [], ["/out"]),
+    ],
+)
+def test_programs_of_topic_tools_name_their_topics_in_arguments(
+    workspace, capsys, program, arguments, subscribed, published
+):
+    node = f'<node pkg="topic_tools" type="{program}" name="t" args="{arguments}"/>'
+    assert ends(capsys, launched(workspace, node)) == (subscribed, published)
+
+
+CAMERA = """
+#include <image_transport/image_transport.h>
+int main() {
+  ros::NodeHandle nh;
+  image_transport::ImageTransport it(nh);
+  image_transport::Publisher pub = it.advertise("image", 1);
+  auto camera = it.advertiseCamera("left/image", 1);
+  auto sub = it.subscribe("mask", 1, on_mask);
+  ros::Publisher plain = nh.advertise<sensor_msgs::Image>("plain", 1);
+}
+"""
+
+
+def camera(workspace, inside: str) -> str:
+    write(
+        workspace,
+        {
+            "eye/package.xml": MANIFEST.format("eye", "catkin"),
+            "eye/CMakeLists.txt": "add_executable(camera src/camera.cpp)\n",
+            "eye/src/camera.cpp": CAMERA,
+        },
+    )
+    return launched(workspace, f'<node pkg="eye" type="camera" name="camera">{inside}</node>')
+
+
+def test_a_cpp_program_publishes_images_in_several_transports(workspace, capsys):
+    assert ends(capsys, camera(workspace, '<remap from="image" to="/front/image"/>')) == (
+        ["/mask"],
+        ["/front/image", "/front/image/compressed", "/left/image", "/left/image/compressed", "/left/camera_info",
+         "/plain"],
+    )  # fmt: skip
+
+
+def test_a_cpp_program_receives_images_in_the_transport_of_its_parameter(workspace, capsys):
+    parameter = '<param name="image_transport" value="compressed"/>'
+    assert ends(capsys, camera(workspace, parameter))[0] == ["/mask/compressed"]
+
+
+def test_image_transport_of_ros2_is_a_function_of_the_node(workspace, capsys):
+    file = camera(workspace, "")
+    source = workspace / "eye/src/camera.cpp"
+    source.write_text('auto pub = image_transport::create_publisher(this, "image");\n'
+                      'auto sub = image_transport::create_subscription(this, "in", on, "raw");\n')  # fmt: skip
+    assert ends(capsys, file) == (["/in"], ["/image", "/image/compressed"])
