@@ -164,11 +164,14 @@ def _of_launch(launch: Launch, two: bool) -> Iterator[Fact]:
         if node.kind == "component":
             continue
         name = _node(node.package, node.executable, node.namespace, node.name)
-        yield ("node", *(_of_environment(one) for one in name))
         given = (ros2 if two else ros1)(node.arguments)  # arguments, which the originals pass on to the node
         pairs = [pair for pair in node.remaps if pair not in given.remaps]
-        for old, new in {_plain(old): _plain(new) for old, new in pairs}.items():
-            yield ("remap", *name, old, new)
+        if (
+            node.kind != "test"
+        ):  # the originals list tests apart from nodes, and their parameters with the others
+            yield ("node", *(_of_environment(one) for one in name))
+            for old, new in {_plain(old): _plain(new) for old, new in pairs}.items():
+                yield ("remap", *name, old, new)
         if two:
             for key, value in _of_ros2(node).items():
                 yield ("param", *name, key, _value(value))

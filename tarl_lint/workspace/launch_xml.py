@@ -46,6 +46,7 @@ class _Reader:
     required: set[str] = field(default_factory=set)  # names of the outermost file's arguments without a value
     seen: int = 0
     visits: int = 0  # number of files included so far
+    before: list[int] = field(default_factory=list)  # for each node, the number of `settings` set before it
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
         """Read a launch file with its arguments."""
@@ -163,6 +164,7 @@ class _Reader:
         namespace = joined(place.namespace, given.namespace or self._name(element, "ns", place))
         own = inner.remaps[len(place.remaps) :]
         line = int(element.get(LINE, "0"))
+        self.before.append(len(self.settings))
         self.nodes.append(
             LaunchedNode(
                 package,
@@ -257,14 +259,23 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
     """Read a ROS 1 launch file, with defaults for missing arguments."""
     reader = _Reader(workspace)
     reader.file(path, dict(arguments or {}), None)
+    nodes = zip(reader.nodes, reader.before, strict=True)
     return Launch(
         path,
-        tuple(reader.nodes),
+        tuple(_overridden(node, reader.settings[count:]) for node, count in nodes),
         tuple(reader.settings),
         tuple(reader.problems),
         tuple(sorted(reader.arguments)),
         required=tuple(sorted(reader.required)),
     )
+
+
+def _overridden(node: LaunchedNode, later: Iterable[Setting]) -> LaunchedNode:
+    """Return a node with the private parameters that the launch file sets after the node, outside of it."""
+    full = joined(node.namespace, node.name)
+    within = (one for one in later if node.name and f"{one.name}/".startswith(f"{full}/"))
+    own = (replace(one, name=f"~{one.name[len(full) :].lstrip('/')}") for one in within)
+    return replace(node, settings=(*node.settings, *own))
 
 
 def _perhaps(text: str, condition: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tarl_lint.system.binding import parameter_values
 from tarl_lint.workspace.launch_read import read_launch
 from tarl_lint.workspace.read import read
 from tests.lint.workspace.launching import launched, names, reasons, settings
@@ -183,3 +184,18 @@ def test_at_most_five_thousand_elements_are_read(package):
 def test_a_launch_file_that_does_not_exist_is_a_problem(package):
     found = read_launch(package / "none.launch.py", read(package.parent), {})
     assert (found.nodes, len(found.problems)) == ((), 1)
+
+
+def test_a_parameter_that_is_set_after_its_node_replaces_the_one_of_the_node(package):
+    found = launched(
+        package,
+        """<launch><param name="/left/drive/early" value="1"/>
+        <group ns="left"><node pkg="arm" type="d" name="drive">
+        <param name="early" value="2"/><param name="late" value="2"/><rosparam>{list: [1]}</rosparam></node></group>
+        <param name="/left/drive/late" value="3"/><rosparam ns="left/drive">{list: [4]}</rosparam>
+        <param name="/left/driver/late" value="5"/></launch>""",
+    )
+    values = parameter_values(found, found.nodes[0], "/left/drive")
+    assert values == {
+        "/left/drive/early": 2, "/left/drive/late": 3, "/left/drive/list": [4], "/left/driver/late": 5,
+    }  # fmt: skip
