@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.cmake_blocks import Blocks
 from tarl_lint.workspace.model import Problem
 
 LARGEST: Final = 500_000  # maximum size of a file (bytes)
+MOST: Final = 2_000  # maximum number of words of a variable
+LONGEST: Final = 1_000  # maximum length of a word of a variable (characters)
 _TOKEN: Final = re.compile(
     r"""\#\[(?P<eq>=*)\[.*?\](?P=eq)\] | \#[^\n]*
         | (?P<word>"(?:[^"\\]|\\.)*" | [^\s()#"]+) | (?P<open>\() | (?P<close>\))""",
@@ -68,14 +71,13 @@ def cmake(folder: Path, package: str) -> Cmake:
 
 
 def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
-    """Yield the commands of a CMake text. `set` and `file(GLOB)` define variables."""
+    """Yield the commands of a CMake text. `set` and `file(GLOB)` define variables; macros and loops are expanded."""
     here = str(folder)
     variables = {"PROJECT_NAME": [package], "CMAKE_CURRENT_SOURCE_DIR": [here], "PROJECT_SOURCE_DIR": [here],
                  "CMAKE_SOURCE_DIR": [here], "CMAKE_CURRENT_LIST_DIR": [here]}  # fmt: skip
-    for name, words in _calls(text):
-        replaced = tuple(piece for word in words for piece in _replaced(word, variables))
+    for name, replaced in Blocks(_all_replaced, variables).run(list(_calls(text))):
         if name == "set" and replaced:
-            variables[replaced[0]] = list(replaced[1:])
+            variables[replaced[0]] = [word[:LONGEST] for word in replaced[1 : MOST + 1]]
         elif name == "file" and len(replaced) > 1 and replaced[0] in ("GLOB", "GLOB_RECURSE"):
             variables[replaced[1]] = list(_globbed(folder, replaced[2:], deep=replaced[0] != "GLOB"))
         yield Command(name, replaced)
@@ -95,6 +97,10 @@ def _calls(text: str) -> Iterator[tuple[str, list[str]]]:
             words.append(token["word"])
         elif token["word"]:
             name = token["word"]
+
+
+def _all_replaced(words: Sequence[str], variables: dict[str, list[str]]) -> tuple[str, ...]:
+    return tuple(piece for word in words for piece in _replaced(word, variables))
 
 
 def _replaced(word: str, variables: dict[str, list[str]]) -> list[str]:

@@ -459,3 +459,60 @@ def test_the_first_remapping_of_a_name_is_for_the_node_that_it_names():
         ("/n/m/j", "l"),
     ]
     assert first_of_each(pairs, "/n", "m") == (("a", "b"), ("d", "e"), ("h", "i"), ("~j", "k"))
+
+
+def called(tmp_path, text):
+    found = commands(dedent(text), tmp_path, "arm")
+    return [one.words for one in found if one.name == "add_executable"]
+
+
+def test_macros_and_loops_of_cmake_are_expanded(tmp_path):
+    text = """
+        macro(program T)
+          add_executable(${T} ${T}/${T}.cpp ${ARGN})
+        endmacro()
+        function(Both one two)
+          program(${one} extra.cpp)
+          program(${two})
+        endfunction()
+        set(MORE e f)
+        foreach(dir a b)
+          foreach(side left right)
+            program(${dir}_${side})
+          endforeach()
+        endforeach()
+        both(c d)
+        foreach(dir IN LISTS MORE ITEMS g)
+          program(${dir})
+        endforeach()
+        add_executable(${T} last.cpp)
+        """
+    assert called(tmp_path, text) == [
+        *((f"{one}_{side}", f"{one}_{side}/{one}_{side}.cpp") for one in "ab" for side in ("left", "right")),
+        ("c", "c/c.cpp", "extra.cpp"),
+        ("d", "d/d.cpp"),
+        *((one, f"{one}/{one}.cpp") for one in "efg"),
+        ("${T}", "last.cpp"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("macro(a)\nadd_executable(x)\na()\nendmacro()\na()", 8),
+        ("foreach(x RANGE 9)\nadd_executable(x)\nendforeach()\nadd_executable(y)", 1),
+        ("foreach(x a b)\nadd_executable(${x})", 0),
+        ("macro()\nadd_executable(x)\nendmacro()\nadd_executable(y)", 1),
+        ("set(a x)\n" + "set(a ${a}${a} ${a})\n" * 200 + "add_executable(${a})", 1),
+        (
+            "set(l 1 2 3 4 5 6 7 8 9)\n"
+            + "foreach(x ${l})\n" * 7
+            + "add_executable(x)\n"
+            + "endforeach()\n" * 7,
+            None,
+        ),
+    ],
+)
+def test_endless_and_unfinished_blocks_of_cmake_end(tmp_path, text, number):
+    found = called(tmp_path, text)
+    assert len(found) < 10_000 if number is None else len(found) == number
