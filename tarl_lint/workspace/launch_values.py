@@ -17,6 +17,7 @@ from tarl_lint.workspace.launch_model import Setting
 from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.python_library import LIBRARIES
 from tarl_lint.workspace.python_values import FilePath, SpentError
+from tarl_lint.workspace.substitutions import ALWAYS_SET
 
 TRUE: Final = frozenset({"true", "1"})
 FALSE: Final = frozenset({"false", "0"})
@@ -276,7 +277,10 @@ class OnRobot(Substitution):
 
     def text(self, context: Context, depth: int) -> str:
         """Return the default, or else what it depends on as `$(…)`."""
-        return f"$({self.what})" if self.default is None else performed(self.default, context, depth)
+        always = self.what.split()[1:2] and self.what.split()[1] in ALWAYS_SET
+        return (
+            f"$({self.what})" if self.default is None or always else performed(self.default, context, depth)
+        )
 
 
 def performed(value: Any, context: Context, depth: int = 0) -> str:

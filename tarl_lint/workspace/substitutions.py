@@ -15,6 +15,7 @@ from tarl_lint.workspace.launch_model import Scalar
 from tarl_lint.workspace.model import Workspace
 
 _ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
+ALWAYS_SET: Final = frozenset({"HOME", "USER", "PATH"})  # environment variables whose defaults never count
 _EVAL: Final = "$(eval "
 LONGEST: Final = 100_000  # maximum length of a text (characters)
 _TRUTH: Final = {"true": True, "false": False}
@@ -77,7 +78,7 @@ class Scope:
             return self._found(rest[0])
         if command == "arg" and len(rest) == 1:
             return self._argument(rest[0])
-        if command == "optenv" and rest:
+        if command == "optenv" and rest and rest[0] not in ALWAYS_SET:
             return " ".join(rest[1:])
         if command == "dirname":
             return str(self.file.parent)
@@ -114,8 +115,10 @@ class Scope:
         return value
 
 
-def _otherwise(_: str, default: str = "") -> str:
+def _otherwise(name: str, default: str = "") -> str:
     """Return the default of an environment variable, whose value is known only on the robot."""
+    if name in ALWAYS_SET:
+        raise SymbolicError(f"$(env {name}) is known on the robot only")
     return default
 
 

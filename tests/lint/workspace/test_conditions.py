@@ -162,3 +162,19 @@ def test_tests_are_no_nodes_of_the_robot(package):
     ]
     assert settings(found.nodes[1]) == {"~rate": 5}
     assert not reasons(found)
+
+
+def test_variables_that_every_robot_has_keep_no_default(package):
+    found = launched(
+        package,
+        """<launch><node pkg="arm" type="d" name="a"><param name="x" value="$(optenv HOME /root)/log"/>
+        <param name="y" value="$(optenv KIND plain)"/><param name="z" value="$(eval optenv('HOME', '/root'))"/>
+        </node></launch>""",
+    )
+    assert settings(found.nodes[0]) == {"~x": "unknown", "~y": "plain", "~z": "unknown"}
+    modern = described(
+        package,
+        """node("a", parameters=[{"x": EnvironmentVariable("HOME", default_value="/root"),
+        "y": EnvironmentVariable("KIND", default_value="plain")}])""",
+    )
+    assert settings(modern.nodes[0]) == {"~x": "unknown", "~y": "plain"}
