@@ -30,7 +30,6 @@ STEPS: tuple[Step, ...] = (
     *((1.42, INWARD), (0.7, INWARD), (1.62, INWARD), (0.6, INWARD), (1.05, INWARD), (0.95, INWARD)),
 )
 NEARBY = 2.5  # the largest factor by which a change that is not large increases or decreases a constant
-WEAK = 0.5  # a gain of less than this share of the wanted gain is weak
 AROUND = 40  # maximum number of episodes for inward steps around large changes that gain
 AT_LEAST = 2  # minimum number of inward steps around large changes that gain
 
@@ -45,12 +44,6 @@ def best_is_far(gains: Gains, guard: Guard) -> bool:
         for factor, gain in by_factor.items():
             (near if change_size(unit, factor) <= log(NEARBY) + 1e-9 else far).append(gain)
     return max(far) > max(near) + gains.slack
-
-
-def best_is_weak(gains: Gains, guard: Guard, wanted: float) -> bool:
-    """Return whether a change gains reward under a guard, but none gains much of what a repair needs."""
-    most = max((max(by_factor.values()) for by_factor in gains.under(guard).values()), default=0.0)
-    return gains.slack < most < WEAK * wanted
 
 
 def inward(units: Sequence[Unit], gains: Gains) -> tuple[list[Unit], list[float]]:

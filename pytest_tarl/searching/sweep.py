@@ -156,19 +156,15 @@ class Sweep:
             yield from self._all(factor, guard, plateau.among(before, self.units, self.gains, guard))
 
     def _inward(self, guard: Guard) -> Iterator[Candidate]:
-        """Try inward steps (see `plateau`) once under a guard while only large or weak changes gain."""
-        if self.proposed or guard in self._inside or not self._only_far_or_weak(guard):
+        """Try inward steps (see `plateau`) once under a guard while a large change gains most."""
+        if self.proposed or guard in self._inside or not plateau.best_is_far(self.gains, guard):
             return
         self._inside.add(guard)
         matter, steps = plateau.inward(self.units, self.gains)
         for factor in steps:
-            if not self._only_far_or_weak(guard):
+            if not plateau.best_is_far(self.gains, guard):
                 return
             yield from self._all(factor, guard, matter)
-
-    def _only_far_or_weak(self, guard: Guard) -> bool:
-        far = plateau.best_is_far(self.gains, guard)
-        return far or plateau.best_is_weak(self.gains, guard, self.goal.wanted)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
