@@ -8,9 +8,8 @@ from tarl_lint.interpret import dunder_methods, expressions, operators
 from tarl_lint.interpret.budget import MAX_STATEMENTS
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.ir.control_dependence import taken
 from tarl_lint.memory import joins
-from tarl_lint.memory.frames import Attempt, Frame
+from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
@@ -183,51 +182,6 @@ def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delt
     return True
 
 
-def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
-    """Execute a `try`: a handler can be entered before and after every statement of the body."""
-    depth = len(ctx.store.layers)
-    ctx.condition(frame, s)
-    ctx.store.push()
-    states: list[Delta] = [{}]
-    attempt = Attempt(depth, states, bool(s.handlers), BOTTOM, _taken(s))
-    frame.tries.append(attempt)
-    goes_on = True
-    for statement in s.body:
-        goes_on = ctx.ops.block(ctx, [statement], frame)
-        states.append(ctx.store.since(depth)) if s.handlers and goes_on else None
-        if not goes_on:
-            break
-    frame.tries.pop()
-    ends: list[Delta] = []
-    if goes_on and ctx.ops.block(ctx, s.orelse, frame):
-        ends.append(ctx.store.since(depth))
-    ctx.store.cut(depth)
-    if s.handlers:
-        ends += _handlers(ctx, s, states, attempt.raised, frame)
-    if not ends:
-        if s.final:
-            ctx.store.push(joins.joined(ctx, states))
-            ctx.ops.block(ctx, s.final, frame)
-            ctx.store.cut(depth)
-        return False
-    joins.merge(ctx, ends)
-    return ctx.ops.block(ctx, s.final, frame)
-
-
-def _handlers(ctx: Interpreter, s: ir.Try, states: list[Delta], raised: Value, frame: Frame) -> list[Delta]:
-    depth = len(ctx.store.layers)
-    start = joins.joined(ctx, states)
-    ends: list[Delta] = []
-    for _, name, body in s.handlers:
-        ctx.store.push(start)
-        if name is not None:
-            ctx.ops.assign(ctx, name, raised if raised.deps or raised.pts else UNKNOWN, frame)
-        if ctx.ops.block(ctx, body, frame):
-            ends.append(ctx.store.since(depth))
-        ctx.store.cut(depth)
-    return ends
-
-
 def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
     """Execute a `with`, calling `__enter__` and `__exit__` of analysed classes."""
     managers: list[Value] = []
@@ -244,9 +198,3 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
     for manager in reversed(managers if goes_on else ()):
         dunder_methods.special(ctx, manager, "__exit__", [UNKNOWN] * 3, frame, s.pos)
     return goes_on
-
-
-def _taken(s: ir.Try) -> frozenset[str]:
-    """Return the names of the exceptions that a statement handles; empty if it handles all."""
-    each = [taken(types) for types, _, _ in s.handlers]
-    return frozenset().union(*each) if all(each) else frozenset()

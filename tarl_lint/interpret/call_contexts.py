@@ -89,7 +89,9 @@ def _invoke(
         ctx.unchanged.add(call)
     if run.escapes:
         ctx.ops.escaped(ctx, frame, caller)
-    if run.noted:
+    if run.thrown is not None and caller.statement is None:  # nothing follows the call, which ends either way
+        joins.merge(ctx, [run.delta, run.thrown])
+    elif run.noted:
         ctx.store.absorb(run.delta)
     else:
         for key, value in run.delta.items():
@@ -119,6 +121,14 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
     ctx.store.cut(depth)
     reads = ctx.store.reads
     ends = [lasting(d, frame, _handed(frame, v), ctx.given, reads) for d, v in frame.returns]
+    frame.thrown = None
+    if frame.escapes:
+        raising = [(e.state, e.value) for e in frame.escapes]
+        frame.thrown = joins.joined(
+            ctx, [lasting(d, frame, _handed(frame, v), ctx.given, reads) for d, v in raising]
+        )
+        for escape in frame.escapes:
+            escape.state = {}
     return joins.joined(ctx, ends or [{}])
 
 

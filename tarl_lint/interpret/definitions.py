@@ -96,7 +96,9 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
         frame.module,
     )
     body.cls, body.outer, body.base = cls, frame, ctx.branches(frame, statement)
-    body.control = statement.control = statement.control or control_dependence(statement.body)
+    body.control = statement.control = statement.control or control_dependence(
+        statement.body, types=ctx.exception_types
+    )
     body.caller, body.call = frame, statement
     body.depth_of_layers = frame.depth_of_layers
     ctx.ops.block(ctx, statement.body, body)

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
-from tarl_lint.memory.frames import Attempt, Escape, Frame
+from tarl_lint.memory.frames import Attempt, Escape, Frame, Leaving
 from tarl_lint.memory.values import BOTTOM, Nodes, join
 from tarl_lint.models.ros import publications
 
 
-def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG001 - shared signature
-    """Pass an exception to the innermost handler in the function, or else out of the function."""
-    attempt = next((t for t in reversed(frame.tries) if t.handled), None)
-    if attempt is not None:
-        attempt.raised = join(attempt.raised, escape.value)
-    else:
-        frame.escapes.append(escape)
+def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:
+    """Pass an exception to the handlers in the function that may catch it, and out of the function unless one does.
+
+    A `finally` on the way is executed first (`branches.py`).
+    """
+    for attempt in reversed(frame.tries):
+        if attempt.final:
+            attempt.leaving.append(Leaving(ctx.store.since(attempt.depth), escape))
+            return
+        caught = attempt.catches(escape.name, ctx.exception_types)
+        if caught is not False:
+            attempt.raised = join(attempt.raised, escape.value)
+            attempt.states.append(ctx.store.since(attempt.depth))
+        if caught:
+            return
+    escape.state = ctx.store.since(frame.depth_of_layers)
+    frame.escapes.append(escape)
 
 
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
@@ -26,8 +36,8 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
     statement = frame.statement
     if not deps or statement is None or frame.cls is not None:
         return
-    here = any(_takes(t, raises, named) for t in frame.tries)
-    if not here and not any(_takes(t, raises, named) for f in ctx.stack for t in f.tries):
+    here = [t for t in frame.tries if _takes(ctx, t, raises, named)]
+    if not here and not any(_takes(ctx, t, raises, named) for f in ctx.stack for t in f.tries):
         return
     known = frame.function.raising.setdefault(statement.id, {})
     if raises not in known:
@@ -35,8 +45,8 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
         frame.function.control = None
     decision = ctx.condition(frame, statement)
     ctx.graph.depend(decision, deps)
-    if not here and not any(e.decision == decision for e in frame.escapes):
-        frame.escapes.append(Escape(frame, statement, raises, BOTTOM, decision))
+    if not any(e.decision == decision and e.name == raises for e in frame.escapes):
+        leave(ctx, Escape(frame, statement, raises, BOTTOM, decision), frame)
 
 
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
@@ -48,9 +58,9 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
     statement = caller.statement
     if statement is None:
         return
-    handled = any(t.handled for f in ctx.stack for t in f.tries)
+    ctx.store.push(frame.thrown)
     for escape in frame.escapes:
-        if not handled and (caller.jumps or _bare(escape.statement)):
+        if (caller.jumps or _bare(escape.statement)) and not _handled(ctx, escape.name):
             continue
         known = caller.function.raising.setdefault(statement.id, {})
         if escape.name not in known and caller.cls is None:
@@ -61,6 +71,12 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
         if escape.decision is not None:
             ctx.graph.depend(decision, (escape.decision,))
         leave(ctx, Escape(caller, statement, escape.name, escape.value, decision), caller)
+    ctx.store.pop()
+
+
+def _handled(ctx: Interpreter, name: str) -> bool:
+    """Return whether the running functions may handle an exception."""
+    return any(t.catches(name, ctx.exception_types) is not False for f in ctx.stack for t in f.tries)
 
 
 def _bare(statement: ir.Stmt) -> bool:
@@ -68,8 +84,8 @@ def _bare(statement: ir.Stmt) -> bool:
     return isinstance(statement, ir.Raise) and statement.value is None
 
 
-def _takes(attempt: Attempt, raises: str, named: bool) -> bool:
-    """Return whether a `try` handles an exception, judged by its name."""
-    if named or (raises and attempt.takes):
-        return raises in attempt.takes
-    return attempt.handled
+def _takes(ctx: Interpreter, attempt: Attempt, raises: str, named: bool) -> bool:
+    """Return whether a `try` may handle an exception; with `named`, by its name."""
+    if named:
+        return any(ctx.exception_types.names(handled, raises) for handled in attempt.handlers)
+    return attempt.catches(raises, ctx.exception_types) is not False

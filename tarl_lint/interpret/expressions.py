@@ -31,7 +31,7 @@ BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules with classes generated from definition files
 
 
-LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # the exceptions raised for a missing element
+LOOKUP_ERRORS = ("KeyError", "IndexError")  # the exceptions raised for a missing element
 
 
 def evaluate(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value:

@@ -14,6 +14,7 @@ from tarl_lint.interpret.operations import Operations
 from tarl_lint.interpret.state import NullnessFacts, Work
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
+from tarl_lint.ir.exception_types import exception_types
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.shared import Root, Shared
@@ -48,6 +49,7 @@ class Interpreter:
         self.thorough = True  # follow every value, not only those from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
+        self.exception_types = exception_types(m.tree for m in modules)
         self.programs: dict[str, ir.Program] = {}
         self.module_objects: dict[str, Obj] = {}
         self.by_path: dict[str, ir.Program] = {}
@@ -186,10 +188,11 @@ class Interpreter:
         if frame.cls is None:
             if function.control is None:
                 body = lower_body(function, frame.program.package)
-                function.control = control_dependence(body, function.raising)
+                function.control = control_dependence(body, function.raising, self.exception_types)
             if frame.control is not function.control:
                 frame.control = function.control
                 frame.closures = {}
+                frame.waypoints = set()
             self.graph.reads.ask(control_of, function)
         assert isinstance(frame.control, Control)  # noqa: S101 - set above, for classes when they are made
         return frame.control

@@ -37,6 +37,7 @@ class Run:
     result: Value
     returned: list[Value]
     escapes: list[Escape]
+    thrown: Delta | None  # stores before an exception leaves the function
     delta: Delta
     edges: int  # number of edges that the run made
     noted: bool  # whether the stores in `delta` have already been made, one by one
@@ -54,7 +55,7 @@ def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[],
         if last.reads.waits:
             _wait_again(ctx, last.reads)
         ctx.store.reads.add(last.reads)
-        frame.escapes = list(last.escapes)
+        frame.escapes, frame.thrown = list(last.escapes), last.thrown
         return last
     made = _executed(ctx, frame, passed, mode, execute)
     if isinstance(last, Run) and same and made.reads.whole:
@@ -80,7 +81,7 @@ def _executed(
     reads.finish()
     return Run(
         passed, mode, reads, found, stored, ctx.work.spent - before,
-        join_all(returned), returned, list(frame.escapes), delta, ctx.graph.edges - edges,
+        join_all(returned), returned, list(frame.escapes), frame.thrown, delta, ctx.graph.edges - edges,
         len(returned) == 1, store.heard() if reads.waits else {},
     )  # fmt: skip
 

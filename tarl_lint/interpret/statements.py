@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint.interpret import (
+    attempts,
     branches,
     calls,
     definitions,
@@ -19,7 +20,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.interpret.nullness import RETURNED
 from tarl_lint.ir import nodes as ir
-from tarl_lint.ir.control_dependence import raised
+from tarl_lint.ir.exception_types import raised
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory import heap, updates
 from tarl_lint.memory.frames import Escape, Frame
@@ -186,13 +187,8 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
             publications.send(
                 ctx, Invocation("response", BOTTOM, ([value], {}), frame, _answer(s)), frame.answer
             )
-    frame.returns.append((ctx.store.since(base_layer(frame)), value))
+    attempts.returned(ctx, value, frame)
     return False
-
-
-def base_layer(frame: Frame) -> int:
-    """Return the number of layers below those of the frame."""
-    return frame.depth_of_layers
 
 
 def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
@@ -206,17 +202,12 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
             ctx.use(value), value.pts
         )  # the function's state is discarded, and with it the objects' contents
         value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
-    if frame.tries:
-        attempt = frame.tries[-1]
-        attempt.states.append(ctx.store.since(attempt.depth))
     exceptions.leave(ctx, Escape(frame, s, raised(s.value), value), frame)
     return False
 
 
 def _jump(ctx: Interpreter, s: ir.Jump, frame: Frame) -> bool:
-    if frame.jumps:
-        depth, table = frame.jumps[-1]
-        table[s.kind].append(ctx.store.since(depth))
+    attempts.jumped(ctx, s.kind, frame)
     return False
 
 
@@ -249,7 +240,7 @@ EXECUTE: Mapping[type, Callable[..., bool]] = {
     ir.Evaluate: _expression,
     ir.If: branches.if_statement,
     ir.Loop: branches.loop,
-    ir.Try: branches.try_statement,
+    ir.Try: attempts.try_statement,
     ir.With: branches.with_statement,
     ir.Return: _returned,
     ir.Raise: _raised,

@@ -1,7 +1,7 @@
 """Control dependence inside one function, after Ferrante, Ottenstein and Warren (TOPLAS 1987).
 
-Termination-insensitive: a statement after a loop does not depend on the loop's condition. Exceptions come only
-from `raise`.
+Termination-insensitive: a statement after a loop does not depend on the loop's condition. Exceptions come from `raise`
+and from the calls that are known to raise.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.exception_types import NO_CLASSES, ExceptionTypes, Handled, handled_by, raised
 from tarl_lint.ir.postdominance import EXIT, passed, postdominators
 
 Branch = tuple[int, str]  # (number of the statement with the condition, outcome)
@@ -21,7 +22,6 @@ Raising = Mapping[int, Iterable[str]]
 # number of branches after which no more are stored for a statement; the others are found through the stored ones
 NEAR: Final = 100
 NOTHING_RAISES: Raising = {}
-ALL: Final = frozenset(["Exception", "BaseException"])
 
 
 @dataclass(slots=True)
@@ -29,12 +29,14 @@ class Control:
     """For each statement, the branches on which it depends directly (`direct`) or in any way (`closure`).
 
     If there are very many branches, only the nearest are stored; `far` has the statements for which this is so.
+    `statements` are the statements by number.
     """
 
     direct: Mapping[int, frozenset[Branch]]
     closure: Mapping[int, frozenset[Branch]]
     far: frozenset[int]
     always: frozenset[int]  # numbers of the statements that run whenever the function is entered
+    statements: Mapping[int, ir.Stmt]
 
 
 @dataclass(slots=True)
@@ -43,12 +45,19 @@ class _Graph:
 
     edges: dict[int, dict[str, int]] = field(default_factory=dict)
     raising: Raising = field(default_factory=dict)
+    types: ExceptionTypes = NO_CLASSES
+    statements: dict[int, ir.Stmt] = field(default_factory=dict)
     finals: list[tuple[ir.Try, int]] = field(
         default_factory=list
     )  # (`try`, number of the first statement of its `finally`), inner ones first
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target
+
+    def throw(self, source: int, way: str, name: str, exits: _Exits) -> None:
+        """Link a statement to each handler that may catch an exception, and to the exit unless one certainly does."""
+        for number, target in enumerate(exits.of(name, self.types)):
+            self.link(source, f"{way} {number}" if number else way, target)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,27 +66,32 @@ class _Exits:
 
     on_break: int = EXIT
     on_continue: int = EXIT
-    on_raise: int = EXIT  # where an exception goes if no handler is listed; EXIT leaves the function
-    # (names of the exceptions that a handler handles, its first statement); no names if it handles all
-    handlers: tuple[tuple[frozenset[str], int], ...] = ()
+    handlers: tuple[
+        tuple[Handled, int], ...
+    ] = ()  # (what a handler catches, its first statement), inner ones first
 
-    def of(self, name: str) -> int:
-        """Return the handler of an exception: one that names it, else one for all exceptions, else the first."""
-        if not self.handlers:
-            return self.on_raise
-        named = [entry for names, entry in self.handlers if name and name in names]
-        general = [entry for names, entry in self.handlers if not names]
-        return next(iter([*named, *general]), self.handlers[0][1])
+    def of(self, name: str, types: ExceptionTypes) -> list[int]:
+        """Return where an exception may continue: at handlers, or outside of the function."""
+        targets: list[int] = []
+        for handled, entry in self.handlers:
+            caught = types.catches(handled, name)
+            if caught is not False:
+                targets.append(entry)
+            if caught:
+                return targets
+        return [*targets, EXIT]
 
 
-def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES) -> Control:
+def control_dependence(
+    body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES, types: ExceptionTypes = NO_CLASSES
+) -> Control:
     """Return the control dependence of a function's statements. `raising` maps statements to exceptions of calls."""
-    graph = _Graph(raising=raising)
+    graph = _Graph(raising=raising, types=types)
     entry = _block(graph, body, EXIT, _Exits())
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
     if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
         nothing = dict.fromkeys(order, frozenset[Branch]())
-        return Control(nothing, nothing, frozenset(), frozenset(order))
+        return Control(nothing, nothing, frozenset(), frozenset(order), graph.statements)
     nearest = postdominators(graph.edges, order)
     direct = _direct(graph, order, nearest)
     for attempt, _ in reversed(graph.finals):
@@ -85,7 +99,7 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
     always = frozenset(passed(entry, EXIT, nearest))
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
-    return Control(direct, closed, far, always)
+    return Control(direct, closed, far, always, graph.statements)
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
@@ -96,11 +110,12 @@ def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -
 
 
 def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
+    graph.statements[s.id] = s
     if isinstance(s, ir.If):
         graph.link(s.id, "then", _block(graph, s.body, follow, exits))
         graph.link(s.id, "else", _block(graph, s.orelse, follow, exits))
     elif isinstance(s, ir.Loop):
-        inner = _Exits(follow, s.id, exits.on_raise, exits.handlers)
+        inner = _Exits(follow, s.id, exits.handlers)
         graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
         if not s.endless:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
@@ -113,36 +128,22 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
     elif isinstance(s, ir.Return):
         graph.link(s.id, "", EXIT)
     elif isinstance(s, ir.Raise):
-        graph.link(s.id, "", exits.of(raised(s.value)))
+        graph.throw(s.id, "", raised(s.value), exits)
     elif isinstance(s, ir.Jump):
         graph.link(s.id, "", exits.on_break if s.kind == "break" else exits.on_continue)
     else:
         graph.link(s.id, "", follow)
     for name in graph.raising.get(s.id, ()):
-        graph.link(s.id, f"raises {name}", exits.of(name))
+        graph.throw(s.id, f"raises {name}", name, exits)
     return s.id
-
-
-def raised(expr: ir.Expr | None) -> str:
-    """Return the name of the raised class; "" if it is unknown."""
-    if isinstance(expr, ir.Call):
-        expr = expr.function
-    return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
-
-
-def taken(types: ir.Expr | None) -> frozenset[str]:
-    """Return the names of the classes that a handler catches; empty if it catches all."""
-    parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
-    names = frozenset(raised(part) for part in parts)
-    return frozenset() if names & (ALL | {""}) else names
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
     """Add a `try`; its own statement represents the unknown choice of a handler. Return its number."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
-    takes = tuple((taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
-    inner = _Exits(exits.on_break, exits.on_continue, after, takes)
+    own = tuple((handled_by(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
+    inner = _Exits(exits.on_break, exits.on_continue, (*own, *exits.handlers))
     orelse = _block(graph, s.orelse, after, exits)
     graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
     if s.final:
@@ -153,15 +154,25 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
 
 
 def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
-    """Remove the dependence of a `finally` on branches inside its `try`, since a `finally` always runs."""
+    """Remove the dependence of a `finally` on branches inside its `try`, since a `finally` always runs.
+
+    Statements after it that depend on a branch in the `finally` still depend on those branches.
+    """
     blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
     inside = {s.id for block in blocks for s in _all(block)}
     inside.add(attempt.id)
     around = direct.get(attempt.id, frozenset())
+    removed: dict[int, frozenset[Branch]] = {}
+    final = {s.id for s in _all(attempt.final)}
     for statement in _all(attempt.final):
         branches = direct.get(statement.id, frozenset())
         kept = frozenset(branch for branch in branches if branch[0] not in inside)
+        if kept != branches:
+            removed[statement.id] = branches - kept
         direct[statement.id] = kept | around if statement in attempt.final or kept != branches else kept
+    for number in direct.keys() - final if removed else ():
+        lost = [removed[branch[0]] for branch in direct[number] if branch[0] in removed]
+        direct[number] = direct[number].union(*lost)
 
 
 def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:

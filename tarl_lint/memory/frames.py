@@ -2,33 +2,56 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.exception_types import ExceptionTypes, Handled
 from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
 
 @dataclass(slots=True, eq=False)
 class Attempt:
-    """A `try` whose body is running: the states in which a handler can be entered, and the exceptions."""
+    """A `try` whose body is running: what it handles, the states in which a handler can be entered, the exceptions.
+
+    For the `finally` of a `try`, which no exception, `return`, `break` or `continue` passes, `final` is set, and
+    `leaving` collects what has to continue after it.
+    """
 
     depth: int
     states: list[dict[Key, Value]]
-    handled: bool
-    raised: Value
-    # names of the exceptions that the `try` handles; empty if it handles all
-    takes: frozenset[str] = frozenset()
+    handlers: tuple[Handled, ...] = ()
+    raised: Value = field(default_factory=lambda: BOTTOM)
+    final: bool = False
+    leaving: list[Leaving] = field(default_factory=list)
+
+    def catches(self, name: str, types: ExceptionTypes) -> bool | None:
+        """Return whether one of the handlers catches an exception: True, False, or None for maybe."""
+        answers = [types.catches(handled, name) for handled in self.handlers]
+        return True if True in answers else None if None in answers else False
 
 
 @dataclass(slots=True, eq=False)
 class Escape:
-    """An exception that leaves a function: place, name, value, and the decision of the call that raised it."""
+    """An exception that leaves a function: place, name, value, and the decision of the call that raised it.
+
+    `state` has the stores of the function before the exception.
+    """
 
     frame: Frame
     statement: ir.Stmt
     name: str
     value: Value
     decision: int | None = None
+    state: dict[Key, Value] = field(default_factory=dict)
+
+
+@dataclass(slots=True, eq=False)
+class Leaving:
+    """What leaves a `try` with a `finally`: an exception, the value of a `return`, or a jump; and the state there."""
+
+    state: dict[Key, Value]
+    cause: Escape | Value | Literal["break", "continue"]
 
 
 class Frame(Obj):
@@ -46,6 +69,7 @@ class Frame(Obj):
         "cls",
         "control",
         "depth_of_layers",
+        "entered",
         "escapes",
         "function",
         "guards",
@@ -65,8 +89,10 @@ class Frame(Obj):
         "slot",
         "statement",
         "steps",
+        "thrown",
         "tries",
         "turn",
+        "waypoints",
         "yielded",
     )  # fmt: skip
 
@@ -96,6 +122,11 @@ class Frame(Obj):
         self.statement: ir.Stmt | None = None
         self.closures: dict[int, Branches] = {}
         self.control: object = None
+        # conditions of which the present `control` has been connected in the graph, by number
+        self.waypoints: set[int] = set()
+        self.entered: object = (
+            None  # the caller's control dependence under which this call has been connected
+        )
         self.heads: dict[
             tuple[int, ...], dict[Key, Value]
         ] = {}  # loop and iterations of outer loops → state at the loop's head in its last fixpoint
@@ -107,6 +138,8 @@ class Frame(Obj):
         self.root_waits = False
         self.tries: list[Attempt] = []
         self.escapes: list[Escape] = []
+        # stores of the function before an exception leaves it; None if no exception does
+        self.thrown: dict[Key, Value] | None = None
         self.result = BOTTOM
         self.recorded: object = None  # the last run, for replay
         self.shared = False  # whether calls from several places share this frame, with joined arguments
@@ -120,7 +153,7 @@ class Frame(Obj):
         """Drop references, to break reference cycles."""
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
-        self.recorded = self.passed = None
+        self.recorded = self.passed = self.thrown = None
         self.heads.clear()
 
     def owner_class(self) -> Obj | None:

@@ -80,21 +80,18 @@ def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None
     for branch in control.direct.get(statement.id, ()):
         decision, _ = ctx.branch(frame, branch)
         ctx.graph.depend(node, (decision,))
-        _reached(ctx, frame, branch[0], node)
+        _reached(ctx, frame, control.statements[branch[0]], node)
     if statement.id in control.always:
         _entered(ctx, frame, node)
 
 
-def _reached(ctx: Interpreter, frame: Frame, number: int, node: int) -> None:
-    """Make a node depend on the conditions under which a condition is evaluated."""
-    place = ctx.graph.places[ctx.branch(frame, (number, ""))[0]]
-    if place.statement is None:
-        return
-    key = (frame.id, number, "reached")
-    if key not in ctx.graph.numbers:
-        waypoint = ctx.graph.node(key, place, frozenset())
-        under(ctx, frame, place.statement, waypoint)
-    waypoint = ctx.graph.numbers[key]
+def _reached(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
+    """Make a node depend on the conditions under which a condition is evaluated, now or later."""
+    decision = ctx.condition(frame, statement)
+    waypoint = ctx.graph.node((frame.id, statement.id, "reached"), ctx.graph.places[decision], frozenset())
+    if statement.id not in frame.waypoints:
+        frame.waypoints.add(statement.id)
+        under(ctx, frame, statement, waypoint)
     if waypoint != node:
         ctx.graph.depend(node, (waypoint,))
 
@@ -107,12 +104,13 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     if frame.shared:
         ctx.graph.depend(node, [n for n, _ in shared_contexts.conditions(ctx, frame)])
         return
-    key = (frame.id, "entered")
-    if key not in ctx.graph.numbers:
-        waypoint = ctx.graph.node(key, Place(caller, call, "call", call.pos), frozenset())
+    waypoint = ctx.graph.node((frame.id, "entered"), Place(caller, call, "call", call.pos), frozenset())
+    control = ctx.control(caller)
+    if frame.entered is not control:
+        frame.entered = control
         under(ctx, caller, call, waypoint)
         ctx.graph.depend(waypoint, [n for n, _ in frame.guards])
-    ctx.graph.depend(node, (ctx.graph.numbers[key],))
+    ctx.graph.depend(node, (waypoint,))
 
 
 def qualname(frame: Frame) -> str:

@@ -1,0 +1,208 @@
+"""An exception reaches the handlers that may catch it; statements that it skips depend on it."""
+
+from __future__ import annotations
+
+from textwrap import dedent, indent
+
+import pytest
+
+from tarl_lint import engine
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
+
+NODE = """\
+import socket
+import rospy
+from std_msgs.msg import Float64
+{classes}
+
+class Node:
+    def __init__(self):
+        self.x = 0
+        self.pub = rospy.Publisher("out", Float64, queue_size=1)
+        rospy.Subscriber("in", Float64, self.on_in)
+        rospy.Timer(rospy.Duration(1), self.tick)
+
+    def on_in(self, msg):
+{body}
+
+    def tick(self, event):
+{tick}
+
+    def risky(self, v):
+        if v > 1:
+            raise ValueError(v)
+
+rospy.init_node("node")
+Node()
+rospy.spin()
+"""
+CLASSES = """
+class Fault(Exception):
+    pass
+
+class Worse(Fault):
+    pass
+
+class Missing(Fault, KeyError):
+    pass
+"""
+
+
+def flows(body: str, tick: str = "pass", classes: str = CLASSES) -> list[str]:
+    text = NODE.format(
+        classes=classes, body=indent(dedent(body), " " * 8), tick=indent(dedent(tick), " " * 8)
+    )
+    module = parse("node.py", text.encode(), "node")
+    assert isinstance(module, Module)
+    return [f.kind for f in engine.analyse([module], Config())]
+
+
+AROUND = """\
+try:
+    if msg.data > 1:
+        raise {raised}
+except {caught}:
+    pass
+self.pub.publish(1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("raised", "caught"),
+    [
+        ("ValueError", "KeyError"),
+        ("KeyError", "(IndexError, OSError)"),
+        ("LookupError", "KeyError"),
+        ("Fault()", "Worse"),
+        ("Fault()", "KeyError"),
+        ("KeyboardInterrupt", "Exception"),
+        ("make()", "ValueError"),  # of an unknown class
+        ("ValueError", "ERRORS"),
+        ("rospy.ROSException()", "rospy.ServiceException"),
+        ("OSError", "socket.OSError"),  # another class of this name
+    ],
+)
+def test_statements_after_a_handler_that_may_not_catch_depend_on_the_exception(raised, caught):
+    assert flows(AROUND.format(raised=raised, caught=caught)) == ["implicit"]
+
+
+@pytest.mark.parametrize(
+    ("raised", "caught"),
+    [
+        ("ValueError", "ValueError"),
+        ("KeyError", "LookupError"),
+        ("UnicodeError()", "(OSError, ValueError)"),
+        ("OSError", "IOError"),
+        ("Worse()", "Fault"),
+        ("Missing()", "KeyError"),
+        ("make()", "Exception"),
+        ("KeyboardInterrupt", "BaseException"),
+        ("rospy.ROSInterruptException()", "rospy.ROSException"),
+        ("rospy.ROSException()", "Exception"),
+    ],
+)
+def test_statements_after_a_handler_that_catches_do_not_depend_on_the_exception(raised, caught):
+    assert flows(AROUND.format(raised=raised, caught=caught)) == []
+
+
+def test_a_name_of_two_classes_may_be_either():
+    twice = "if rospy:\n    class Fault(ValueError):\n        pass\nelse:\n    class Fault(Exception):\n        pass\n"
+    assert flows(AROUND.format(raised="Fault", caught="ValueError"), classes=twice) == ["implicit"]
+
+
+def test_an_exception_that_no_inner_handler_catches_reaches_the_outer_one():
+    outer = """\
+    try:
+        try:
+            if msg.data > 1:
+                raise ValueError
+        except KeyError:
+            self.x = 2
+        self.pub.publish(1)
+    except {caught}:
+        pass
+    """
+    assert flows(outer.format(caught="ValueError")) == ["implicit"]
+    after = outer.replace("self.pub.publish(1)", "pass") + "self.pub.publish(1)"
+    assert flows(after.format(caught="ValueError")) == []
+    assert flows(after.format(caught="OSError")) == ["implicit"]
+
+
+@pytest.mark.parametrize(("caught", "kinds"), [("ValueError", []), ("KeyError", ["implicit"])])
+def test_the_exception_of_a_called_function_is_caught_by_its_class(caught, kinds):
+    body = f"""\
+    try:
+        self.risky(msg.data)
+    except {caught}:
+        pass
+    self.pub.publish(1)
+    """
+    assert flows(body) == kinds
+
+
+def test_a_finally_lets_an_exception_pass():
+    body = """\
+    try:
+        if msg.data > 1:
+            raise ValueError
+    finally:
+        {final}
+    {after}
+    """
+    assert flows(body.format(final="pass", after="self.pub.publish(1)")) == ["implicit"]
+    assert flows(body.format(final="self.pub.publish(1)", after="pass")) == []
+    leaving = "if self.x:\n            return"
+    assert flows(body.format(final=leaving, after="self.pub.publish(1)")) == ["implicit"]
+
+
+@pytest.mark.parametrize("leaving", ["raise ValueError", "return", "return self.risky(0)"])
+def test_stores_before_an_exception_and_of_a_finally_last(leaving):
+    publish = "self.pub.publish(self.x)"
+    assert flows(f"self.x = msg.data\n{leaving}", publish) == ["explicit"]
+    final = f"try:\n    {leaving}\nfinally:\n    self.x = msg.data"
+    assert flows(final, publish) == ["explicit"]
+    assert flows(
+        "for _ in range(2):\n    try:\n        break\n    finally:\n        self.x = msg.data", publish
+    ) == ["explicit"]
+
+
+def test_a_handler_sees_what_was_stored_before_the_exception():
+    nested = """\
+    try:
+        if self.x < 9:
+            self.x = msg.data
+            self.risky({risk})
+            self.x = 0
+    except ValueError:
+        self.pub.publish(self.x)
+    """
+    assert flows(nested.format(risk="5")) == ["explicit"]
+    called = """\
+    def store(v):
+        self.x = v
+        if self.pub:
+            raise ValueError
+        self.x = 0
+    try:
+        store(msg.data)
+        {after}
+    except ValueError:
+        {handler}
+    """
+    assert flows(called.format(after="pass", handler="self.pub.publish(self.x)")) == ["explicit"]
+    assert flows(called.format(after="self.pub.publish(self.x)", handler="pass")) == []
+
+
+def test_a_condition_later_in_a_loop_decides_about_the_next_iteration():
+    body = """\
+    for i in (1, 2):
+        if self.x:
+            if msg.data > 1:
+                return
+        else:
+            self.pub.publish(3)
+        if not self.x:
+            return
+    """
+    assert flows(body, tick="self.x = event") == ["implicit"]
