@@ -226,9 +226,13 @@ class Interpreter:
 
     def kept(self, node: int) -> Nodes:
         """Return a node as dependency of a value; empty if no source reaches it or its decisions (unless thorough)."""
+        return frozenset([node]) if self.thorough else self.reached(node)
+
+    def reached(self, node: int) -> Nodes:
+        """Return a node as dependency of a value; empty if no source reaches it or its decisions."""
         graph = self.graph
         live = graph.live
-        if self.thorough or node in live:
+        if node in live:
             return frozenset([node])
         branches = graph.branches[node]
         for branch, _ in branches:

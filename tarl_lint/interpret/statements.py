@@ -24,9 +24,8 @@ from tarl_lint.ir.exception_types import raised
 from tarl_lint.ir.lower_statements import lower_body
 from tarl_lint.memory import heap, updates
 from tarl_lint.memory.frames import Escape, Frame
-from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.values import ABSENT, BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
-from tarl_lint.models import sizes, unpacking
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
+from tarl_lint.models import removal, unpacking
 from tarl_lint.models.ros import publications
 from tarl_lint.models.ros.endpoints import Publisher
 
@@ -215,19 +214,30 @@ def _delete(ctx: Interpreter, s: ir.Delete, frame: Frame) -> bool:
     for target in s.targets:
         if isinstance(target, ir.Name):
             ctx.store.put((expressions.holder(target, frame), target.name), UNKNOWN)
+        elif isinstance(target, ir.Attribute):
+            base = expressions.evaluate(ctx, target.base, frame)
+            removal.attribute(
+                ctx, base, target.name, removal.decision(ctx, frame, target.pos, counts=base.deps)
+            )
         elif isinstance(target, ir.Item):
             remove(ctx, expressions.evaluate(ctx, target.base, frame), target.index, frame)
     return True
 
 
 def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
-    """Remove an element of a mapping, or all elements of a sequence."""
-    known, key = expressions.evaluate(ctx, index, frame).constant()
-    for obj in base.objects if len(base.pts) == 1 else ():
-        if isinstance(index, ir.Slice) and not index.parts:
-            sizes.empty(ctx, obj)
-        elif known and obj.kind == "mapping" and heap.content(ctx, obj) is BOTTOM:
-            ctx.store.put((obj, item_field(key)), ABSENT)
+    """Remove an element of a container, or the elements that a slice selects."""
+    key = expressions.evaluate(ctx, index, frame)
+    if dunder_methods.special(ctx, base, "__delitem__", [key], frame, index.pos) is not None:
+        return
+    decided = removal.decision(ctx, frame, index.pos, ctx.use(key), counts=base.deps)
+    if not isinstance(index, ir.Slice):
+        removal.take(ctx, base, key, decided)
+    elif not index.parts:
+        removal.empty(ctx, base, decided)
+    else:
+        for obj in base.objects:
+            if obj.kind == "sequence":
+                removal.scatter(ctx, obj, decided)
 
 
 def _answer(s: ir.Return) -> ir.Call:

@@ -97,6 +97,10 @@ def control_dependence(
     for attempt, _ in reversed(graph.finals):
         _run_anyway(attempt, direct)
     always = frozenset(passed(entry, EXIT, nearest))
+    for attempt, begin in reversed(graph.finals):
+        if attempt.id in always:
+            ours = {s.id for s in attempt.final}
+            always |= ours & {*passed(begin, EXIT, nearest)}
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
     return Control(direct, closed, far, always, graph.statements)

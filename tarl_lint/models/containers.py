@@ -26,7 +26,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import iterators, launched, sizes
+from tarl_lint.models import iterators, launched, removal, sizes
 
 QUEUES = frozenset(
     f"{module}.{name}"
@@ -42,6 +42,9 @@ NAMED = (
 )  # library classes whose objects keep the name of their class
 FLAG = "<flag>"  # field of an event: whether it is set
 APPENDED = "<appended>"  # field of a list: its length before the first subscriber was appended
+MOVING = frozenset(
+    ["insert", "appendleft", "extendleft", "sort"]
+)  # methods that move the elements of a sequence
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(
     ["list", "tuple", "deque", "iter", "reversed"]
@@ -67,9 +70,9 @@ def mutate(
     if name in catalog.DEVICE_WRITERS and all(map(is_device, base.pts)):
         _transmit(ctx, base, plain, frame, call)
         return
+    _prepare(ctx, base, name, plain, frame, call)
     if name == "clear":
-        for obj in base.objects if len(base.pts) == 1 else ():
-            sizes.empty(ctx, obj)
+        removal.empty(ctx, base, removal.decision(ctx, frame, call.slot, counts=base.deps))
         shorten(ctx, base, frame, call)
     elif name == "setdefault" and len(plain) > 1:
         _set_default(ctx, base, plain[0], through_statement(ctx, plain[1], frame, call))
@@ -90,6 +93,22 @@ def mutate(
         _append_subscriber(ctx, base, plain[0], frame, call)
     else:
         insert_elements(ctx, base, plain[-1:] if name == "insert" else plain, frame, call)
+
+
+def _prepare(
+    ctx: Interpreter, base: Value, name: str, news: Sequence[Value], frame: Frame, call: ir.Call
+) -> None:
+    """Let the elements of sequences be at other places; let the length of sets depend on added elements.
+
+    An element that equals another one does not count in a set.
+    """
+    decided = removal.decision(ctx, frame, call.slot, counts=base.deps) if name in MOVING else None
+    added = frozenset[int]().union(*(ctx.use(value) for value in news)) if name == "add" else NONE
+    for obj in base.objects if decided is not None or added else ():
+        if obj.kind == "sequence" and decided is not None:
+            removal.scatter(ctx, obj, decided, shorter=False)
+        elif obj.kind == "sequence":
+            sizes.decide_length(ctx, obj, added)
 
 
 def _set_default(ctx: Interpreter, base: Value, index: Value, news: Value) -> None:
@@ -201,13 +220,30 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
 
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
     """Remove an element and return it."""
-    result = _read_get(ctx, it)
+    result, given = _read_get(ctx, it), it.arguments[0]
+    index = given[0] if given else const(0) if it.name in ("popleft", "get_nowait") else None
+    decides = ctx.use(index) if index is not None else NONE
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=it.base.deps)
+    removal.take(ctx, it.base, index, decided)
     shorten(ctx, it.base, it.frame, it.call)
     return result
 
 
 def _removed(ctx: Interpreter, it: Invocation) -> Value:
+    """Remove an element by its value, which decides about the elements that are left; `discard` may find none."""
+    decides = call_contexts.all_used(ctx, it.arguments) | ctx.use(elements_of_any(ctx, it.base))
+    counts = it.base.deps | (decides if it.name == "discard" else NONE)
+    decided = removal.decision(ctx, it.frame, it.call.slot, decides, counts=counts)
+    for obj in it.base.objects:
+        if obj.kind in removal.CONTAINERS:
+            removal.scatter(ctx, obj, decided)
     shorten(ctx, it.base, it.frame, it.call)
+    return UNKNOWN
+
+
+def _reversed(ctx: Interpreter, it: Invocation) -> Value:
+    """Reverse a list in place."""
+    removal.reverse(ctx, it.base, removal.decision(ctx, it.frame, it.call.slot, it.base.deps))
     return UNKNOWN
 
 
@@ -271,6 +307,8 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
     known = known[::-1] if known is not None and it.name == "reversed" else known
     element = iterators.ordered_by(ctx, join_all(heap.elements(ctx, v) for v in given), it)
     length = sizes.length(ctx, given[0]) if given else NONE
+    if it.name in ("set", "frozenset"):
+        length |= ctx.use(element)  # equal elements count once
     obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
     if known is not None:
         for number, value in enumerate(known):
@@ -329,6 +367,7 @@ READERS: Mapping[str, Callable[..., Value]] = {
     "__setitem__": _write_entry,
     **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), _take_out),
     **dict.fromkeys(("remove", "discard"), _removed),
+    "reverse": _reversed,
     "next": _read_get,
     **dict.fromkeys(("qsize", "empty", "full"), _read_length),
     "values": _read_values,

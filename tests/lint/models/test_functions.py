@@ -47,8 +47,9 @@ CASES: dict[tuple[str, ...], str] = {
     ("set", "frozenset"): """
         kept = NAME([0.0, msg.data])
         out.publish(kept.pop())  # data
-        out.publish(len(kept))  # clean
+        out.publish(len(kept))  # data
         out.publish(NAME([0.0, 1.0]).pop())  # clean
+        out.publish(len(NAME([0.0, 1.0])))  # clean
     """,
     ("sorted",): """
         out.publish(NAME([0.0, msg.data])[0])  # data

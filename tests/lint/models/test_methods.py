@@ -36,7 +36,11 @@ READ: dict[tuple[str, ...], str] = {
         if msg.data > 0.0:
             full.NAME(0)
         out.publish(len(full))  # control
-        out.publish(full[0])  # clean
+        out.publish(full[0])  # control
+        others = [1.0, 2.0, msg.data]
+        others.NAME(0)
+        out.publish(others[0])  # clean
+        out.publish(others[1])  # data
     """,
     ("popleft", "get_nowait"): """
         kept, other = collections.deque([msg.data]), collections.deque([0.0])
@@ -51,11 +55,22 @@ READ: dict[tuple[str, ...], str] = {
         out.publish(kept.NAME())  # data
         out.publish(other.NAME())  # clean
     """,
+    ("reverse",): """
+        kept, other = [0.0, msg.data], [0.0, 1.0]
+        kept.NAME()
+        out.publish(kept[0])  # data
+        out.publish(kept[1])  # clean
+        out.publish(len(kept))  # clean
+        if msg.data > 0.0:
+            other.NAME()
+        out.publish(other[0])  # control
+    """,
     ("remove", "discard"): """
         kept = [0.0, 1.0]
         if msg.data > 0.0:
             kept.NAME(0.0)
         out.publish(len(kept))  # control
+        out.publish(kept[0])  # control
         other = [0.0, 1.0]
         other.NAME(0.0)
         out.publish(len(other))  # clean
@@ -142,7 +157,16 @@ READ: dict[tuple[str, ...], str] = {
     """,
 }
 CHANGED: dict[tuple[str, ...], str] = {
-    ("append", "add", "put", "put_nowait", "push", "push_back", "appendleft"): """
+    ("add",): """
+        kept, other = set(), set()
+        kept.NAME(msg.data)
+        other.NAME(0.0)
+        out.publish(kept.pop())  # data
+        out.publish(other.pop())  # clean
+        out.publish(len(kept))  # data
+        out.publish(len(other))  # clean
+    """,
+    ("append", "put", "put_nowait", "push", "push_back", "appendleft"): """
         kept, other = [], []
         kept.NAME(msg.data)
         other.NAME(0.0)
@@ -151,7 +175,9 @@ CHANGED: dict[tuple[str, ...], str] = {
         out.publish(len(kept))  # clean
     """,
     ("insert",): """
-        kept, other = [0.0], [0.0]
+        kept, other, moved = [0.0], [0.0], [msg.data, 0.0]
+        moved.NAME(0, 1.0)
+        out.publish(moved[1])  # data
         kept.NAME(0, msg.data)
         other.NAME(msg.data, 1.0)
         out.publish(kept.pop())  # data
