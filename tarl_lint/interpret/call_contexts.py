@@ -13,7 +13,6 @@ from tarl_lint.memory import heap, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.shared import BORN
 from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import (
     BOTTOM,
@@ -276,7 +275,7 @@ def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> O
     statement = frame.statement.id if frame.statement is not None else -1
     obj = recency.intern(ctx, "instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
     obj.info = cls
-    ctx.store.put((obj, BORN), BOTTOM)
+    recency.renew(ctx, obj, frame)
     return obj
 
 

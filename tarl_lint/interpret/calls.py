@@ -145,21 +145,31 @@ def callable_held(ctx: Interpreter, obj: Obj) -> bool:
     return obj.kind in CALLABLE
 
 
-def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Call every object that a value may be. The result of an unknown callee depends on its arguments."""
+def call_value(
+    ctx: Interpreter,
+    function: Value,
+    arguments: Arguments,
+    frame: Frame,
+    call: ir.Call,
+    carriers: Nodes = NONE,
+) -> Value:
+    """Call every object that a value may be. The result of an unknown callee depends on its arguments.
+
+    `carriers` are the nodes through which the receiver of methods arrived.
+    """
     targets = function.objects
     if ctx.nothing_yet(function):
         return BOTTOM
     if not targets:
         return Value(function.deps | call_contexts.all_used(ctx, arguments))
     if len(targets) == 1:
-        return call_object(ctx, targets[0], arguments, frame, call)
+        return call_object(ctx, targets[0], arguments, frame, call, carriers)
     result, deltas = BOTTOM, []
     guard = operators.guard(ctx, function.deps, frame, ("dispatch", call.slot))
     for number, target in enumerate(targets):
         ctx.store.push()
         ctx.guards.append((guard, str(number)))
-        result = join(result, call_object(ctx, target, arguments, frame, call))
+        result = join(result, call_object(ctx, target, arguments, frame, call, carriers))
         ctx.guards.pop()
         deltas.append(ctx.store.pop())
     joins.merge(ctx, deltas)

@@ -99,7 +99,7 @@ def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
             call = ir.Call(expr, (), (), expr.pos, -expr.slot)
             if len(value.pts) == 1:
                 return ctx.ops.call_object(ctx, obj, ([], {}), frame, call, base.deps)
-            return ctx.ops.call_value(ctx, value, ([], {}), frame, call)
+            return ctx.ops.call_value(ctx, value, ([], {}), frame, call, base.deps)
     if value.consts == BOTTOM.consts and not value.pts:
         said = dunder_methods.special(ctx, base, "__getattr__", [const(expr.name)], frame, expr.pos)
         return value if said is None else said

@@ -9,6 +9,8 @@ from tarl_lint.ir.constant_expressions import computed
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
+from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.store import AGING
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
@@ -93,7 +95,16 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
         updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
     else:
         updates.add_element(ctx, pointer(obj), element)
+        if _makes_objects(ctx, element):  # evaluated again, each object is one of several
+            again = ctx.ops.evaluate(ctx, expr.element, frame)
+            updates.add_element(ctx, pointer(obj), Value(again.deps | gate, again.pts, again.consts))
     return pointer(obj)
+
+
+def _makes_objects(ctx: Interpreter, value: Value) -> bool:
+    """Return whether a value may be an object that the current function has made."""
+    made = ctx.store.layers[-1]
+    return any(o.kind in AGING and o.kind != "lib" and (o, BORN) in made for o in value.pts)
 
 
 def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:

@@ -88,7 +88,13 @@ class Operations(Protocol[Ctx]):
         ...
 
     def call_value(
-        self, ctx: Ctx, function: Value, arguments: Arguments, frame: Frame, call: ir.Call
+        self,
+        ctx: Ctx,
+        function: Value,
+        arguments: Arguments,
+        frame: Frame,
+        call: ir.Call,
+        carriers: Nodes = NONE,
     ) -> Value:
         """Call every object that a value may be. The result of an unknown callee depends on its arguments."""
         ...

@@ -8,12 +8,15 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import NEW
 from tarl_lint.memory.shared import BORN
+from tarl_lint.memory.store import AGING
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
+MAKING = (ir.Call, ir.SequenceDisplay, ir.MappingDisplay, ir.Comprehension)
 
 
 def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
@@ -34,24 +37,50 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
         ctx.store.reads.objects[obj] = NEW
         ctx.store.put((obj, BORN), BOTTOM)
         return obj
-    if kind == "lib" and obj.fields:
-        _age(ctx, obj)
-    clear_fields(ctx, obj)
-    ctx.store.put((obj, BORN), BOTTOM)
+    renew(ctx, obj, frame)
     return obj
 
 
-def _age(ctx: Interpreter, obj: Obj) -> None:
+def renew(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
+    """Make an object the newest one of its allocation site: keep the former one as an older one if it is in use."""
+    if obj.kind == "lib":
+        if obj.fields:
+            _age(ctx, obj, frame)
+    elif obj.kind in AGING and ctx.store.get((obj, BORN)) is not None:
+        if obj in ctx.given:
+            _one_of_many(ctx, obj)
+            return
+        _age(ctx, obj, frame)
+    if not obj.many:
+        clear_fields(ctx, obj)
+    ctx.store.put((obj, BORN), BOTTOM)
+
+
+def _one_of_many(ctx: Interpreter, obj: Obj) -> None:
+    """Let an object stand for all objects of its allocation site, since callbacks refer to it."""
+    if not obj.many:
+        obj.many = True
+        ctx.shared.edition += 1  # no call can be replayed
+        ctx.pending.update(dict.fromkeys(root for root, _ in ctx.roots.values()))
+
+
+def _age(ctx: Interpreter, obj: Obj, frame: Frame) -> None:
     """Make pointers to the formerly newest object point to the summary of the older ones."""
     ctx.store.reads.holders.setdefault(obj, len(obj.holders))
-    holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
+    replaced = _replaced(frame) if obj.kind != "lib" else ()
+    holders = [
+        k
+        for k in obj.holders
+        if k[0] is not obj and not (k[0] is frame and k[1] in replaced) and _holds(ctx, k, obj)
+    ]
     if not holders:
         return
-    older = ctx.objects.get(("lib", (obj.key, "older")))
+    older = ctx.objects.get((obj.kind, (obj.key, "older")))
     if older is None:
-        older = ctx.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
+        older = ctx.objects[obj.kind, (obj.key, "older")] = Obj(obj.kind, (obj.key, "older"))
         older.many = True
         older.name = obj.name
+    older.describe(obj.info)
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)
     without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache by set, since many values share one
@@ -62,6 +91,14 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
             if pts is None:
                 pts = without[value.pts] = (value.pts - {obj}) | {older}
             ctx.store.put(key, Value(value.deps, pts, value.consts))
+
+
+def _replaced(frame: Frame) -> tuple[str, ...]:
+    """Return the local variables that the current statement assigns the new object to."""
+    s = frame.statement
+    if not isinstance(s, ir.Assign) or not isinstance(s.value, MAKING):
+        return ()
+    return tuple(t.name for t in s.targets if isinstance(t, ir.Name) and t.scope == "local")
 
 
 def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:

@@ -13,6 +13,8 @@ from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 Delta = dict[Key, Value]
 
 CLEARED = frozenset(["lib", "sequence", "mapping"])  # kinds of objects whose allocation clears their fields
+# kinds of objects of which the newest one of an allocation site is kept apart from the older ones
+AGING = frozenset(["lib", "instance", "sequence", "mapping"])
 ADDING = frozenset(["*", "<keys>", "<length>"])  # names of the fields that get only weak updates
 
 
@@ -213,7 +215,7 @@ class Store:
         """Record the key that holds objects; return whether one of these objects holds data."""
         owner, laden = key[0], False
         for obj in held:
-            if obj.kind == "lib":
+            if obj.kind in AGING:
                 obj.holders[key] = None
             if obj.laden:
                 laden = True

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.exception_types import NO_CLASSES
 from tarl_lint.memory import (
     abstract_gc,
     heap,
@@ -17,7 +18,7 @@ from tarl_lint.memory import (
     updates,
     userdata,
 )
-from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.frames import Attempt, Frame
 from tarl_lint.memory.heap import ANY, KEYS, item_field
 from tarl_lint.memory.recency import MAX_NESTING
 from tarl_lint.memory.shared import BORN
@@ -575,3 +576,40 @@ def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
 )
 def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known, name, default):
     assert symbolic_names.text_of_parameter(known, name, default) is None
+
+
+def test_an_object_in_use_becomes_an_older_one_when_its_site_makes_the_next(ctx, frame):
+    holder = made(ctx, "instance", "holder")
+    box = recency.intern(ctx, "instance", "box")
+    recency.renew(ctx, box, frame)
+    ctx.store.put((box, "x"), const(1))
+    recency.renew(ctx, box, frame)  # nothing refers to the former one
+    assert ctx.store.get((box, "x")) is None
+    ctx.store.put((box, "x"), const(2))
+    ctx.store.put((holder, "kept"), pointer(box))
+    recency.renew(ctx, box, frame)
+    kept = ctx.store.get((holder, "kept"))
+    (older,) = kept.pts
+    assert older is not box
+    assert older.many
+    assert ctx.store.get((older, "x")) == const(2)
+    assert ctx.store.get((box, "x")) is None
+
+
+def test_an_object_with_callbacks_stands_for_all_of_its_site(ctx, frame):
+    box = recency.intern(ctx, "instance", "box")
+    ctx.given.add(box)
+    recency.renew(ctx, box, frame)
+    assert not box.many
+    ctx.store.put((box, "x"), const(1))
+    recency.renew(ctx, box, frame)
+    assert box.many
+    updates.write_field(ctx, pointer(box), "x", const(2))
+    assert ctx.store.get((box, "x")) == Value(consts=frozenset([1, 2]))
+
+
+def test_a_try_catches_what_one_of_its_handlers_catches():
+    attempt = Attempt(0, [], (frozenset(["KeyError"]), frozenset(["OSError"])))
+    assert attempt.catches("OSError", NO_CLASSES) is True
+    assert attempt.catches("ValueError", NO_CLASSES) is False
+    assert attempt.catches("", NO_CLASSES) is None

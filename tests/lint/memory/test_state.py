@@ -143,12 +143,13 @@ def test_a_constant_is_not_data(store, obj):
     assert obj.changes == ["x"]
 
 
-def test_holders_of_library_objects_are_recorded(store, obj):
+def test_holders_of_objects_that_may_become_older_ones_are_recorded(store, obj):
     library = Obj("lib", "l")
     store.put((obj, "x"), pointer(library))
-    store.put((obj, "y"), pointer(obj))
+    function = Obj("closure", "f")
+    store.put((obj, "y"), pointer(function))
     assert list(library.holders) == [(obj, "x")]
-    assert obj.holders == {}
+    assert function.holders == {}
 
 
 def test_assigning_the_dict_of_an_object_increments_the_edition_of_the_state(store, obj):
