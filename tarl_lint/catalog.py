@@ -66,6 +66,9 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "image_transport.Subscriber": Fact(
         "subscribe", "image_transport.Subscriber", (0, "topic_uri"), callback=(1, "callback")
     ),
+    "rospy.get_param_cached": Fact(
+        "parameter", "rospy.get_param_cached", (0, "param_name"), extra=(1, "default")
+    ),
 }
 
 MARKER_SERVERS: Final = frozenset(

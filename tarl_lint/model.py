@@ -61,7 +61,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A subscription at which messages arrive. `span` is the subscription call; `topics` is empty if unknown."""
+    """A subscription at which messages arrive. `span` is the subscription call; `topics` is empty if unknown.
+
+    `default_topics` are those of `topics` that a parameter, the environment or the command line may replace.
+    """
 
     id: str
     span: Span
@@ -73,11 +76,15 @@ class Source:
     via: tuple[Span, ...] = ()
     module: str = ""
     qualname: str = ""
+    default_topics: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Sink:
-    """The argument of a publish call. `span` is the call; `topics` is empty if unknown."""
+    """The argument of a publish call. `span` is the call; `topics` is empty if unknown.
+
+    `default_topics` are those of `topics` that a parameter, the environment or the command line may replace.
+    """
 
     id: str
     span: Span
@@ -86,6 +93,7 @@ class Sink:
     api: str
     module: str = ""
     qualname: str = ""
+    default_topics: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tarl_lint.flows.statement_text import Texts
 from tarl_lint.model import Sink, Source, Span
-from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+from tarl_lint.models.ros.endpoints import DefaultName, SinkRecord, SourceRecord
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class Ends:
 
     def source(self, record: SourceRecord) -> Source:
         """Return a source in the form of the public model."""
-        topics = tuple(sorted(record.topics))
+        topics = tuple(sorted(map(str, record.topics)))
         callback = ", ".join(sorted(record.callbacks))
         name = ", ".join(topics) or f"line {record.pos[0]}"
         return Source(
@@ -33,11 +33,12 @@ class Ends:
             via=self._spans(record.via),
             module=record.module,
             qualname=record.qualname,
+            default_topics=_defaults(record.topics),
         )
 
     def sink(self, record: SinkRecord) -> Sink:
         """Return a sink in the form of the public model."""
-        topics = tuple(sorted(record.topics))
+        topics = tuple(sorted(map(str, record.topics)))
         name = ", ".join(topics) or f"line {record.pos[0]}"
         same = sorted(r.pos for r in self.sinks if (r.module, r.qualname, r.topics) == _kin(record))
         ordinal = f"#{same.index(record.pos) + 1}" if len(same) > 1 else ""
@@ -49,6 +50,7 @@ class Ends:
             api=record.api,
             module=record.module,
             qualname=record.qualname,
+            default_topics=_defaults(record.topics),
         )
 
     def _span(self, path: str, pos: tuple[int, int, int, int]) -> Span:
@@ -56,6 +58,10 @@ class Ends:
 
     def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
         return tuple(sorted(self._span(*p) for p in places))
+
+
+def _defaults(topics: Collection[str]) -> tuple[str, ...]:
+    return tuple(sorted(str(topic) for topic in topics if isinstance(topic, DefaultName)))
 
 
 def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:

@@ -25,7 +25,7 @@ from tarl_lint.memory.values import (
     join_all,
     pointer,
 )
-from tarl_lint.models import sizes
+from tarl_lint.models import environment, sizes
 
 BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules with classes generated from definition files
@@ -122,6 +122,8 @@ def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
         part = _part_of_text(ctx, base, expr.index.bounds, frame) if expr.index.bounds else None
         return part or sizes.sliced(ctx, base, expr.index, expr.pos, frame)
     index = evaluate(ctx, expr.index, frame)
+    if (text := environment.text_of(base)) is not None:
+        return Value(text.deps | ctx.use(index), consts=text.consts)
     if (frame.tries or len(ctx.stack) > 1) and (decides := ctx.use(index)):
         for raises in LOOKUP_ERRORS:
             ctx.ops.may_fail(ctx, decides, raises, frame, named=True)

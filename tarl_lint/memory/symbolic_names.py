@@ -6,18 +6,30 @@ follows such names, `get_param` returns a text with a mark, which string operati
 
 from __future__ import annotations
 
-from tarl_lint.memory.values import Consts, Symbolic, Value
+from tarl_lint.memory.values import GIVEN, Consts, Symbolic, Value
 from tarl_lint.parameter_names import MARK, ParameterName
 
 
 def text_of_parameter(known: list[ParameterName] | None, name: str, default: Value) -> Consts:
-    """Return the text that stands for a parameter; None if `known` is None or the default is not a string."""
-    if known is None or not name.strip("~/") or default.pts:
+    """Return the text that stands for a parameter; None if the default is not a string.
+
+    If `known` is None, the names of parameters are not followed, and the default remains as one possible text.
+    """
+    if known is None:
+        return with_default(default)
+    if not name.strip("~/") or default.pts:
         return None
     texts = default.names()
     if default.consts and not texts:
         return None
     return frozenset([marked(known, ParameterName(name, texts[0] if len(texts) == 1 else None))])
+
+
+def with_default(default: Value) -> Consts:
+    """Return the texts of a value that only the robot gives, with a default; None if the default is not a string."""
+    if default.pts or not default.names():
+        return None
+    return frozenset([GIVEN, *(default.consts or ())])
 
 
 def marked(known: list[ParameterName], one: ParameterName) -> Symbolic:

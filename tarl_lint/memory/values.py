@@ -146,6 +146,9 @@ class Symbolic(str):
     __slots__ = ()
 
 
+GIVEN: Final = Symbolic("\0given\0")  # a text of a parameter, the environment or the command line
+
+
 class Value:
     """An abstract value: the nodes of its data, the objects that it may be, its constants."""
 
@@ -198,10 +201,17 @@ class Value:
         return self.names() if self.keys() is not None else ()
 
     def names(self) -> tuple[str, ...]:
-        """Return its possible strings, sorted, including those that the launch of the node determines."""
+        """Return its possible strings, sorted, including those that the launch of the node determines.
+
+        A text that only the robot gives is left out; the other strings are then defaults.
+        """
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
-        return tuple(sorted(str(c) for c in self.consts))
+        return tuple(sorted(str(c) for c in self.consts if GIVEN not in str(c)))
+
+    def replaceable(self) -> bool:
+        """Return whether another string that only the robot gives may take the place of the known ones."""
+        return self.consts is not None and any(isinstance(c, str) and GIVEN in c for c in self.consts)
 
 
 def in_order(objects: Collection[Obj]) -> list[Obj]:

@@ -31,6 +31,7 @@ from tarl_lint.models import (
     command_line,
     containers,
     drawings,
+    environment,
     filling,
     fixed_numbers,
     futures,
@@ -84,7 +85,8 @@ def call_library(
         return drawing
     else:
         found = generic(ctx, qualified, arguments, frame, call)
-    return fixed_numbers.noted(ctx, qualified, found, arguments, frame, call)
+    noted = fixed_numbers.noted(ctx, qualified, found, arguments, frame, call)
+    return Value(noted.deps, noted.pts, found.consts) if found.replaceable() else noted
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
@@ -272,8 +274,7 @@ def _unknown_method(
     if name == "join" and not base.pts:
         arguments = strings.keys_joined(ctx, arguments, frame, call)
     callables.call_back(ctx, arguments, frame, call)
-    if name in SIGNALLING:
-        qt_signals.signal(ctx, base, name, arguments, frame, call)
+    _connect(ctx, Invocation(name, base, arguments, frame, call))
     given = _given(ctx, base, name, arguments, frame, call)
     if (raises := fails(name)) is not None:
         ctx.ops.may_fail(ctx, ctx.use(base) | call_contexts.all_used(ctx, arguments), raises, frame)
@@ -302,11 +303,24 @@ def _unknown_method(
     if not deps and not base.pts:
         return UNKNOWN
     made = new_object(ctx, arguments, deps, frame, call, fields=False)
-    return (
-        fixed_numbers.loaded(ctx, made, frame, call)
-        if name in fixed_numbers.PARSING and ctx.thorough
-        else made
-    )
+    return _loaded(ctx, made, Invocation(name, base, arguments, frame, call))
+
+
+def _connect(ctx: Interpreter, it: Invocation) -> None:
+    """Connect or emit a signal, or declare an option of the command line."""
+    if it.name in SIGNALLING:
+        qt_signals.signal(ctx, it.base, it.name, it.arguments, it.frame, it.call)
+    elif it.name == environment.ADDING:
+        environment.option(ctx, it)
+
+
+def _loaded(ctx: Interpreter, made: Value, it: Invocation) -> Value:
+    """Return the result of a method: parsed options, or data loaded from a file."""
+    if it.name in environment.PARSING:
+        return environment.options(ctx, it, made)
+    if it.name in fixed_numbers.PARSING and ctx.thorough:
+        return fixed_numbers.loaded(ctx, made, it.frame, it.call)
+    return made
 
 
 def _given(
@@ -340,6 +354,7 @@ def dropped(frame: Frame, call: ir.Call) -> bool:
 
 
 BUILTIN: Mapping[str, Callable[..., Value]] = {
+    **dict.fromkeys(environment.VARIABLES, environment.variable),
     **dict.fromkeys(CONTAINERS, containers.new_container),
     **dict.fromkeys(QUEUES, containers.new_queue),
     "eval": reflection.evaluated,

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Final
 
-from tarl_lint.model import Dependence, Finding, Flow, Sink, Step
+from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Step
 from tarl_lint.report.frame import frame
 from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, one_line, tabs
 
@@ -30,7 +30,7 @@ def publish_call(
     explicit = any(flow.kind == "explicit" for _, flow in group)
     yield _heading(sink)
     yield from frame(source, sink.span, "explicit" if explicit else "implicit", view)
-    names = _aligned([describe(flow.source.topics, flow.source.type) for _, flow in group])
+    names = _aligned([describe(shown(flow.source), flow.source.type) for _, flow in group])
     yield ()
     for name, (finding, flow) in zip(names, group, strict=True):
         yield _flow(finding, flow, name)
@@ -47,9 +47,14 @@ def describe(topics: Sequence[str], message: str) -> str:
     return f"{topic} ({message})" if message else topic
 
 
+def shown(end: Source | Sink) -> list[str]:
+    """Return the topics of an end of a flow; those that may be replaced are marked as defaults."""
+    return [f"{topic} (default)" if topic in end.default_topics else topic for topic in end.topics]
+
+
 def _heading(sink: Sink) -> Line:
     place = f" in {sink.qualname}" if sink.qualname else ""
-    name = describe(sink.topics, sink.type)
+    name = describe(shown(sink), sink.type)
     return ((location(sink.span), "place"), (" publishes ", ""), (name, "strong"), (place, ""))
 
 

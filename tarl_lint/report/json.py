@@ -79,6 +79,7 @@ def _source(source: Source) -> dict[str, Any]:
         "id": source.id,
         **_point(source.span),
         "topics": list(source.topics),
+        **({"defaultTopics": list(source.default_topics)} if source.default_topics else {}),
         "type": source.type,
         "callback": source.callback,
         "api": source.api,
@@ -92,6 +93,7 @@ def _sink(sink: Sink) -> dict[str, Any]:
         "id": sink.id,
         **_point(sink.span),
         "topics": list(sink.topics),
+        **({"defaultTopics": list(sink.default_topics)} if sink.default_topics else {}),
         "type": sink.type,
         "api": sink.api,
     }

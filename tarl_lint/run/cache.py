@@ -208,6 +208,7 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "span": lambda packed: Span(*packed),
     "site": lambda packed: SiteId(*packed),
     "topics": tuple,
+    "default_topics": tuple,
     "chain": tuple,
     "registered": _spans,
     "via": _spans,

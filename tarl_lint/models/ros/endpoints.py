@@ -14,6 +14,12 @@ NAMESPACE = "topic_ns"  # field of a server of markers: the namespace of its top
 Kind = Literal["topic", "service", "action", "transform"]
 
 
+class DefaultName(str):
+    """A topic that a parameter, the environment or the command line may replace."""
+
+    __slots__ = ()
+
+
 @dataclass(slots=True, eq=False)
 class SourceRecord:
     """A subscription: its place, its topics, and the nodes at which its messages arrive.

@@ -10,7 +10,7 @@ from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Place
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
-from tarl_lint.models.ros.endpoints import Publisher, SinkRecord
+from tarl_lint.models.ros.endpoints import DefaultName, Publisher, SinkRecord
 
 
 def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
@@ -39,8 +39,9 @@ def image_publisher(ctx: Interpreter, it: Invocation) -> Value:
 
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     """Return the possible topic names of a registration, after remapping."""
-    names = ctx.config.launched
-    return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).names()]
+    names, given = ctx.config.launched, it.argument(it.fact.topic)
+    kind = DefaultName if given.replaceable() else str
+    return [kind(names.get(text.lstrip("/"), text)) for text in given.names()]
 
 
 def names_of(info: Publisher) -> tuple[int, int]:
