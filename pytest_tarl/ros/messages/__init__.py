@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import UnsupportedApiError
-from pytest_tarl.ros.messages import ros1, ros2
-from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages import ros1, ros2, workspace
+from pytest_tarl.ros.messages.definitions import Kind, type_names
 from pytest_tarl.ros.messages.installed import installed_class
+from pytest_tarl.ros.messages.known import Part
 
-_BUILDERS: dict[tuple[str, str], Callable[[str, str], type[Any] | None]] = {
+_BUILDERS: dict[tuple[Kind, Part], Callable[[str, str], type[Any] | None]] = {
     ("ros1", "msg"): ros1.message_class,
     ("ros1", "srv"): ros1.service_class,
     ("ros2", "msg"): ros2.message_class,
@@ -26,7 +29,8 @@ def message_type(name: str) -> type[Any]:
     `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. ROS 1 and ROS 2 nodes can receive
     messages of either class: a subscriber always gets an instance of the class that it subscribed with. The names of
     services and actions have the same forms: `std_srvs/SetBool` (ROS 1), `std_srvs/srv/SetBool` and
-    `nav2_msgs/action/NavigateToPose` (ROS 2).
+    `nav2_msgs/action/NavigateToPose` (ROS 2). The definitions may be in the repository of the file that calls this
+    function, also before a node is started.
 
     Raise UnsupportedApiError if the type is unknown.
     """
@@ -34,6 +38,7 @@ def message_type(name: str) -> type[Any]:
     if middle not in ([], ["msg"], ["srv"], ["action"]) or not package or not short:
         raise UnsupportedApiError(f"{name!r} is not the name of a message type: write 'nav_msgs/msg/Odometry' "
                                   "(ROS 2) or 'nav_msgs/Odometry' (ROS 1).")  # fmt: skip
+    _search_around(package, sys._getframe(1).f_globals.get("__file__"))
     if middle:
         found = find_class("ros2", package, short, middle[0])
     else:
@@ -44,7 +49,14 @@ def message_type(name: str) -> type[Any]:
 
 
 @cache
-def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[Any] | None:
+def _search_around(package: str, file: str | None) -> None:
+    """Search the repository of `file` for a package whose definitions are not known yet."""
+    if file and not any(type_names(kind, package, part) for kind, part in _BUILDERS):
+        workspace.search(Path(file).parent)
+
+
+@cache
+def find_class(kind: Kind, package: str, name: str, part: Part = "msg") -> type[Any] | None:
     """Return the class of a message (`part` msg), service (srv) or action type, or None if it is unknown."""
     builder = _BUILDERS.get((kind, part))
     return installed_class(kind, package, name, part) or (

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros.messages.known import Part, known_types
-from pytest_tarl.ros.messages.workspace import workspace_types
+from pytest_tarl.ros.messages.workspace import on_forget, workspace_types
 
 Kind = Literal["ros1", "ros2"]
 Shape = Literal["one", "array", "sequence"]
@@ -165,6 +165,30 @@ def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
     if kind == "ros1" and part == "msg":
         names |= {n + ending for n in type_names(kind, package, "action") for ending in _ACTION_MESSAGES}
     return tuple(sorted(names))
+
+
+@cache
+def contained_packages(package: str, part: Part) -> frozenset[str]:
+    """Return the packages of all message types in the fields of a ROS 1 package's types, at any depth."""
+    pending = [one for name in type_names("ros1", package, part) for one in _halves(package, name, part)]
+    seen: set[str] = set()
+    while pending:
+        inner = {field.base for field in pending.pop().fields if not field.primitive} - seen
+        seen |= inner
+        found = (find_message("ros1", *base.split("/")) for base in sorted(inner))
+        pending += [one for one in found if one is not None]
+    return frozenset(base.partition("/")[0] for base in seen)
+
+
+on_forget(contained_packages.cache_clear)
+
+
+def _halves(package: str, name: str, part: Part) -> tuple[Definition, ...]:
+    """Return the definition of a ROS 1 message, or those of a service's request and response."""
+    if part == "srv":
+        return find_service("ros1", package, name) or ()
+    message = find_message("ros1", package, name)
+    return (message,) if message is not None else ()
 
 
 @cache

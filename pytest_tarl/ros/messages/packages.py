@@ -7,7 +7,7 @@ from types import ModuleType
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class, ros1, unknown_type
-from pytest_tarl.ros.messages.definitions import Kind, type_names
+from pytest_tarl.ros.messages.definitions import Kind, contained_packages, type_names
 from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.messages.workspace import workspace_packages
 
@@ -15,6 +15,7 @@ _ENDINGS = ("_msgs", "_srvs", "_interfaces")
 _OTHERS = {"turtlesim", "rospy_tutorials", "actionlib_tutorials", "beginner_tutorials", "turtle_actionlib",
            "roscpp_tutorials", "laser_assembler", "roscpp", "bond", "theora_image_transport", "sound_play"}  # fmt: skip
 PARTS: tuple[Part, ...] = ("msg", "srv", "action")
+_GENERATED = ("codecs", "genpy", "struct", "sys")  # what every module that genpy generates imports
 
 
 def could_be_package(name: str) -> bool:
@@ -40,10 +41,12 @@ class PackagePart(ModuleType):
 
     def __getattr__(self, name: str) -> Any:
         if name == "__all__":
-            return self._names()
+            return [*self._names(), *self._modules()]
         if name.startswith("__"):
             raise AttributeError(name)
         found = find_class(self._kind, self._package, name, self._part) or self._half_of_service(name)
+        if found is None and name in self._modules():
+            return import_module(name)
         if found is None:
             raise unknown_type(self._package, name)
         setattr(self, name, found)
@@ -53,6 +56,12 @@ class PackagePart(ModuleType):
         names = type_names(self._kind, self._package, self._part)
         halves = ("Request", "Response") if self._kind == "ros1" and self._part == "srv" else ()
         return sorted([*names, *(name + half for name in names for half in halves)])
+
+    def _modules(self) -> list[str]:
+        """Return the modules that `import *` also binds: those that genpy's modules of ROS 1 import."""
+        if self._kind == "ros2":
+            return []
+        return sorted({*_GENERATED, *contained_packages(self._package, self._part)})
 
     def _half_of_service(self, name: str) -> Any:
         """Return `SetBoolRequest` or `SetBoolResponse` of a ROS 1 service `SetBool`, or None for other names."""

@@ -16,10 +16,12 @@ from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.extras import install_command
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.messages import find_class, snapshot
-from pytest_tarl.ros.messages.definitions import find_message, parse, type_names
+from pytest_tarl.ros.messages.definitions import contained_packages, find_message, parse, type_names
 from pytest_tarl.ros.messages.installed import installed_kind
+from pytest_tarl.ros.messages.known import Part
 from pytest_tarl.ros.messages.snapshot import field_names, translate
 from pytest_tarl.ros.messages.values import FieldError
+from tests.plugin.ros.conftest import Start
 
 PACKAGES = ("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "visualization_msgs", "diagnostic_msgs")
 
@@ -289,3 +291,30 @@ def test_importing_the_package_imports_nothing_heavy() -> None:
     )
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
     assert said.strip() == "[]"
+
+
+def test_star_imports_of_ros_1_bind_the_modules_that_generated_code_imports(start: Start) -> None:
+    ros = start("""
+import rospy
+from trajectory_msgs.msg import *
+from std_srvs.srv import *
+
+rospy.init_node("lock")
+out = rospy.Publisher("/command", trajectory_msgs.msg.JointTrajectory, queue_size=1)
+names = [sys.byteorder, std_msgs.msg.Header.__name__]
+out.publish(trajectory_msgs.msg.JointTrajectory(joint_names=names))
+""")
+    assert ros.bus.latest("/command").joint_names == [sys.byteorder, "Header"]
+
+
+@pytest.mark.parametrize(
+    ("package", "part", "contained"),
+    [
+        ("std_msgs", "msg", {"std_msgs"}),
+        ("trajectory_msgs", "msg", {"geometry_msgs", "std_msgs", "trajectory_msgs"}),
+        ("nav_msgs", "srv", {"geometry_msgs", "nav_msgs", "std_msgs"}),
+        ("std_srvs", "srv", set()),
+    ],
+)
+def test_contained_packages_are_found_at_any_depth(package: str, part: Part, contained: set[str]) -> None:
+    assert contained_packages(package, part) == contained

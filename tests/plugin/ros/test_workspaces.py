@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import runpy
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -83,6 +84,26 @@ def test_workspace_packages_are_importable_as_if_installed(packages: Path, start
     """)
     assert ros.namespace["found"] == ("arm", 0.7, 2.0)
     assert ros.notes == ()
+
+
+def test_a_test_can_use_message_types_of_its_repository_before_it_starts_a_node(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_SEARCHED", [])
+    write(
+        tmp_path,
+        {
+            ".git/HEAD": "",
+            "somebody_msgs/msg/Level.msg": "float64 water",
+            "robot/tests/test_tank.py": """
+                from pytest_tarl.ros import message_type
+                Level = message_type("somebody_msgs/msg/Level")
+            """,
+        },
+    )
+    found = runpy.run_path(str(tmp_path / "robot" / "tests" / "test_tank.py"))
+    assert found["Level"](water=2.0).water == 2.0
+    workspace.forget()
 
 
 def test_configurations_are_generated_with_their_defaults(packages: Path, start: Start) -> None:
