@@ -257,13 +257,21 @@ def _call_method(
 
 
 def _store(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
-    """Store arguments in an object; an object of a library may also call them, such as callbacks for a marker."""
+    """Store arguments in an object.
+
+    An object of a library may also call them, such as callbacks for a marker, and return a result, as the `update` of
+    a controller does.
+    """
     kind = target.kind if target is not None else ""
     if kind == "lib":
         callables.call_back(ctx, it.arguments, it.frame, it.call)
     containers.mutate(ctx, it.base, it.name, it.arguments, it.frame, it.call)
     given_back = it.name == "setdefault" or (it.name == "send" and kind == "sequence")
-    return heap.read_any(ctx, target) if given_back and target is not None else UNKNOWN
+    if given_back and target is not None:
+        return heap.read_any(ctx, target)
+    if kind in ("lib", "") and not dropped(it.frame, it.call):
+        return Value(ctx.use(it.base) | call_contexts.all_used(ctx, it.arguments))
+    return UNKNOWN
 
 
 def _unknown_method(
