@@ -16,12 +16,13 @@ from pytest_tarl.repairing.accepting import Examiner
 from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 MOST = 2  # maximum number of candidates that are tested
 EPISODES = 40  # number of episodes per world, each paired with an episode of the unrepaired program
 SCREENED = 12  # maximum number of candidates that are screened
 KNOWN = 3  # number of recorded episodes of the designed world in which a candidate is screened
+PLACING = 12  # maximum number of episodes that look for the definition of a candidate's constant
 LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (
     "nominal gets worse",
@@ -54,9 +55,10 @@ class Best:
 def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
     """Test the best candidates; return the first with a significant gain (or None), and the number of episodes."""
     spent, number = 0, -1
-    for candidate in islice(_promising(examiner, watch), SCREENED):
+    for found in islice(_promising(examiner, watch), SCREENED):
         try:
-            spent += KNOWN
+            candidate, placed = _placed(mutants, examiner, found)
+            spent += placed + KNOWN
             if not _mild(mutants, candidate):
                 continue
             number += 1
@@ -73,6 +75,15 @@ def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | Non
         if mutants.order.permanent or _harmless(mutants, designed):
             return Best(candidate, drifted, designed), spent
     return None, spent
+
+
+def _placed(mutants: Mutants, examiner: Examiner, candidate: Candidate) -> tuple[Candidate, int]:
+    """Return the candidate, at its definition if that has the same effect, and the number of episodes."""
+    trials = Trials(lambda one, seed: mutants.run(one, seed, mutants.order.drift), PLACING)
+    try:
+        return examiner.placing(candidate, trials) or candidate, trials.spent
+    except BudgetSpentError:
+        return candidate, trials.spent
 
 
 def _mild(mutants: Mutants, candidate: Candidate) -> bool:

@@ -68,3 +68,14 @@ def test_a_candidate_without_a_certain_gain_is_not_a_partial_repair(tank: pytest
     tank.runpytest(*REPAIR, "--tarl-budget=20")
     assert "partial" not in result(tank)["repair"]
     assert not list(tank.path.glob(".tarl/patches/*"))
+
+
+def test_a_partial_repair_changes_the_definition_also_if_the_search_ended_early(
+    tank: pytest.Pytester,
+) -> None:
+    changed(tank, "keeper", "missing = 1.0 - level", "missing = (level < 9.0) - level")
+    changed(tank, "test_tank", "low=0, high=1, bins=10", "low=-9, high=9, bins=1")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    tank.runpytest(*REPAIR, "--tarl-budget=4")
+    (file,) = tank.path.glob(".tarl/patches/*.partial")
+    assert "| -GAIN = 2.0\n| +GAIN = " in file.read_text()
