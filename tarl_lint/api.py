@@ -54,6 +54,14 @@ class Analysis:
         """Return the statements that decide what is published but are on no flow, sorted by position."""
         return tuple(sorted(self.prober.deciding.values(), key=lambda s: s.span))
 
+    @property
+    def configuring(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
+        """Return the calls outside of the flows that configure an object of a library, and the sites that use it.
+
+        An example is `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`.
+        """
+        return self.prober.configuring
+
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in source order."""
         return self.prober.operands(site)

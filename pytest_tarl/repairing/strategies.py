@@ -67,11 +67,20 @@ def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, most readable changes first, then in the order of the slices."""
+    """Return all operands of the analysed flows, most readable changes first, then in the order of the slices.
+
+    Among them are the arguments of calls that configure an object of a library, ranked as the statements that use it.
+    """
+    analysis = order.analysis
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
-    steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
-    found = dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site))
-    return tuple(sorted(quantities(order.analysis, found), key=writing))
+    ranks = {step.site: rank.get(str(step.site), len(rank)) for step in analysis.sites}
+    found = {o: ranks[site] for site in ranks for o in analysis.operands(site)}
+    defined = {o.definition for o in found}
+    for site, (_, users) in analysis.configuring.items():
+        best = min(ranks.get(user, len(rank)) for user in users)
+        found |= {o: best for o in analysis.operands(site) if o.definition not in defined}
+    ordered = sorted(found, key=lambda o: found[o])
+    return tuple(sorted(quantities(analysis, dict.fromkeys(ordered)), key=writing))
 
 
 def aside_operands(order: Order) -> tuple[Operand, ...]:

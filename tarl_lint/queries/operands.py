@@ -71,6 +71,22 @@ def sets_timing(statement: ir.Stmt) -> bool:
     return any(True for _ in _timing_calls(_expressions(statement)))
 
 
+def stores_a_call(statement: ir.Stmt) -> bool:
+    """Return whether a statement only calls functions with arguments, and at most stores the result."""
+    if not isinstance(statement, (ir.Assign, ir.Evaluate)) or getattr(statement, "augmented", False):
+        return False
+    return any(one.arguments or one.keywords for one in _calls(_expressions(statement)))
+
+
+def _calls(expressions: Sequence[ir.Expr]) -> Iterator[ir.Call]:
+    for expr in expressions:
+        if isinstance(expr, ir.Call):
+            yield expr
+            yield from _calls([*expr.arguments, *(value for _, value in expr.keywords)])
+        else:
+            yield from _calls(_parts(expr))
+
+
 def _timing_calls(expressions: Sequence[ir.Expr]) -> Iterator[ir.Call]:
     for expr in expressions:
         if isinstance(expr, ir.Call):

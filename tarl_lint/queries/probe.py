@@ -12,10 +12,10 @@ from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.values import Value, join
+from tarl_lint.memory.values import BOTTOM, Obj, Value, join, join_all
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
-from tarl_lint.queries.operands import sets_timing, timing_uses, uses
+from tarl_lint.queries.operands import sets_timing, stores_a_call, timing_uses, uses
 
 
 @dataclass(slots=True)
@@ -26,6 +26,15 @@ class Seen:
     path: str
     values: dict[ir.Pos, Value] = field(default_factory=dict)
     holding: Holding = field(default_factory=Holding)
+
+    def enter(self, expr: ir.Expr, value: Value) -> None:
+        """Record a value of an expression."""
+        before = self.values.get(expr.pos)
+        self.values[expr.pos] = value if before is None else join(before, value)
+
+    def library_objects(self) -> frozenset[Obj]:
+        """Return the objects of unknown classes among the values."""
+        return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind == "lib")
 
 
 class Prober:
@@ -42,11 +51,15 @@ class Prober:
         self.deciding = {step.site: step for step in deciding(Tracer(machine), flows)}
         self.starts |= {(s.span.path, s.span.line, s.span.column): site for site, s in self.deciding.items()}
         self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
+        # calls outside of the flows that configure an object of a library, and the sites that use the object
+        self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
+        self._calls: dict[SiteId, Step] = {}
         self._files = {step.span.path for f in flows for step in f.steps}
         self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
         machine.probe, machine.watch = self._look, self._arrive
         machine.replay()
         machine.probe = machine.watch = None
+        self._find_configuring()
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in source order."""
@@ -103,9 +116,36 @@ class Prober:
         self._columns[path, statement.pos] = site
         return site
 
+    def _call(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
+        """Add a site for a statement outside of the flows that may configure an object, in a file on a flow."""
+        path = frame.program.path
+        if path not in self._files or not stores_a_call(statement):
+            return None
+        written = self.texts[path].statement(statement.pos)
+        if written is None:
+            return None
+        text = self.texts[path]
+        site, span = text.site(written), text.span(written)
+        self._calls[site] = Step(site, span, text.code(span), "call", "context")
+        self._columns[path, statement.pos] = site
+        return site
+
+    def _find_configuring(self) -> None:
+        """Keep the calls that configure an object of a library on which a published value depends."""
+        users: dict[Obj, list[SiteId]] = {}
+        for site in sorted(self.seen.keys() - self._calls.keys() - self.timing.keys()):
+            for one in self.seen[site].library_objects():
+                users.setdefault(one, []).append(site)
+        for site, step in self._calls.items():
+            using = {user for one in self.seen[site].library_objects() for user in users.get(one, ())}
+            if using:
+                self.configuring[site] = (step, tuple(sorted(using)))
+            else:
+                del self.seen[site]
+
     def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:
         """Record the variables before a statement runs."""
-        site = self._site(frame, statement) or self._timing(frame, statement)
+        site = self._site(frame, statement) or self._timing(frame, statement) or self._call(frame, statement)
         if site is None:
             return
         seen = self.seen.get(site)
@@ -120,5 +160,12 @@ class Prober:
             return
         seen = self.seen.get(site)
         if seen is not None:
-            before = seen.values.get(expr.pos)
-            seen.values[expr.pos] = value if before is None else join(before, value)
+            seen.enter(expr, value)
+            if isinstance(expr, ir.Call) and isinstance(expr.function, ir.Attribute):
+                seen.enter(expr.function, self._called(expr.function, seen))
+
+    def _called(self, function: ir.Attribute, seen: Seen) -> Value:
+        """Return the attribute that a call calls, such as `self.pid` in `self.pid(error)`; the engine looks it up."""
+        base = seen.values.get(function.base.pos, BOTTOM)
+        found = (self.machine.store.get((one, function.name)) for one in base.objects)
+        return join_all([value for value in found if value is not None])
