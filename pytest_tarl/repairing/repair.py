@@ -12,6 +12,7 @@ from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandE
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.budget import Purse
+from pytest_tarl.repairing.confirmed_effects import with_confirmed
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
 from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.exceeding import exceeding
@@ -178,7 +179,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
     refused = watch.best_so_far(_ended(examiner, found))
     history = attempts(order, [*watch.unconfirmed(examiner.tried), *examiner.tried])
     chosen = accepted.candidate if accepted else examiner.refused.candidate
-    totals = dict(order.comparison.totals)
+    totals, effects = dict(order.comparison.totals), found.effects or {}
     sizes = order.comparison.sizes
     bounds: Mapping[str, Guarantee] = {}
     spent = 0
@@ -187,6 +188,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
+        effects = with_confirmed(effects, accepted.candidate, totals["repaired"], totals["online"])
         with suppress(KeyboardInterrupt):  # Ctrl-C only skips the bounds; the repair stays accepted
             bounds, spent = guaranteed(mutants, accepted)
     part = None
@@ -198,11 +200,11 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         order.comparison,
         formulas=_formulas(order, accepted),
         culprits=localize.culprits(
-            _ranked(order, found.effects or {}),
-            found.effects or {},
+            _ranked(order, effects),
+            effects,
             [str(mutation.operand.site) for mutation in chosen.mutations] if chosen else [],
             order.comparison.verdict.loss,
-            found.method,
+            found.method or "sweep",
         ),
         searches=found.curves,
         totals=totals,
@@ -216,7 +218,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
             *(exceeding(order.comparison, totals) if accepted else ()),
             *_notes(mutants, examiner, found, watch),
         ),
-        ranking=ranking_confidence(order, found.effects or {}, accepted, found.ranking),
+        ranking=ranking_confidence(order, effects, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent + spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)

@@ -1,0 +1,34 @@
+"""Add the gain of the accepted repair to the effects that the searches measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isclose
+from statistics import fmean
+
+from pytest_tarl.model import OperandEffect
+from pytest_tarl.searching.search import Candidate, operand_effect
+
+SAME = 0.01  # relative difference of values that count as the same, because a definition has a rounded value
+
+Effects = Mapping[str, Sequence[OperandEffect]]
+
+
+def with_confirmed(
+    effects: Effects, candidate: Candidate, repaired: Sequence[float], drifted: Sequence[float]
+) -> Effects:
+    """Return the effects with the gain of an accepted change of one constant, if the search measured no such gain.
+
+    `effects` maps site ids to effects; `repaired` and `drifted` are total rewards of episodes with and without the
+    change. The search may have found the change under another condition, or together with other constants.
+    """
+    if len(candidate.mutations) != 1 or not repaired or not drifted:
+        return effects
+    (mutation,) = candidate.mutations
+    confirmed = operand_effect(mutation, fmean(repaired) - fmean(drifted))
+    known = effects.get(str(mutation.operand.site), ())
+    same = [one for one in known if one.code == confirmed.code]
+    if any(isclose(one.best, confirmed.best, rel_tol=SAME) and one.effect > 0.0 for one in same):
+        return effects
+    others = [one for one in known if one.code != confirmed.code]
+    return {**effects, str(mutation.operand.site): (confirmed, *others)}
