@@ -314,6 +314,11 @@ out.publish(trajectory_msgs.msg.JointTrajectory(joint_names=names))
         ("trajectory_msgs", "msg", {"geometry_msgs", "std_msgs", "trajectory_msgs"}),
         ("nav_msgs", "srv", {"geometry_msgs", "nav_msgs", "std_msgs"}),
         ("std_srvs", "srv", set()),
+        (
+            "pr2_controllers_msgs",
+            "msg",
+            {"actionlib_msgs", "geometry_msgs", "pr2_controllers_msgs", "std_msgs", "trajectory_msgs"},
+        ),
     ],
 )
 def test_contained_packages_are_found_at_any_depth(package: str, part: Part, contained: set[str]) -> None:

@@ -74,6 +74,41 @@ string state
 """
 
 ROS1 = f"""
+== pr2_controllers_msgs/JointTrajectory
+trajectory_msgs/JointTrajectory trajectory
+---
+---
+== pr2_controllers_msgs/PointHead
+geometry_msgs/PointStamped target
+geometry_msgs/Vector3 pointing_axis
+string pointing_frame
+duration min_duration
+float64 max_velocity
+---
+---
+float64 pointing_angle_error
+== pr2_controllers_msgs/Pr2GripperCommand
+pr2_controllers_msgs/Pr2GripperCommand command
+---
+float64 position
+float64 effort
+bool stalled
+bool reached_goal
+---
+float64 position
+float64 effort
+bool stalled
+bool reached_goal
+== pr2_controllers_msgs/SingleJointPosition
+float64 position
+duration min_duration
+float64 max_velocity
+---
+---
+std_msgs/Header header
+float64 position
+float64 velocity
+float64 error
 == actionlib_tutorials/Fibonacci
 {_FIBONACCI.format(feedback="sequence")}
 == move_base_msgs/MoveBase

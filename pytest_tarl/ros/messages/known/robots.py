@@ -86,6 +86,9 @@ string arg2
 """
 
 MSGS_ROS1 = """
+== pr2_controllers_msgs/Pr2GripperCommand
+float64 position
+float64 max_effort
 == ar_track_alvar_msgs/AlvarMarker
 std_msgs/Header header
 uint32 id
