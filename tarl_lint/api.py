@@ -56,9 +56,10 @@ class Analysis:
 
     @property
     def configuring(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
-        """Return the calls outside of the flows that configure an object of a library, and the sites that use it.
+        """Return the statements outside of the flows that fill an object with constants, and the sites that use it.
 
-        An example is `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`.
+        Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and `GAINS = [0.5, 2.0]`
+        if one iterates over GAINS.
         """
         return self.prober.configuring
 

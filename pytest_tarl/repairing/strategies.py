@@ -69,7 +69,8 @@ def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
 def operands(order: Order) -> tuple[Operand, ...]:
     """Return all operands of the analysed flows, most readable changes first, then in the order of the slices.
 
-    Among them are the arguments of calls that configure an object of a library, ranked as the statements that use it.
+    Among them are the constants that a set-up passes to an object of a library or stores in a list, ranked as the
+    statements that use the object.
     """
     analysis = order.analysis
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
@@ -77,8 +78,12 @@ def operands(order: Order) -> tuple[Operand, ...]:
     found = {o: ranks[site] for site in ranks for o in analysis.operands(site)}
     defined = {o.definition for o in found}
     for site, (_, users) in analysis.configuring.items():
+        given = analysis.operands(site)
+        indexed = any(
+            o.literal and o.definition in defined for o in given
+        )  # found where the entries are read
         best = min(ranks.get(user, len(rank)) for user in users)
-        found |= {o: best for o in analysis.operands(site) if o.definition not in defined}
+        found |= {o: best for o in given if not (o.literal and indexed)}
     ordered = sorted(found, key=lambda o: found[o])
     return tuple(sorted(quantities(analysis, dict.fromkeys(ordered)), key=writing))
 

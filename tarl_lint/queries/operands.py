@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final, Protocol
 
 from tarl_lint.ir import nodes as ir
@@ -16,6 +16,7 @@ NOT_BEHAVIOUR: Final = frozenset(
         "wait_for_message", "wait_for_service", "get_parameter", "zfill", "ljust", "rjust", "seed", "time_ns",
     ]
 )  # fmt: skip
+MOST_NUMBERS: Final = 16  # maximum number of literals in a list or table whose numbers a repair may change
 TIMING: Final = frozenset(
     ["sleep", "Rate", "create_rate", "create_timer", "Timer"]
 )  # names of calls whose first argument is a duration or a frequency
@@ -71,20 +72,26 @@ def sets_timing(statement: ir.Stmt) -> bool:
     return any(True for _ in _timing_calls(_expressions(statement)))
 
 
-def stores_a_call(statement: ir.Stmt) -> bool:
-    """Return whether a statement only calls functions with arguments, and at most stores the result."""
+def fills_an_object(statement: ir.Stmt) -> bool:
+    """Return whether a statement passes arguments to a call, or stores a list or table of a few numbers."""
     if not isinstance(statement, (ir.Assign, ir.Evaluate)) or getattr(statement, "augmented", False):
         return False
-    return any(one.arguments or one.keywords for one in _calls(_expressions(statement)))
+    inner = [*_all(_expressions(statement))]
+    if any(isinstance(one, ir.Call) and (one.arguments or one.keywords) for one in inner):
+        return True
+    numbers = sum(isinstance(one, ir.Const) and type(one.value) in (int, float) for one in inner)
+    displays = any(isinstance(one, (ir.SequenceDisplay, ir.MappingDisplay)) for one in inner)
+    return displays and numbers <= MOST_NUMBERS
 
 
-def _calls(expressions: Sequence[ir.Expr]) -> Iterator[ir.Call]:
+def _all(expressions: Iterable[ir.Expr]) -> Iterator[ir.Expr]:
+    """Yield the expressions that a value is made of, outermost first."""
     for expr in expressions:
+        yield expr
         if isinstance(expr, ir.Call):
-            yield expr
-            yield from _calls([*expr.arguments, *(value for _, value in expr.keywords)])
+            yield from _all([*expr.arguments, *(value for _, value in expr.keywords)])
         else:
-            yield from _calls(_parts(expr))
+            yield from _all(_parts(expr))
 
 
 def _timing_calls(expressions: Sequence[ir.Expr]) -> Iterator[ir.Call]:
@@ -167,7 +174,8 @@ def _literals(expr: ir.Call) -> bool:
 def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
     """Return the subexpressions that contribute to the value as numbers."""
     if isinstance(expr, ir.Operation):
-        return () if expr.operator == "text" else expr.parts
+        lists = [one for one in expr.parts if isinstance(one, ir.SequenceDisplay)]
+        return () if expr.operator == "text" else lists or expr.parts  # in `[0.1] * 5`, 5 is a size
     if isinstance(expr, ir.Choice):
         return (expr.test, expr.then, expr.other)
     if isinstance(expr, ir.SequenceDisplay):

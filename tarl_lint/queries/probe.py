@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 from tarl_lint.flows.deciding import deciding
 from tarl_lint.flows.reachability import Tracer
@@ -15,7 +16,12 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Obj, Value, join, join_all
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
-from tarl_lint.queries.operands import sets_timing, stores_a_call, timing_uses, uses
+from tarl_lint.queries.operands import sets_timing, fills_an_object, timing_uses, uses
+
+
+FILLED: Final = frozenset(
+    ["lib", "sequence", "mapping"]
+)  # kinds of objects that a set-up fills with constants
 
 
 @dataclass(slots=True)
@@ -32,9 +38,9 @@ class Seen:
         before = self.values.get(expr.pos)
         self.values[expr.pos] = value if before is None else join(before, value)
 
-    def library_objects(self) -> frozenset[Obj]:
-        """Return the objects of unknown classes among the values."""
-        return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind == "lib")
+    def filled_objects(self) -> frozenset[Obj]:
+        """Return the objects of unknown classes and the containers among the values."""
+        return frozenset(o.whole for value in self.values.values() for o in value.pts if o.kind in FILLED)
 
 
 class Prober:
@@ -51,7 +57,7 @@ class Prober:
         self.deciding = {step.site: step for step in deciding(Tracer(machine), flows)}
         self.starts |= {(s.span.path, s.span.line, s.span.column): site for site, s in self.deciding.items()}
         self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
-        # calls outside of the flows that configure an object of a library, and the sites that use the object
+        # statements outside of the flows that fill an object with constants, and the sites that use the object
         self.configuring: dict[SiteId, tuple[Step, tuple[SiteId, ...]]] = {}
         self._calls: dict[SiteId, Step] = {}
         self._files = {step.span.path for f in flows for step in f.steps}
@@ -117,9 +123,9 @@ class Prober:
         return site
 
     def _call(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
-        """Add a site for a statement outside of the flows that may configure an object, in a file on a flow."""
+        """Add a site for a statement outside of the flows that may fill an object with constants, in a file on a flow."""
         path = frame.program.path
-        if path not in self._files or not stores_a_call(statement):
+        if path not in self._files or not fills_an_object(statement):
             return None
         written = self.texts[path].statement(statement.pos)
         if written is None:
@@ -131,13 +137,13 @@ class Prober:
         return site
 
     def _find_configuring(self) -> None:
-        """Keep the calls that configure an object of a library on which a published value depends."""
+        """Keep the statements that fill an object of a library, or a container, that a site uses."""
         users: dict[Obj, list[SiteId]] = {}
         for site in sorted(self.seen.keys() - self._calls.keys() - self.timing.keys()):
-            for one in self.seen[site].library_objects():
+            for one in self.seen[site].filled_objects():
                 users.setdefault(one, []).append(site)
         for site, step in self._calls.items():
-            using = {user for one in self.seen[site].library_objects() for user in users.get(one, ())}
+            using = {user for one in self.seen[site].filled_objects() for user in users.get(one, ())}
             if using:
                 self.configuring[site] = (step, tuple(sorted(using)))
             else:

@@ -1,0 +1,56 @@
+"""The search changes constants that act through an object, ranked as the statements that use the object."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.repairing.strategies import operands
+from tarl_lint.api import analyse
+
+NODE = """\
+import rospy
+from control_library import Pid
+from std_msgs.msg import Float64
+
+KP = 0.8
+{setup}
+
+
+def on_in(msg):
+    value = {use}
+    if value < 9.5:
+        out.publish(value)
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    out = rospy.Publisher("/out", Float64, queue_size=1)
+    rospy.Subscriber("/in", Float64, on_in)
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("setup", "use", "expected"),
+    [
+        ("pid = Pid(KP, 0.1)", "pid.update(msg.data)", ["KP", "0.1", "9.5"]),
+        ("pid = Pid(KP, 0.1)", "pid.update(msg.data) * KP", ["KP", "KP", "0.1", "9.5"]),
+        ("G = [0.5, 2.0]", "sum(g * msg.data for g in G)", ["0.5", "2.0", "g", "9.5"]),
+        ("G = [0.5, 2.0]", "G[0] * msg.data", ["G[0]", "9.5"]),
+        ("G = {'p': 0.5, 'i': 2.0}", "G['p'] * msg.data", ["G['p']", "9.5"]),
+    ],
+)
+def test_constants_of_objects_are_searched_where_they_are_stored(
+    setup: str, use: str, expected: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "keeper.py"
+    path.write_text(NODE.format(setup=setup, use=use))
+    analysis = analyse([path], root=tmp_path)
+    places = [SimpleNamespace(site=SimpleNamespace(id=str(step.site))) for step in analysis.sites]
+    order: Any = SimpleNamespace(analysis=analysis, comparison=SimpleNamespace(culprits=places))
+    found = [one.code for one in operands(order)]
+    assert sorted(found) == sorted(expected)
