@@ -58,8 +58,8 @@ class Analysis:
     def configuring(self) -> Mapping[SiteId, tuple[Step, tuple[SiteId, ...]]]:
         """Return the statements outside of the flows that fill an object with constants, and the sites that use it.
 
-        Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and `GAINS = [0.5, 2.0]`
-        if one iterates over GAINS.
+        Examples are `self.pid = PID(1.0, 0.1, 0.0)` if a statement of a flow calls `self.pid(…)`, and
+        `GAINS = [0.5, 2.0]` if one iterates over GAINS.
         """
         return self.prober.configuring
 

@@ -16,8 +16,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Obj, Value, join, join_all
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
-from tarl_lint.queries.operands import sets_timing, fills_an_object, timing_uses, uses
-
+from tarl_lint.queries.operands import fills_an_object, sets_timing, timing_uses, uses
 
 FILLED: Final = frozenset(
     ["lib", "sequence", "mapping"]
@@ -123,7 +122,7 @@ class Prober:
         return site
 
     def _call(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
-        """Add a site for a statement outside of the flows that may fill an object with constants, in a file on a flow."""
+        """Add a site for a statement that may fill an object with constants, in a file on a flow."""
         path = frame.program.path
         if path not in self._files or not fills_an_object(statement):
             return None
