@@ -76,14 +76,14 @@ def operands(order: Order) -> tuple[Operand, ...]:
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     ranks = {step.site: rank.get(str(step.site), len(rank)) for step in analysis.sites}
     found = {o: ranks[site] for site in ranks for o in analysis.operands(site)}
-    defined = {o.definition for o in found}
+    defined = {(o.definition.path, o.definition.line) for o in found if o.definition is not None}
     for site, (_, users) in analysis.configuring.items():
         given = analysis.operands(site)
-        indexed = any(
-            o.literal and o.definition in defined for o in given
-        )  # found where the entries are read
         best = min(ranks.get(user, len(rank)) for user in users)
-        found |= {o: best for o in given if not (o.literal and indexed)}
+        own = [o for o in given if o.definition is not None and o.definition.line == o.span.line]
+        if any((o.span.path, o.span.line) in defined for o in own):  # they are found where they are read
+            given = tuple(o for o in given if o not in own)
+        found |= dict.fromkeys(given, best)
     ordered = sorted(found, key=lambda o: found[o])
     return tuple(sorted(quantities(analysis, dict.fromkeys(ordered)), key=writing))
 

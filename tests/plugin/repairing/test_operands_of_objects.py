@@ -12,6 +12,7 @@ from pytest_tarl.repairing.strategies import operands
 from tarl_lint.api import analyse
 
 NODE = """\
+import os
 import rospy
 from control_library import Pid
 from std_msgs.msg import Float64
@@ -41,6 +42,7 @@ if __name__ == "__main__":
         ("pid = Pid(KP, 0.1)", "pid.update(msg.data) * KP", ["KP", "KP", "0.1", "9.5"]),
         ("G = [0.5, 2.0]", "sum(g * msg.data for g in G)", ["0.5", "2.0", "g", "9.5"]),
         ("G = [0.5, 2.0]", "G[0] * msg.data", ["G[0]", "9.5"]),
+        ("G = float(os.environ.get('G', '1.0'))", "G * msg.data", ["G", "9.5"]),
         ("G = {'p': 0.5, 'i': 2.0}", "G['p'] * msg.data", ["G['p']", "9.5"]),
     ],
 )
