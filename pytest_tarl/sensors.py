@@ -13,6 +13,7 @@ from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros_names import objection
 from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
@@ -68,6 +69,8 @@ class Sensor:
                     "field='pose.pose.position.x', "
                     f"got {given!r}."
                 )
+        if self.topic is not None and (wrong := objection(self.topic)):
+            raise SettingsError(f"Sensor {self.name!r}: the name of a topic {wrong}.")
         if self.expr and not prefixes(self.expr):
             raise SettingsError(
                 f"Sensor {self.name!r}: expr must name a variable of the node, such as 'speed', 'self.heading' or "

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.faults.fields import altered, no_such_field
 from pytest_tarl.finite_numbers import finite_number
+from pytest_tarl.ros_names import objection
 from pytest_tarl.spaces import Choice, Span, span
 
 if TYPE_CHECKING:
@@ -124,3 +125,5 @@ def require_text(kind: str, what: str, value: Any) -> None:
             f'faults.{kind}: give the {what} as text, for example "{"/odom" if what == "topic" else "data"}", got '
             f"{value!r}."
         )
+    if what == "topic" and (wrong := objection(value)):
+        raise SettingsError(f"faults.{kind}: the name of a topic {wrong}.")

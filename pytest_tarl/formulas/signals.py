@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros_names import objection
 from pytest_tarl.sensors import CALLED, as_number
 
 NANOSECONDS = 1_000_000_000
@@ -44,6 +45,8 @@ class Signal:
                     f"Signal {self.name!r}: {what} must be a string such as topic='/odom', "
                     f"field='twist.twist.linear.x', got {given!r}."
                 )
+        if self.topic is not None and (wrong := objection(self.topic)):
+            raise SettingsError(f"Signal {self.name!r}: the name of a topic {wrong}.")
 
 
 def stored_signal(signal: Signal) -> Signal:

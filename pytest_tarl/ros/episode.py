@@ -15,6 +15,7 @@ from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.keyboard import Terminal
 from pytest_tarl.ros.launch_sources import NOTHING, Given
 from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.names import require_remapping
 from pytest_tarl.ros.process import Network, Process
 from pytest_tarl.ros.scheduler import Spinning, running_task
 from pytest_tarl.ros.uninstalled import UninstalledFinder
@@ -35,6 +36,8 @@ class Ros(Network):
         remappings: Mapping[str, str] | None = None,
         watchdog_limit: float = DEFAULT_LIMIT,
     ) -> None:
+        for old, new in (remappings or {}).items():
+            require_remapping(old, new)
         super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
         self._launched = NOTHING  # launch-file parameters for the node that is started next

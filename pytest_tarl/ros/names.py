@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,6 +10,10 @@ from typing import Any
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros import params_files
 from pytest_tarl.ros.literals import parse_value
+from pytest_tarl.ros_names import namespace_problem, node_problem, objection
+
+_PART = r"(?:[A-Za-z_]|\\[1-9])(?:[A-Za-z0-9_]|\\[1-9])*"
+_NEW_NAME = re.compile(rf"(?:~/|/)?{_PART}(?:/{_PART})*")  # `\1` stands for a part that a wildcard matched
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +33,16 @@ def absolute(name: str) -> str:
 
 
 def given_name(name: object) -> str:
-    """Return the absolute form of a name that a test gives. Raise RecordingError if it is not a string."""
-    if not isinstance(name, str):
-        raise RecordingError(f"The name of a topic or service must be a string, not {name!r}.")
-    return absolute(name)
+    """Return the absolute form of a name that a test gives. Raise RecordingError if no node can use the name."""
+    if wrong := objection(name):
+        raise RecordingError(f"The name of a topic or service {wrong}.")
+    return absolute(str(name))
+
+
+def require_remapping(old: str, new: str) -> None:
+    """Raise RecordingError for a test's remapping to a name that no node can use; it may be private."""
+    if wrong := objection(new.removeprefix("~") if isinstance(new, str) else new):
+        raise RecordingError(f"The remapping of {old!r} to {new!r} is invalid: the new name {wrong}.")
 
 
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
@@ -77,6 +88,19 @@ def parse_ros1(arguments: Iterable[str]) -> CommandLine:
     return CommandLine(remappings, parameters, special.get("__name"), special.get("__ns"), tuple(rest))
 
 
+def _require_remapping(option: str, rule: str) -> None:
+    """Raise RuntimeError, as rcl does, for a rule whose new name is not valid."""
+    left, mark, right = rule.partition(":=")
+    if left in ("__node", "__name"):
+        wrong = node_problem(right) is not None
+    elif left == "__ns":
+        wrong = namespace_problem(right) is not None
+    else:
+        wrong = _NEW_NAME.fullmatch(right) is None
+    if wrong or not mark:
+        raise RuntimeError(f"failed to initialize: Couldn't parse remap rule: '{option} {rule}'.")
+
+
 def parse_ros2(arguments: Iterable[str]) -> CommandLine:
     """Read `--ros-args -r old:=new -p name:=value --params-file file …` up to `--`.
 
@@ -103,6 +127,7 @@ def parse_ros2(arguments: Iterable[str]) -> CommandLine:
             elif option == "--params-file":
                 parameters |= params_files.read(argument)
             elif option in ("-r", "--remap"):
+                _require_remapping(option, argument)
                 (special if left.startswith("__") else remappings)[left] = right
             option = ""
     name = special.get("__node", special.get("__name"))

@@ -17,7 +17,15 @@ from pytest_tarl.ros.service_types import (
     service_type,
 )
 
-Answer = Callable[[Any], None]  # is called with the response, or None if the handler returned none
+Answer = Callable[[Any], None]  # is called with the response, or a Refusal if the handler failed
+NO_RESPONSE = "service cannot process request: service handler returned None"
+
+
+class Refusal:
+    """Stands for the response if the handler of a ROS 1 service failed or returned None."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
 
 
 class Endpoint(Protocol):
@@ -117,7 +125,7 @@ class ServiceDirectory:
         if endpoint is None:
             return None
         require_part(request, endpoint.request_type, f"The request to {resolved}")
-        reply = Reply()
+        reply = Reply(resolved)
         sent = adapted(request, endpoint.request_type)
         if running_task() is not None:
             self._scheduler.later(lambda: endpoint.handle(sent, reply.take))
@@ -127,15 +135,28 @@ class ServiceDirectory:
 
 
 class Reply:
-    """The result of a call from the world: `response` is None until the node has answered."""
+    """The result of a call from the world. `error` is the reason if a ROS 1 node refused the request."""
 
-    def __init__(self) -> None:
-        self.response: Any = None
+    def __init__(self, service: str) -> None:
+        self._service = service
+        self._response: Any = None
+        self.error = ""
         self.done = False
 
+    @property
+    def response(self) -> Any:
+        """Return the response, or None until the node has answered. Raise RecordingError if the node refused."""
+        if self.error:
+            raise RecordingError(f"{self._service} gave no response: {self.error}.")
+        return self._response
+
     def take(self, response: Any) -> None:
-        """Store the response."""
-        self.response, self.done = response, True
+        """Store the response, or the reason for which there is none."""
+        if isinstance(response, Refusal):
+            self.error = response.reason
+        else:
+            self._response = response
+        self.done = True
 
 
 class WorldService:
@@ -153,10 +174,11 @@ class WorldService:
     def handle(self, request: Any, answer: Answer) -> None:
         """Call the world's handler; its errors are raised in the test, not in the node."""
         try:
-            answer(self._checked(self._handler(request)))
+            response = self._checked(self._handler(request))
+            answer(Refusal(NO_RESPONSE) if response is None else response)
         except Exception as error:
             self._scheduler.failure = self._scheduler.failure or error
-            answer(None)
+            answer(Refusal(f"error processing request: {error}"))
 
     def _checked(self, response: Any) -> Any:
         """Return the response. Raise RecordingError if it has a wrong type; in ROS 1, None refuses the request."""

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -14,11 +13,7 @@ from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import this_context
 from pytest_tarl.ros.rclpy.entities import NodeEntities
-from pytest_tarl.ros.rclpy.exceptions import (
-    InvalidNodeNameException,
-    InvalidServiceNameException,
-    InvalidTopicNameException,
-)
+from pytest_tarl.ros.rclpy.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from pytest_tarl.ros.rclpy.graph import NodeGraph
 from pytest_tarl.ros.rclpy.logging import RcutilsLogger
 from pytest_tarl.ros.rclpy.parameter_services import offer_parameter_services, parameter_event
@@ -29,10 +24,14 @@ from pytest_tarl.ros.rclpy.services import Client, Service
 from pytest_tarl.ros.rclpy.time import ROSClock
 from pytest_tarl.ros.rclpy.timer import Rate, Timer
 from pytest_tarl.ros.rclpy.topics import Publisher, Subscription
+from pytest_tarl.ros.rclpy.validating import (
+    validate_full_topic_name,
+    validate_namespace,
+    validate_node_name,
+    validate_topic_name,
+)
 from pytest_tarl.ros.rclpy.waitable import GuardCondition, Mailbox
 
-_TOPIC = re.compile(r"[~/]?[A-Za-z_{}][\w{}]*(/[A-Za-z_{}][\w{}]*)*|~/[\w{}/]+")
-_SAID = "{} must not contain characters other than alphanumerics, '_', '~', '{{', or '}}'"
 _NOT_YET = frozenset(["add_waitable", "remove_waitable", "get_node_names_and_namespaces_with_enclaves"])
 
 
@@ -61,9 +60,9 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         self._event_publisher: Publisher | None = None
         self._command_line = names.parse_ros2(cli_args) if cli_args else self.context.command_line
         self._name = self._command_line.name or node_name
-        if not re.fullmatch(r"[A-Za-z0-9_]+", self._name):
-            raise InvalidNodeNameException(self._name, _SAID.format("node name"), _first_bad(self._name))
+        validate_node_name(self._name)
         self._namespace = names.absolute(self._command_line.namespace or namespace or "/")
+        validate_namespace(self._namespace)
         self._full_name = names.absolute(f"{self._namespace}/{self._name}")
         self._remappings = {**self.process.ros.remappings, **self._command_line.remappings}
         if not self.context.nodes:
@@ -154,11 +153,16 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the absolute name of a topic. Raise InvalidTopicNameException."""
-        if not isinstance(topic, str) or not _TOPIC.fullmatch(topic):
-            raise InvalidTopicNameException(str(topic), _SAID.format("topic name"), _first_bad(str(topic)))
-        if only_expand:
-            return names.expand(topic, self._full_name)
-        return names.resolve(topic, self._full_name, self._remappings)
+        if not isinstance(topic, str):
+            raise TypeError(f"topic_name must be a str, not {type(topic).__name__}")
+        validate_topic_name(topic)
+        if "//" in topic:
+            raise InvalidTopicNameException(
+                topic, "topic name must not contain repeated '/'", topic.index("//") + 1
+            )
+        expanded = names.expand(topic, self._full_name)
+        validate_full_topic_name(expanded)
+        return expanded if only_expand else names.resolve(topic, self._full_name, self._remappings)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """Return the absolute name of a service. Raise InvalidServiceNameException."""
@@ -291,10 +295,6 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         if name in _NOT_YET:
             raise unsupported(f"Node.{name}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
-
-def _first_bad(name: str) -> int:
-    return next((i for i, letter in enumerate(name) if not (letter.isalnum() or letter in "_/~{}")), 0)
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:

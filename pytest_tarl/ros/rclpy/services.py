@@ -12,7 +12,7 @@ from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.rclpy.service_introspection import Introspected
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
-from pytest_tarl.ros.services import Answer, adapted
+from pytest_tarl.ros.services import Answer, Refusal, adapted
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
@@ -126,9 +126,14 @@ class Client(Introspected):
         return future.result()
 
     def answer(self, future: Future, response: Any) -> None:
-        """Handle a response. A waiting `call` returns it immediately; a future is completed by the executor."""
-        if response is not None:
-            response = adapted(response, self.srv_type.Response)
+        """Handle a response. A waiting `call` returns it immediately; a future is completed by the executor.
+
+        A ROS 2 client never hears of the refusal of a ROS 1 node: the bridge between them only logs it.
+        """
+        if isinstance(response, Refusal):
+            self.node.get_logger().error(f"{self.srv_name} gave no response: {response.reason}")
+            return
+        response = adapted(response, self.srv_type.Response)
         waiting = self._calling.get(future)
         if waiting is not None:
             future.set_result(response)

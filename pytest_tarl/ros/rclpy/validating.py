@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any, Literal
 
+from pytest_tarl import ros_names
 from pytest_tarl.ros import names
 from pytest_tarl.ros.rclpy.exceptions import (
     InvalidNamespaceException,
@@ -14,42 +14,38 @@ from pytest_tarl.ros.rclpy.exceptions import (
     InvalidTopicNameException,
     NoTypeSupportImportedException,
 )
+from pytest_tarl.ros_names import Problem
 
 TOPIC_SEPARATOR_STRING = "/"
 HIDDEN_TOPIC_PREFIX = "_"
-_PART = r"(?:[A-Za-z_]|\{\w+\})(?:\w|\{\w+\})*"
-_RELATIVE = rf"(?:~(?:/{_PART})*|/?{_PART}(?:/{_PART})*)"
-_FULL = r"(?:/[A-Za-z_]\w*)+"
-_SAID = "{} must not be empty, and must consist of letters, digits and underscores, with no digit first"
 
 
-def _require(pattern: str, name: str, error: type[Any], what: str) -> Literal[True]:
-    if re.fullmatch(pattern, name) and "__" not in name:
-        return True
-    bad = next((at for at in range(len(name)) if not re.fullmatch(r"[\w/~{}]", name[at])), 0)
-    raise error(name, _SAID.format(what), bad)
+def _require(problem: Problem | None, name: str, error: type[Any]) -> Literal[True]:
+    if problem is not None:
+        raise error(name, *problem)
+    return True
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
     """Return True for a valid name of a topic. Raise InvalidTopicNameException or InvalidServiceNameException."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
-    return _require(_RELATIVE, name, error, "service name" if is_service else "topic name")
+    return _require(ros_names.topic_problem(name), name, error)
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> Literal[True]:
     """Return True for a valid absolute name. Raise InvalidTopicNameException or InvalidServiceNameException."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
-    return _require(_FULL, name, error, "service name" if is_service else "topic name")
+    return _require(ros_names.full_topic_problem(name), name, error)
 
 
 def validate_namespace(namespace: str) -> Literal[True]:
     """Return True for a valid namespace. Raise InvalidNamespaceException."""
-    return _require(rf"/|{_FULL}", namespace, InvalidNamespaceException, "namespace")
+    return _require(ros_names.namespace_problem(namespace), namespace, InvalidNamespaceException)
 
 
 def validate_node_name(node_name: str) -> Literal[True]:
     """Return True for a valid name of a node. Raise InvalidNodeNameException."""
-    return _require(r"[A-Za-z_]\w*", node_name, InvalidNodeNameException, "node name")
+    return _require(ros_names.node_problem(node_name), node_name, InvalidNodeNameException)
 
 
 def validate_parameter_name(name: str) -> Literal[True]:

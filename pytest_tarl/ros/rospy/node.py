@@ -4,14 +4,17 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros import names
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInitException
 from pytest_tarl.ros.scheduler import Task, running_task
+from pytest_tarl.ros_names import is_legal_ros1, is_refused_by_master
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
 
@@ -35,6 +38,18 @@ class RospyNode:
     def resolve(self, name: str) -> str:
         """Resolve the name of a topic, service or parameter."""
         return names.resolve(name, self.name, self.remappings)
+
+    def require_registrable(self, name: str, kind: str) -> None:
+        """End the episode with an error if the ROS master would refuse to register a topic or service of that name.
+
+        rospy then logs the refusal and shuts the node down.
+        """
+        if is_refused_by_master(name):
+            scheduler = self.process.scheduler
+            scheduler.failure = scheduler.failure or RecordingError(
+                f"Node {self.process.label!r} names a {kind} {name!r}. The master of ROS 1 refuses names with a space "
+                "or a colon and the node shuts down: correct the name in the node or its remapping."
+            )
 
     def initialise(self, name: str, *, anonymous: bool) -> None:
         """Set the name, then the private parameters from the test and the command line."""
@@ -85,6 +100,15 @@ def this_node(api: str) -> RospyNode:
     return current_process(f"rospy.{api}").part(RospyNode)
 
 
+def warn_if_illegal(name: str, *, stacklevel: int) -> None:
+    """Warn about a name of a topic, service or parameter that breaks the rules, as rospy does."""
+    if name and not is_legal_ros1(name):
+        warnings.warn(
+            f"'{name}' is not a legal ROS graph resource name. This may cause problems with other ROS tools",
+            stacklevel=stacklevel,
+        )
+
+
 def init_node(
     name: str,
     argv: Sequence[str] | None = None,
@@ -110,6 +134,11 @@ def init_node(
         node.command_line = names.parse_ros1(argv)
     if node.initialised and not anonymous and not node.name.endswith("/" + name):
         raise ROSException("rospy.init_node() has already been called with different arguments: " + node.name)
+    if not is_legal_ros1(name) or name[0] == "~":
+        warnings.warn(
+            f"'{name}' is not a legal ROS base name. This may cause problems with other ROS tools.",
+            stacklevel=2,
+        )
     if not node.initialised:
         node.initialise(name, anonymous=anonymous)
 

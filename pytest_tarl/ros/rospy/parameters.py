@@ -8,7 +8,7 @@ from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.parameter_server import ParameterServer, keys_of
 from pytest_tarl.ros.polling import asked
 from pytest_tarl.ros.process import current_process
-from pytest_tarl.ros.rospy.node import RospyNode
+from pytest_tarl.ros.rospy.node import RospyNode, warn_if_illegal
 
 _NOTHING = object()
 
@@ -35,6 +35,7 @@ get_param_cached = get_param
 
 def set_param(param_name: str, param_value: Any) -> None:
     """Set a parameter."""
+    warn_if_illegal(param_name, stacklevel=3)
     node, server = _server("set_param")
     server.set(node.resolve(param_name), param_value)
 

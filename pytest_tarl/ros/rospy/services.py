@@ -19,20 +19,12 @@ from pytest_tarl.ros.rospy.exceptions import (
     ROSSerializationException,
     ServiceException,
 )
-from pytest_tarl.ros.rospy.node import this_node
+from pytest_tarl.ros.rospy.node import this_node, warn_if_illegal
 from pytest_tarl.ros.scheduler import current_task
-from pytest_tarl.ros.services import Answer, adapted
+from pytest_tarl.ros.services import NO_RESPONSE, Answer, Refusal, adapted
 
 _LOGGER = logging.getLogger("rosout")
 _POLL = 0.3  # polling period of `wait_for_service` (s)
-_NO_RESPONSE = "service cannot process request: service handler returned None"
-
-
-class Refusal:
-    """Stands for the response if the handler failed."""
-
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
 
 
 class Service:
@@ -46,9 +38,13 @@ class Service:
         buff_size: int = 65536,
         error_handler: Callable[..., Any] | None = None,
     ) -> None:
+        if not name or not isinstance(name, str):
+            raise ValueError("service name is not a non-empty string")
+        warn_if_illegal(name, stacklevel=3)
         node = this_node("Service")
         self.process = node.process
         self.resolved_name = node.resolve(name)
+        node.require_registrable(self.resolved_name, "service")
         self.service_class = service_class
         self.request_type: type = service_class._request_class
         self.handler = handler
@@ -69,7 +65,7 @@ class Service:
             self.process.scheduler.wait()
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Handle a request in a task of this node; `answer` gets the response, or None if the handler returned none."""
+        """Handle a request in a task of this node; `answer` gets the response, or a Refusal if the handler failed."""
         self.process.scheduler.spawn(self.process, self._serve, request, answer)
 
     def _serve(self, request: Any, answer: Answer) -> None:
@@ -85,7 +81,7 @@ class Service:
                 self._error_handler(error, type(error), error.__traceback__)
             answer(Refusal(f"error processing request: {error}"))
             return
-        answer(response if response is not None else Refusal(_NO_RESPONSE))
+        answer(response if response is not None else Refusal(NO_RESPONSE))
 
     def _as_response(self, returned: Any) -> Any:
         made: type = self.service_class._response_class
@@ -139,9 +135,8 @@ class ServiceProxy:
         return self.request_class(*args, **kwds)
 
     def _response(self, answered: Any) -> Any:
-        if answered is None or isinstance(answered, Refusal):
-            reason = _NO_RESPONSE if answered is None else answered.reason
-            said = reason.encode()  # rospy shows the received bytes
+        if isinstance(answered, Refusal):
+            said = answered.reason.encode()  # rospy shows the received bytes
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {said!r}")
         return adapted(answered, self.response_class)
 

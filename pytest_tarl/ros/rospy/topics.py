@@ -14,7 +14,7 @@ from pytest_tarl.ros.messages.snapshot import is_message, type_name
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInterruptException, ROSSerializationException
-from pytest_tarl.ros.rospy.node import this_node
+from pytest_tarl.ros.rospy.node import this_node, warn_if_illegal
 from pytest_tarl.ros.scheduler import current_task
 
 Callback = tuple[Callable[..., Any], Any]
@@ -130,9 +130,11 @@ class Topic:
         if not name or not isinstance(name, str):
             raise ValueError("topic name is not a non-empty string")
         _require_message_class(data_class)
+        warn_if_illegal(name, stacklevel=4)
         self._node = this_node(api)
         self._process = self._node.process
         self.name = self.resolved_name = self._node.resolve(name)
+        self._node.require_registrable(self.name, "topic")
         self.type = type_name(data_class) if data_class is not AnyMsg else "*"
         self.data_class = data_class
         self._place = self._process.bus.topic(self.name)

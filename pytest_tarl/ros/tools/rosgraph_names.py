@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros_names import is_legal_ros1
 
 __all__ = [
     "ANYTYPE", "GLOBALNS", "PRIV_NAME", "REMAP", "SEP", "anonymous_name", "canonicalize_name", "get_ros_namespace",
@@ -77,14 +78,12 @@ def load_mappings(argv: Sequence[str]) -> dict[str, str]:
 
 def is_legal_name(name: str | None) -> bool:
     """Return whether a name can be that of a topic, service, node or parameter."""
-    return name is not None and (
-        name == "" or (bool(re.fullmatch(r"[~/A-Za-z][\w/]*", name)) and "//" not in name)
-    )
+    return name is not None and (name == "" or is_legal_ros1(name))
 
 
 def is_legal_base_name(name: str | None) -> bool:
     """Return whether a name can be the last part of a name."""
-    return name is not None and bool(re.fullmatch(r"[A-Za-z]\w*", name))
+    return name is not None and bool(re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII))
 
 
 def canonicalize_name(name: str) -> str:

@@ -92,15 +92,15 @@ def test_names_of_rclpy_for_annotations_and_events_exist(start: Start) -> None:
 
 
 VALID = {
-    "validate_topic_name": ("a/b", "~/a", "/a", "~", "{node}/a"),
-    "validate_full_topic_name": ("/a/b_1",),
+    "validate_topic_name": ("a/b", "~/a", "/a", "~", "{node}/a", "a__b", "a//b"),
+    "validate_full_topic_name": ("/a/b_1", "/a__b"),
     "validate_namespace": ("/", "/a/b"),
     "validate_node_name": ("a_1", "_a"),
     "validate_parameter_name": ("a.b",),
 }
 INVALID = {
-    "validate_topic_name": ("", "a b", "1a", "a//b", "a/", "a__b", "a~"),
-    "validate_full_topic_name": ("a", "/", "/~/a", "/a-b"),
+    "validate_topic_name": ("", "a b", "1a", "a/", "a~", "é", "{a", "{1}"),
+    "validate_full_topic_name": ("a", "/", "/~/a", "/a-b", "/a//b"),
     "validate_namespace": ("", "a", "/a/"),
     "validate_node_name": ("", "1a", "a/b"),
     "validate_parameter_name": ("",),

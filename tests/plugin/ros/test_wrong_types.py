@@ -157,3 +157,70 @@ def test_a_name_that_is_not_a_string_and_a_listener_that_is_not_callable_are_ref
             call()
     with pytest.raises(RecordingError, match=r"^tarl\.bus\.subscribe\('odom', …\): None is not callable"):
         bus.subscribe("odom", None)
+
+
+REFUSING = {
+    "exception": ("def dock(request): raise ValueError('jammed')", "error processing request: jammed"),
+    "None": ("def dock(request): pass", "service handler returned None"),
+    "type": ("def dock(request): return TriggerResponse(True, 7)", "error processing request: "),
+}
+REFUSED = """
+import rospy
+from std_srvs.srv import Trigger, TriggerResponse
+{}
+rospy.init_node("server")
+rospy.Service("dock", Trigger, dock)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("reason", REFUSING)
+def test_the_refusal_of_a_request_is_a_sentence_for_the_world(start: Start, reason: str) -> None:
+    handler, said = REFUSING[reason]
+    ros = start(REFUSED.format(handler))
+    reply = ros.bus.call("dock", OLD_TRIGGER._request_class())
+    assert reply.done
+    assert said in reply.error
+    with pytest.raises(RecordingError, match=rf"^/dock gave no response: .*{said}.*\.$"):
+        _ = reply.response
+
+
+def test_a_reply_has_no_response_and_no_error_before_the_node_answers(start: Start) -> None:
+    ros = start(
+        """
+        import rospy
+        from std_srvs.srv import Trigger, TriggerResponse
+        def dock(request):
+            rospy.sleep(1)
+            return TriggerResponse(True, "docked")
+        rospy.init_node("server")
+        rospy.Service("dock", Trigger, dock)
+        rospy.spin()
+        """
+    )
+    reply = ros.bus.call("dock", OLD_TRIGGER._request_class())
+    assert (reply.done, reply.response, reply.error) == (False, None, "")
+    ros.step(1)
+    assert (reply.done, reply.response.message, reply.error) == (True, "docked", "")
+
+
+def test_a_client_of_ros_2_gets_no_response_if_a_node_of_ros_1_refuses(
+    start: Start, caplog: pytest.LogCaptureFixture
+) -> None:
+    ros = start(REFUSED.format(REFUSING["exception"][0]))
+    start(
+        """
+        import rclpy
+        from pytest_tarl.ros import message_type
+        Trigger = message_type("std_srvs/srv/Trigger")
+        rclpy.init()
+        node = rclpy.create_node("caller")
+        future = node.create_client(Trigger, "dock").call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(node, future, timeout_sec=1.0)
+        done = future.done()
+        """,
+        ros=ros,
+    )
+    ros.step(2)
+    assert ros.namespace["done"] is False  # type: ignore[attr-defined]
+    assert "/dock gave no response: error processing request: jammed" in caplog.text
