@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import sysconfig
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
-from types import FrameType, TracebackType
+from types import CodeType, FrameType, TracebackType
+from typing import Any
 
 _HERE = str(Path(__file__).parent)
 _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib")})
@@ -29,6 +32,16 @@ def of_traceback(traceback: TracebackType | None) -> Place | None:
 def of_frame(frame: FrameType | None) -> Place | None:
     """Return the innermost place in user code of a running or suspended frame."""
     return _innermost(_outwards(frame))
+
+
+def of_function(function: Any) -> Place | None:
+    """Return the place where a function is defined, or None if it has no code, as a builtin."""
+    while isinstance(function, partial):
+        function = function.func
+    if not hasattr(function, "__code__") and not hasattr(function, "__func__"):
+        function = getattr(type(function), "__call__", function)  # an object that is called
+    code = getattr(inspect.unwrap(function), "__code__", None)
+    return (code.co_filename, code.co_firstlineno, code.co_name) if isinstance(code, CodeType) else None
 
 
 def describe(place: Place | None) -> str:

@@ -190,7 +190,7 @@ class Process:
             if isinstance(error, SystemExit)
             else f"raised {type(error).__name__}: {error}"
         )
-        where = blame.describe(blame.of_traceback(error.__traceback__))
+        where = blame.describe(getattr(error, "tarl_place", None) or blame.of_traceback(error.__traceback__))
         failure = NodeError(f"Node {self.label!r} {what} ({where}). {advice(error, self.launched)}".rstrip())
         failure.__cause__ = error
         return failure

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.polling import asked
+from pytest_tarl.ros.rclpy.returned import require_returned
 from pytest_tarl.ros.rclpy.service_introspection import Introspected
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
@@ -61,9 +62,8 @@ class Service(Introspected):
         answer(self._checked(await response))
 
     def _checked(self, response: Any) -> Any:
-        if not isinstance(response, self.srv_type.Response):
-            raise TypeError(f"the callback of service {self.srv_name} returned {type(response)}, "
-                            f"not {self.srv_type.Response}")  # fmt: skip
+        what = f"the callback of service {self.srv_name}"
+        require_returned(response, self.srv_type.Response, what, self.callback)
         return response
 
     def destroy(self) -> None:

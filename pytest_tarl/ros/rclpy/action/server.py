@@ -20,6 +20,7 @@ from pytest_tarl.ros.rclpy.action.handles import (
     goal_key,
 )
 from pytest_tarl.ros.rclpy.exceptions import RCLError
+from pytest_tarl.ros.rclpy.returned import require_returned
 from pytest_tarl.ros.rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -150,6 +151,8 @@ class ActionServer:
                 raise
             self._logger.error(f"Error raised in execute callback: {error}")
             result = self.action_type.Result()
+        what = f"the execute callback of action {self._name}"
+        require_returned(result, self.action_type.Result, what, callback)
         if handle.is_active:
             self._logger.warning(
                 f"Goal state not set, assuming aborted. Goal ID: {goal_key(handle.goal_id).hex()}"
