@@ -159,14 +159,12 @@ class Executor:
                 raise ExternalShutdownException
             if not self.context.initialised or self._is_shutdown or (future is not None and future.done()):
                 return None
-            looks = (
-                1 if self._active < self._limit else 0
-            )  # an entity that its group refuses waits for the next round
-            while True:
+            looked = False  # an entity that its group refuses waits for the next round
+            while self._active < self._limit:
                 if not batch:
-                    if not looks or not self._look():
+                    if looked or not self._look():
                         break
-                    looks = 0
+                    looked = True
                 entity = batch.popleft()
                 if entity.is_ready() and self._begins(entity):
                     return entity
