@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl import faults
+from pytest_tarl.errors import SettingsError
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.rclpy.qos import (
     DurabilityPolicy,
@@ -339,3 +341,18 @@ def test_alarms_and_tasks_of_an_instant_run_in_order_and_the_clock_stops_where_i
     assert (found[3:], ros.scheduler.time) == (["node"], 2 * second)
     ros.step(1e-9)
     assert found[4:] == ["late"]
+
+
+def test_a_fault_is_refused_if_its_topic_had_no_message_from_a_node_or_the_world(start: Start) -> None:
+    ros = start("""
+        import rospy
+        from std_msgs.msg import String
+        rospy.init_node("n")
+        rospy.Subscriber("silent", String, print)
+        rospy.Publisher("said", String, queue_size=1).publish("x")
+    """)
+    ros.bus.publish("told", STRING("x"))
+    for topic in ("said", "told"):
+        faults.dropout(topic, 0.5).check(ros, "loss")
+    with pytest.raises(SettingsError, match=r"no message was published on silent.* are /said, /told\."):
+        faults.dropout("silent", 0.5).check(ros, "loss")
