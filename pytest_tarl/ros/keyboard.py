@@ -60,6 +60,8 @@ class Terminal(io.TextIOBase):
         if size is None or size < 0:
             lines = list(iter(self.readline, ""))
             return "".join(lines)
+        if size == 0:
+            return ""  # as a file, without waiting
         self._wait()
         return self._take(min(size, self._readable()))
 
