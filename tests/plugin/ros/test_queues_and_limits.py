@@ -356,3 +356,22 @@ def test_a_fault_is_refused_if_its_topic_had_no_message_from_a_node_or_the_world
         faults.dropout(topic, 0.5).check(ros, "loss")
     with pytest.raises(SettingsError, match=r"no message was published on silent.* are /said, /told\."):
         faults.dropout("silent", 0.5).check(ros, "loss")
+
+
+@pytest.mark.parametrize("callback", ["lambda message: found.append(message.data) or 7", "answer"])
+def test_the_value_that_a_callback_returns_does_not_block_its_group(start: Start, callback: str) -> None:
+    ros = start(f"""
+        import rclpy
+        from std_msgs.msg import String
+        rclpy.init()
+        node, found = rclpy.create_node("n"), []
+        async def answer(message):
+            found.append(message.data)
+            return 7
+        node.create_subscription(String, "x", {callback}, 10)
+        rclpy.spin(node)
+    """)
+    for text in ("first", "second", "third"):
+        ros.bus.publish("x", message_type("std_msgs/msg/String")(data=text))
+    ros.step(0.1)
+    assert ros.namespace["found"] == ["first", "second", "third"]  # type: ignore[attr-defined]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,9 @@ from typing import Any
 import pytest
 
 from pytest_tarl import Sensor
+from pytest_tarl.errors import TarlError
 from pytest_tarl.repeating import Instruments
+from pytest_tarl.workers import protocol
 from pytest_tarl.workers.executor import OFF, posted
 from pytest_tarl.workers.worker import instruments
 
@@ -43,6 +46,30 @@ def test_a_worker_gets_the_options_and_the_place_of_the_run(
     assert first["nodeid"] == item.nodeid
     assert first["edges"] == {"x": [0.0, 1.0, 4.0]}  # bins that were learned, not those of the marker
     assert post.loud
+
+
+def test_a_worker_gets_only_options_that_are_plain_data(pytester: pytest.Pytester) -> None:
+    item: Any = pytester.getitem("def test_x(tarl): ...", "test_x")
+    item.config.option.odd, item.config.option.nested = object(), {"a": [1, None]}
+    options = json.loads(posted(item, PLACES, ()).start)["options"]
+    assert options["nested"] == {"a": [1, None]}
+    assert "odd" not in options
+
+
+@pytest.mark.parametrize("size", [2, 1 << 20])
+def test_a_worker_without_a_configuration_tells_the_reason(size: int) -> None:
+    """The first message may be larger than the buffer of a pipe."""
+    code = "from pytest_tarl.workers.worker import serve; serve(0, 1, None, 'no such option')"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as worker:
+        assert worker.stdin is not None
+        assert worker.stdout is not None
+        protocol.write(worker.stdin, b" " * size)
+        answer = protocol.read(worker.stdout)
+        assert answer is not None
+        with pytest.raises(TarlError, match=r"^no such option$"):
+            protocol.refused(answer)
 
 
 def test_workers_capture_output_unless_the_run_disables_capturing(pytester: pytest.Pytester) -> None:
