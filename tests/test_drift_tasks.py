@@ -28,6 +28,7 @@ JUDGING = (
     "drift_judging_11",
     "drift_judging_12",
     "drift_judging_13",
+    "drift_judging_14",
     "drift_structure",
 )
 TASKS = sorted(
@@ -219,6 +220,16 @@ KINDS = {  # kinds of defects in the tasks of each set
         "sparse reward",
         "structure",
     ],
+    "drift_judging_14": [
+        "narrow window",
+        "one constant",
+        "permanent",
+        "permanent",
+        "permanent",
+        "range",
+        "rare failures",
+        "structure",
+    ],
 }
 
 
@@ -270,6 +281,7 @@ def test_the_worlds_of_the_fourth_set_are_deterministic() -> None:
         "drift_judging_11",
         "drift_judging_12",
         "drift_judging_13",
+        "drift_judging_14",
     ],
 )
 def test_drifts_reduce_the_reward_and_repairs_by_hand_restore_it(folder: str) -> None:
