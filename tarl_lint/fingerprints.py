@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tarl_lint.model import CODES, Finding, Flow, Kind
+from tarl_lint.model import CODES, Finding, Flow, Kind, Sink, Source
 
 UNKNOWN: Final = "?"
 
@@ -87,9 +87,9 @@ def of_flow(flow: Flow, package: str) -> OfFlow:
     return OfFlow(
         package=_package(package, source.module),
         owner=source.qualname.rpartition(".")[0],
-        source=topic_text(source.topics),
+        source=_in_baseline(source),
         callback=source.callback,
-        sink=topic_text(sink.topics),
+        sink=_in_baseline(sink),
         place=sink.qualname,
         kind=flow.kind,
     )
@@ -97,6 +97,11 @@ def of_flow(flow: Flow, package: str) -> OfFlow:
 
 def _package(package: str, module: str) -> str:
     return package or module.rpartition(".")[0] or module
+
+
+def _in_baseline(end: Source | Sink) -> str:
+    """Return the topics of an end; a default name counts as unknown, because a launch file may replace it."""
+    return UNKNOWN if end.default_topics else topic_text(end.topics)
 
 
 def topic_text(topics: Sequence[str]) -> str:

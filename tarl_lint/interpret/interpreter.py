@@ -72,6 +72,7 @@ class Interpreter:
         # node that no source reached → roots that ignored it for this reason
         self.doubts: dict[int, dict[Root, None]] = {}
         self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
+        self.repeating = False  # whether the element of a comprehension is evaluated again
         self.work = Work()
         self.widened: set[Hashable] = set()  # contexts that several calls share
         self.cut: dict[str, None] = {}  # programs whose analysis is incomplete

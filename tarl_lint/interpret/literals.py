@@ -95,8 +95,12 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
         updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
     else:
         updates.add_element(ctx, pointer(obj), element)
-        if _makes_objects(ctx, element):  # evaluated again, each object is one of several
-            again = ctx.ops.evaluate(ctx, expr.element, frame)
+        if not ctx.repeating and _makes_objects(ctx, element):
+            ctx.repeating = (
+                True  # once for a whole nest of comprehensions, or the time would double with each
+            )
+            again = ctx.ops.evaluate(ctx, expr.element, frame)  # makes each object one of several
+            ctx.repeating = False
             updates.add_element(ctx, pointer(obj), Value(again.deps | gate, again.pts, again.consts))
     return pointer(obj)
 

@@ -25,10 +25,8 @@ def variable(ctx: Interpreter, it: Invocation) -> Value:
     made = ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
     plain, named = it.arguments
     default = plain[1] if len(plain) > 1 else named.get("default", BOTTOM)
-    if default is BOTTOM:
-        return Value(made.deps, consts=frozenset([GIVEN]))
-    consts = with_default(default)
-    return made if consts is None else Value(made.deps, consts=consts)
+    consts = frozenset([GIVEN]) if default is BOTTOM else with_default(default)
+    return made if consts is None else Value(ctx.use(made), consts=consts)
 
 
 def text_of(base: Value) -> Value | None:

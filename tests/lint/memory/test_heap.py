@@ -568,7 +568,7 @@ def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
 @pytest.mark.parametrize(
     ("known", "name", "default"),
     [
-        (None, "~scan", const("scan")),
+        (None, "~scan", const(1)),
         ([], "~", const("scan")),
         ([], "~scan", const(1)),
         ([], "~scan", pointer(Obj("lib", 1))),
@@ -576,6 +576,16 @@ def test_a_name_that_contains_a_parameter_has_a_placeholder_for_the_parameter():
 )
 def test_a_parameter_whose_default_is_not_text_has_no_placeholder_in_names(known, name, default):
     assert symbolic_names.text_of_parameter(known, name, default) is None
+
+
+def test_the_default_of_a_parameter_is_a_name_that_the_robot_may_replace():
+    texts = symbolic_names.text_of_parameter(None, "~scan", const("scan"))
+    assert texts == symbolic_names.with_default(const("scan"))
+    value = Value(consts=texts)
+    assert (value.names(), value.replaceable()) == (("scan",), True)
+    assert not const("scan").replaceable()
+    assert symbolic_names.with_default(const(1)) is None
+    assert symbolic_names.with_default(pointer(Obj("lib", 1))) is None
 
 
 def test_an_object_in_use_becomes_an_older_one_when_its_site_makes_the_next(ctx, frame):

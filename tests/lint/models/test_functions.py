@@ -28,6 +28,12 @@ MACHINES = ("StateMachine", "Sequence", "Concurrence", "Container")
 
 # function(s) → the body of a callback, in which NAME is the function
 CASES: dict[tuple[str, ...], str] = {
+    ("os.environ.get", "os.getenv", "os.environ.setdefault", "os.environ.pop"): """
+        out.publish(NAME("RATE", msg.data))  # data
+        out.publish(NAME("RATE", 1.0))  # clean
+        out.publish(NAME("RATE", "fast"))  # clean
+        out.publish(NAME(msg.name, "fast"))  # data
+    """,
     ("list", "tuple", "deque"): """
         kept = NAME([0.0, msg.data])
         out.publish(kept[1])  # data

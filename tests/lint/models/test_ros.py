@@ -146,7 +146,7 @@ FUNCTIONS: dict[tuple[str, ...], str] = {
             out.publish(made[1])  # clean
         rospy.Subscriber("in", Float64, on)
     """,
-    ("rospy.get_param",): """
+    ("rospy.get_param", "rospy.get_param_cached"): """
         def on(msg):
             out.publish(NAME("~near", msg.data))  # data
             out.publish(NAME("~far", 1.0))  # clean

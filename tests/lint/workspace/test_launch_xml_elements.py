@@ -44,7 +44,12 @@ PARAMETERS = [
         {"~a": "unknown"},
         ["<param> of drive: the package other is not in the workspace"],
     ),
-    ('<param name="a" value="$(optenv HOME b c)"/><param name="e" value="$(optenv X)"/>', {"~a": "b c", "~e": ""}, []),
+    ('<param name="a" value="$(optenv DEV b c)"/><param name="e" value="$(optenv X)"/>', {"~a": "b c", "~e": ""}, []),
+    (  # HOME is always set
+        '<param name="a" value="$(optenv HOME b c)"/>',
+        {"~a": "unknown"},
+        ["<param> of drive: $(optenv HOME b c) is known on the robot only"],
+    ),
     ('<param name="a" value="$(eval optenv(\'X\', \'y\') + str(arg(\'n\')))"/>', {"~a": "y3"}, []),
     (
         '<param name="a" value="$(eval n +)"/>',
