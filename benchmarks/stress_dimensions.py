@@ -3,19 +3,21 @@
     python benchmarks/stress_peers/install.sh                       # once: Ψ-TaLiRo and STGEM, an environment each
     python benchmarks/stress_dimensions.py --harmless 100           # false failures
     python benchmarks/stress_dimensions.py quiet_tank quiet_quadrotor --harmless 100
+    python benchmarks/stress_dimensions.py quiet_gripper quiet_dish --harmless 100
     python benchmarks/stress_dimensions.py [TASK ...] [--seeds 20] [--methods ours confirmed random …]
 
 The worlds of stress_worlds.py and stress_worlds_2.py are formulas; those of stress_worlds_3.py and stress_worlds_4.py
-are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py, whose drifts have
-units and whose nominal values are not always in the middle or at an end of the range. Each task of benchmarks/drift
-has four directions: its own drift, from the nominal value to that of the task, and three faults of the topic of its
-first numeric sensor (bias, latency, dropout), of the same relative size in every task. Each method may run BUDGET
-episodes. A peer receives a cost for each drift that it proposes. If the guarantee fails on PROBES common seeds, the
-cost is the distance from nominal; otherwise it is the margin above the largest distance. A failure counts if fresh
-seeds confirm it; these episodes are not charged. Each method may offer its nearest OFFERS failing drifts, of which
-the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it confirmed, for which it spent episodes,
-and those that it expects to fail. The method `confirmed` offers only the confirmed ones of the same run. A cell
-of the table gives the number of seeds for which `ours` and `confirmed` are at least as near as the peer.
+are small simulations, written without knowledge of the search; so are those of stress_worlds_5.py and
+stress_worlds_6.py, whose drifts have units and whose nominal values are not always in the middle or at an end of the
+range. Each task of benchmarks/drift has four directions: its own drift, from the nominal value to that of the task,
+and three faults of the topic of its first numeric sensor (bias, latency, dropout), of the same relative size in every
+task. Each method may run BUDGET episodes. A peer receives a cost for each drift that it proposes. If the guarantee
+fails on PROBES common seeds, the cost is the distance from nominal; otherwise it is the margin above the largest
+distance. A failure counts if fresh seeds confirm it; these episodes are not charged. Each method may offer its nearest
+OFFERS failing drifts, of which the k-th is tested at RISK / k(k + 1). A stress run offers the drifts that it
+confirmed, for which it spent episodes, and those that it expects to fail. The method `confirmed` offers only the
+confirmed ones of the same run. A cell of the table gives the number of seeds for which `ours` and `confirmed` are at
+least as near as the peer.
 """
 
 from __future__ import annotations
@@ -41,12 +43,14 @@ sys.path[:0] = [str(HERE / "drift"), str(HERE)]
 from peers import Cma  # noqa: E402
 from stage import TASKS, Stage, visit  # noqa: E402
 from stress import nominal_of  # noqa: E402
-from stress_worlds import TOLERANCE, WORLDS, Formula, harmless  # noqa: E402
+from stress_worlds import TOLERANCE, WORLDS, Formula, World, harmless  # noqa: E402
 from stress_worlds import space as world_space  # noqa: E402
 from stress_worlds_2 import FRESH_WORLDS  # noqa: E402
 from stress_worlds_3 import NEW_WORLDS  # noqa: E402
 from stress_worlds_4 import FOURTH_WORLDS, QUIET_WORLDS  # noqa: E402
-from stress_worlds_5 import MACHINES  # noqa: E402
+from stress_worlds_5 import MACHINES as FIFTH_MACHINES  # noqa: E402
+from stress_worlds_5 import Machine  # noqa: E402
+from stress_worlds_6 import QUIET_MACHINES, SIXTH_MACHINES  # noqa: E402
 
 from pytest_tarl import faults  # noqa: E402
 from pytest_tarl.designation import Designation  # noqa: E402
@@ -62,7 +66,12 @@ from pytest_tarl.stressing.rays import distance, rays  # noqa: E402
 from pytest_tarl.stressing.search import divided, explore  # noqa: E402
 
 FORMULAS = {**WORLDS, **FRESH_WORLDS, **NEW_WORLDS, **FOURTH_WORLDS}
-HARMLESS = {"harmless": harmless, **QUIET_WORLDS}  # nothing in the space breaks the guarantee
+MACHINES = {**FIFTH_MACHINES, **SIXTH_MACHINES}
+HARMLESS: Mapping[str, World | Machine] = {  # nothing in the space breaks the guarantee
+    "harmless": harmless,
+    **QUIET_WORLDS,
+    **QUIET_MACHINES,
+}
 BUDGET = 600  # maximum number of episodes of a run
 PROBES = 4  # number of episodes at each drift that a peer proposes
 OFFERS = 10  # maximum number of a method's failing drifts that are tested on fresh seeds
@@ -138,11 +147,12 @@ def recorded(task: str, rollout: Rollout, space: Space, marked: Designation) -> 
 
 
 def formula(name: str) -> Arena:
-    """Return a world of stress_worlds.py or of the later sets."""
-    if name in MACHINES:
-        machine = MACHINES[name]
-        return recorded(name, machine, machine.space, machine.marked)
-    return recorded(name, Formula(FORMULAS[name]), world_space(), FORMULA)
+    """Return a world of stress_worlds.py or of the later sets, or a harmless one."""
+    every: dict[str, World | Machine] = {**FORMULAS, **MACHINES, **HARMLESS}
+    world = every[name]
+    if isinstance(world, Machine):
+        return recorded(name, world, world.space, world.marked)
+    return recorded(name, Formula(world), world_space(), FORMULA)
 
 
 def ours(one: Arena, reported: Sequence[Point], together: Together) -> list[Point]:
@@ -312,7 +322,7 @@ def _shown(value: float | None) -> str:
 
 def harmless_runs(runs: int, name: str = "harmless") -> str:
     """Return the number of runs that report a failure although nothing in the space breaks the guarantee."""
-    one = recorded(name, Formula(HARMLESS[name]), world_space(), FORMULA)
+    one = formula(name)
     false = expected = 0
     for number in range(1, runs + 1):
         reported, together = searched(one, number)
